@@ -25,7 +25,7 @@ pub use failure::Failure;
 
 use crate::session::{
     Configuration, LabKey, STUDY_FILE, SealKey, Study, lab_key_of, list_worlds_in, participant_folder,
-    seal_key_of,
+    record_refused_code, seal_key_of,
 };
 
 /// Run a simulated AI subscription company for 500 days.
@@ -243,6 +243,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
         let study = Study::read(folder)?;
         let has_code = study.protocol.opens_with(arguments.code.as_deref());
+        if let (false, Some(_)) = (has_code, &arguments.code) {
+            record_refused_code(&study, &context.runs()?);
+        }
         if is_visit && !has_code {
             let options = match arguments.command {
                 Some(Command::Play(options)) => options,

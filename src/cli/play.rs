@@ -107,7 +107,7 @@ impl Options {
             overrides: self.set.clone(),
             mode: self.mode.unwrap_or(standard.mode),
             participant: self.participant.clone(),
-            agreed: self.consent.then(ConsentGiven::on_paper),
+            agreed: self.consent.then(|| ConsentGiven::on_paper().now()),
             study: None,
             storage: Storage::Runs(context.runs()?),
             projection: true,
@@ -183,7 +183,7 @@ fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
                 scrolled_to_end: true,
                 read_ms: steady().saturating_sub(shown).as_millis() as u64,
             };
-            Ok(Session::create(NewRun { agreed: Some(given), ..new }, &context.configuration)?)
+            Ok(Session::create(NewRun { agreed: Some(given.now()), ..new }, &context.configuration)?)
         }
         created => Ok(created?),
     }

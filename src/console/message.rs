@@ -139,8 +139,6 @@ pub enum VisitNews {
     Due(Vec<DueQuestion>),
     /// Answers were recorded; what is due now.
     Answered(Vec<DueQuestion>),
-    /// What the participant did was erased.
-    Withdrawn,
     /// Whether the code was the experimenter's; none: the study has no code.
     Code(Option<bool>),
     /// Something cannot be read or written; what is safe.

@@ -71,6 +71,10 @@ fn dialogue(
     // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
     let _ = interpreter.session.save();
     let end = end?;
+    if end == End::Withdrawn {
+        // Nothing of the run is kept, so nothing says that it is.
+        return Ok((end, interpreter.session));
+    }
     let told = writeln!(out, "{}", farewell(&interpreter.session, style, end)).and_then(|()| out.flush());
     match end {
         // The terminal may be what has gone.
@@ -158,7 +162,7 @@ fn ask_questions(
 
 /// Asks whether a participant really withdraws.
 fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
-    let question = "Withdrawing erases everything that you did in this study, for good. Type withdraw again to do so, \
+    let question = "Withdrawing erases your runs of this study, for good. Type withdraw again to do so, \
                     anything else to go on:";
     if style.json {
         println!("{}", json!({ "event": "ask", "what": "withdraw", "text": question }));

@@ -11,7 +11,8 @@ use super::{End, Style, dialogue, prompt, withdraws};
 use crate::notation::printable;
 use crate::report::prose::as_plain;
 use crate::session::{
-    Configuration, ConsentGiven, ConsentMeans, Library, NextStep, RunError, Session, Study, Visit, steady,
+    Agreed, Configuration, ConsentGiven, ConsentMeans, DECLINED, Library, NextStep, RunError, Session, Study,
+    Visit, steady,
 };
 
 /// What ends a visit early.
@@ -68,7 +69,7 @@ struct Host<'a> {
     lines: Lines,
     configuration: &'a Configuration,
     style: Style,
-    consent: Option<ConsentGiven>,
+    consent: Option<Agreed>,
     again: &'a str,
 }
 
@@ -96,8 +97,8 @@ impl Host<'_> {
                     self.play(&visit, session)?;
                 }
                 NextStep::Questions(folder) => self.play(&visit, visit.open(&folder)?)?,
-                NextStep::Withdrawn => {
-                    self.say("withdrawn", "You have withdrawn from this study. Your data were erased.")?;
+                NextStep::Withdrawn(kept) => {
+                    self.say("withdrawn", &format!("You have withdrawn from this study. {kept}"))?;
                     return Ok(0);
                 }
                 NextStep::Thanks => {
@@ -139,15 +140,12 @@ impl Host<'_> {
             Some("yes") => {
                 let read_ms = steady().saturating_sub(shown).as_millis() as u64;
                 let means = ConsentMeans::Prompt;
-                self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms });
+                self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms }.now());
                 Ok(())
             }
             Some(_) => {
                 visit.decline();
-                self.say(
-                    "declined",
-                    "You did not agree. No run of yours was recorded; please tell the experimenter.",
-                )?;
+                self.say("declined", &format!("{DECLINED} Please tell the experimenter."))?;
                 Err(Stop::Left(0))
             }
         }
@@ -210,7 +208,7 @@ impl Host<'_> {
     fn begin(&self, visit: &Visit, practice: bool, unfinished: Option<&Path>) -> Result<Session, Stop> {
         Ok(match unfinished {
             Some(folder) => visit.open(folder)?,
-            None => visit.begin_run(practice, self.consent, self.configuration)?,
+            None => visit.begin_run(practice, self.consent.clone(), self.configuration)?,
         })
     }
 

@@ -41,27 +41,50 @@ pub struct Link {
 pub const LINKS: [&str; 6] = ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
 
 /// Columns that are left out: they tell a person apart by what others know.
-const LEFT_OUT: [(&str, &str); 3] = [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest")];
+const LEFT_OUT: [(&str, &str); 4] =
+    [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
+
+/// Columns that say which session it was: few people share what they say together.
+const DESIGN: [&str; 2] = ["seed", "condition"];
+
+/// Columns without which tables cannot be joined.
+const NEEDED: [&str; 2] = ["run", "participant"];
+
+/// Tables without what tells who took part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Anonymous {
+    /// The tables.
+    pub tables: Vec<NamedTable>,
+    /// The links to the originals.
+    pub links: Vec<Link>,
+    /// Sessions of the smallest group that agrees in what is left of seed and condition, with what it agrees in; none where
+    /// neither is left, or there is no session.
+    pub smallest_group: Option<(usize, String)>,
+}
 
 /// Makes tables anonymous with a secret.
 pub struct Anonymiser {
     secret: [u8; 32],
     texts: Texts,
+    /// Further columns that are left out.
+    without: Vec<String>,
     /// When each run began, nanoseconds since 1970.
     began: BTreeMap<String, i64>,
+    /// When somebody first came under a label, nanoseconds since 1970.
+    came: BTreeMap<String, i64>,
 }
 
 impl Anonymiser {
-    /// One with a secret of the experimenter.
-    pub fn new(secret: [u8; 32], texts: Texts) -> Anonymiser {
-        Anonymiser { secret, texts, began: BTreeMap::new() }
+    /// One with a secret of the experimenter; the columns `without` are left out of every table.
+    pub fn new(secret: [u8; 32], texts: Texts, without: Vec<String>) -> Anonymiser {
+        Anonymiser { secret, texts, without, began: BTreeMap::new(), came: BTreeMap::new() }
     }
 
     /// The tables of an export or a collection without what tells who took part, and the links to the originals.
     ///
     /// # Errors
     /// A table or column is missing, or two names would become one.
-    pub fn anonymise(&mut self, tables: &[NamedTable]) -> Result<(Vec<NamedTable>, Vec<Link>), String> {
+    pub fn anonymise(&mut self, tables: &[NamedTable]) -> Result<Anonymous, String> {
         let all = |name: &str| {
             let found = tables.iter().find(|(own, _)| own == name).map(|(_, rows)| rows.as_slice());
             found.filter(|rows| !rows.is_empty()).ok_or_else(|| format!("the table {name}.csv is missing"))
@@ -88,16 +111,68 @@ impl Anonymiser {
         {
             return Err("two names would become one: take another secret".to_owned());
         }
+        links.sort_by(|one: &Link, other| {
+            (&one.new_participant, &one.new_run).cmp(&(&other.new_participant, &other.new_run))
+        });
+        self.note_visits(all("visits")?)?;
         let mut made = Vec::new();
         let mut described = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
         for (name, columns) in headings() {
             let kept: Vec<Heading> =
-                columns.into_iter().filter(|own| !LEFT_OUT.contains(&(name, own.name))).collect();
+                columns.into_iter().filter(|own| !self.leaves_out(name, own.name)).collect();
             described.extend(kept.iter().map(|own| described_column(name, own)));
             made.push((name.to_owned(), self.table(name, &kept, all(name)?)?));
         }
         made.push(("columns".to_owned(), described));
-        Ok((made, links))
+        let smallest_group = self.smallest_group(runs)?;
+        Ok(Anonymous { tables: made, links, smallest_group })
+    }
+
+    fn leaves_out(&self, table: &str, column: &str) -> bool {
+        LEFT_OUT.contains(&(table, column)) || self.without.iter().any(|own| own == column)
+    }
+
+    /// The columns to leave out are columns, and none that the tables need.
+    ///
+    /// # Errors
+    /// The first that is none, or that joins the tables.
+    pub fn check_left_out(&self) -> Result<(), String> {
+        let known = |name: &str| headings().iter().any(|(_, own)| own.iter().any(|own| own.name == name));
+        for name in &self.without {
+            if NEEDED.contains(&name.as_str()) {
+                return Err(format!("{name} cannot be left out: it joins the tables"));
+            }
+            if !known(name) {
+                return Err(format!("no table has a column {name}; `novamind runs columns` lists them"));
+            }
+        }
+        Ok(())
+    }
+
+    /// When each label first came.
+    fn note_visits(&mut self, rows: &[Vec<String>]) -> Result<(), String> {
+        let (label, at) = (place(rows, "participant")?, place(rows, "at")?);
+        for row in rows.iter().skip(1).filter(|row| !row[label].is_empty()) {
+            let moment = crate::session::nanoseconds_of(&row[at]);
+            self.came.entry(row[label].clone()).and_modify(|own| *own = moment.min(*own)).or_insert(moment);
+        }
+        Ok(())
+    }
+
+    /// The sessions that agree in what is left of the design.
+    fn smallest_group(&self, runs: &[Vec<String>]) -> Result<Option<(usize, String)>, String> {
+        let left: Vec<&str> = DESIGN.into_iter().filter(|name| !self.leaves_out("runs", name)).collect();
+        if left.is_empty() {
+            return Ok(None);
+        }
+        let places = left.iter().map(|name| place(runs, name)).collect::<Result<Vec<_>, _>>()?;
+        let (created, practice) = (place(runs, "created")?, place(runs, "practice")?);
+        let mut groups: BTreeMap<String, usize> = BTreeMap::new();
+        for row in runs.iter().skip(1).filter(|row| !row[created].is_empty() && row[practice] != "1") {
+            let values = left.iter().zip(&places).map(|(name, at)| format!("{name} {}", row[*at]));
+            *groups.entry(values.collect::<Vec<_>>().join(", ")).or_default() += 1;
+        }
+        Ok(groups.into_iter().map(|(values, size)| (size, values)).min())
     }
 
     fn table(
@@ -107,18 +182,23 @@ impl Anonymiser {
         rows: &[Vec<String>],
     ) -> Result<Vec<Vec<String>>, String> {
         let places = columns.iter().map(|own| place(rows, own.name)).collect::<Result<Vec<_>, _>>()?;
-        let mut made = vec![columns.iter().map(|own| new_name(own).to_owned()).collect()];
+        let mut made = Vec::new();
         for row in &rows[1..] {
             let known: BTreeMap<&str, &str> =
                 rows[0].iter().map(String::as_str).zip(row.iter().map(String::as_str)).collect();
-            if !self.began.contains_key(known["run"]) {
+            if known.get("run").is_some_and(|run| !self.began.contains_key(*run)) {
                 // A run that could not be read tells nothing but its name.
                 continue;
             }
             let cells = columns.iter().zip(&places);
-            made.push(cells.map(|(column, at)| self.cell(name, column, &row[*at], &known)).collect());
+            let cells = cells.map(|(column, at)| self.cell(name, column, &row[*at], &known));
+            let of = |name: &str| known.get(name).copied().unwrap_or_default();
+            made.push(((self.label(of("participant")), self.run(of("run"))), cells.collect()));
         }
-        Ok(made)
+        // The order of the originals tells who came when. Lines of one run keep theirs.
+        made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
+        let head = columns.iter().map(|own| new_name(own).to_owned()).collect();
+        Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
     }
 
     fn cell(&self, table: &str, column: &Heading, cell: &str, row: &BTreeMap<&str, &str>) -> String {
@@ -130,6 +210,9 @@ impl Anonymiser {
             ("events", "which") if kind == "branch" => self.run(cell),
             ("events", "which") if matches!(kind, "note" | "memo") => String::new(),
             ("runs", "last_hash") => original(cell),
+            ("visits", "at") => since(self.came.get(row["participant"]), cell),
+            ("visits", "machine") => self.keyed("machine", cell, 16),
+            ("events", "value") if kind == "start" && self.leaves_out("runs", "seed") => String::new(),
             _ if column.unit == "RFC 3339" => self.since_start(row["run"], cell),
             ("events", "detail") => self.detail(cell),
             ("events", "text") if kind == "question" || is_setting(row) => cell.to_owned(),
@@ -150,8 +233,7 @@ impl Anonymiser {
     }
 
     fn since_start(&self, run: &str, at: &str) -> String {
-        let passed = crate::session::nanoseconds_of(at) - self.began.get(run).copied().unwrap_or(0);
-        format!("{}", (passed as f64 / 1e6).round() / 1e3 + 0.0)
+        since(self.began.get(run), at)
     }
 
     /// Machines and starts of them get other names.
@@ -186,6 +268,14 @@ fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
     of("kind") == "call" && of("value") == "accepted" && begins
 }
 
+/// Seconds from a moment in nanoseconds since 1970 to another; empty where there is none to count from.
+fn since(began: Option<&i64>, at: &str) -> String {
+    began.map_or(String::new(), |began| {
+        let passed = crate::session::nanoseconds_of(at) - began;
+        format!("{}", (passed as f64 / 1e6).round() / 1e3 + 0.0)
+    })
+}
+
 /// What stands for the sealed original: the hash of its last hash.
 fn original(last_hash: &str) -> String {
     blake3::hash(last_hash.as_bytes()).to_hex().to_string()
@@ -197,6 +287,9 @@ fn new_name(column: &Heading) -> &'static str {
 
 fn described_column(table: &str, column: &Heading) -> Vec<String> {
     let (unit, meaning) = match (column.unit, column.name) {
+        ("RFC 3339", _) if table == "visits" => {
+            ("seconds", format!("{}, as seconds since somebody first came under the label", column.meaning))
+        }
         ("RFC 3339", _) => ("seconds", format!("{}, as seconds since the run began", column.meaning)),
         (unit, "last_hash") => {
             (unit, "BLAKE3 hash of the last hash of the sealed original, as text".to_owned())

@@ -7,8 +7,8 @@ use super::Logbook;
 use super::tables::StudyTables;
 use crate::session::archive::Workshop;
 use crate::session::{
-    CollectNote, Export, FoundRun, Gathered, LabKey, LabPublicKey, RunError, Seal, SealKey, Study, gather,
-    missing_places,
+    CollectNote, Export, FoundRun, FoundVisit, Gathered, LabKey, LabPublicKey, RunError, Seal, SealKey,
+    Study, VisitSummary, gather, missing_places,
 };
 
 /// What is collected, and how.
@@ -52,6 +52,8 @@ pub struct Collected {
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
     /// What should be known.
     pub notes: Vec<CollectNote>,
+    /// How many came, and what became of them.
+    pub visits: VisitSummary,
 }
 
 /// Collects a study. Every run is simulated again and sealed into an archive; `progress` is told how many of how many are
@@ -64,9 +66,19 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
     // What archives are unpacked into stays hidden, and is gone afterwards.
     let workshop = Workshop::within(out)?;
-    let Gathered { runs, conflicts, mut notes, last_visits } =
-        gather(sources, workshop.path(), out, keys.public);
-    let mut collected = Collected { tables: StudyTables::default(), runs: Vec::new(), notes: Vec::new() };
+    let Gathered { runs, conflicts, mut notes, visits } = gather(sources, workshop.path(), out, keys.public);
+    let mut collected = Collected {
+        tables: StudyTables::default(),
+        runs: Vec::new(),
+        notes: Vec::new(),
+        visits: VisitSummary::default(),
+    };
+    let labels_recorded: BTreeSet<&str> =
+        runs.iter().filter_map(|run| run.manifest.participant.as_deref()).collect();
+    let of_study = |visit: &&FoundVisit| study.is_none_or(|study| visit.line.study == study.digest);
+    let own_visits = visits.iter().filter(of_study).map(|visit| &visit.line);
+    collected.visits = VisitSummary::of(own_visits, &labels_recorded);
+    collected.tables.add_visits(&visits);
     let mut present: BTreeSet<String> = BTreeSet::new();
     for (done, run) in runs.iter().enumerate() {
         progress(done, runs.len());
@@ -97,7 +109,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     let unknown = labels.keys().filter(|run| !known.contains(run));
     notes.extend(unknown.map(|run| CollectNote::UnknownRun { run: run.clone() }));
     if let Some(assignment) = study.and_then(|study| study.assignment.as_ref()) {
-        notes.extend(missing_places(assignment, &present, &last_visits));
+        notes.extend(missing_places(assignment, &present, &visits));
     }
     collected.notes = notes;
     Ok(collected)

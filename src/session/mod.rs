@@ -44,7 +44,7 @@ pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
-pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
+pub use folder::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
 pub use folder::derived::manifest_text;
 pub use folder::library::{self, Library};
@@ -80,7 +80,7 @@ pub use study::assignment::{ASSIGNMENT_FILE, Assignment, Place};
 pub use study::code::CodeCheck;
 pub use study::definition::{CONSENT_FILE, CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
 pub use study::due::DueQuestion;
-pub use study::gather::{CollectNote, FoundRun, Gathered, gather, missing_places};
+pub use study::gather::{CollectNote, FoundRun, FoundVisit, Gathered, gather, missing_places};
 pub use study::keys::{
     LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, lab_key_of, lab_public_key_of, make_keys, seal_key_of,
 };
@@ -89,8 +89,10 @@ pub use study::remarks::{REMARKS, Remark, remarks, write_remark};
 pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 pub use study::sittings::{Sitting, SittingState, sittings};
 pub use study::stamp::{EarlierRun, StudyStamp};
-pub use study::visit::{NextStep, Visit};
-pub use study::visit_log::{VISITS, VisitEvent, VisitLine, has_come, visits};
+pub use study::visit::{DECLINED, NextStep, Visit};
+pub use study::visit_log::{
+    VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits,
+};
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
     Line, Record, ScriptedClock, Trajectory, nanoseconds as nanoseconds_of, record, steady, written_moment,

@@ -129,14 +129,15 @@ fn who_declines_or_withdraws_leaves_no_run() {
     let lab = Lab::new();
     lab.assign();
     let declined = lab.visit("P02\nno\n");
-    assert!(declined.code == 0 && declined.out.contains("No run of yours was recorded"), "{}", declined.out);
+    assert!(declined.code == 0 && declined.out.contains("Kept: your label"), "{}", declined.out);
     let withdrew =
         lab.visit(&format!("P03\nyes\n1\n{WEEKS}1\n2\nwithdraw\nno\nstatus\nwithdraw\nwithdraw\n"));
     assert!(
-        withdrew.out.contains("subscribers 0") && withdrew.out.contains("were erased"),
+        withdrew.out.contains("subscribers 0") && withdrew.out.contains("Erased: your runs with everything"),
         "{}",
         withdrew.out
     );
+    assert!(!withdrew.out.contains("saved run") && !withdrew.out.contains("witness"), "{}", withdrew.out);
     let left: Vec<String> = fs::read_dir(lab.0.runs().join("participants/P03"))
         .expect("a folder")
         .flatten()
@@ -145,6 +146,31 @@ fn who_declines_or_withdraws_leaves_no_run() {
     assert_eq!(left, ["withdrawn.toml"]);
     assert!(lab.visit("P03\n").out.contains("You have withdrawn"));
     assert!(!lab.0.runs().join("participants/P02").exists());
+    // Both are counted, and stand in the table of visits.
+    let counted = "2 came: 1 declined, 1 withdrew, 0 finished, 0 neither · refused: 0 labels, 0 codes";
+    for command in ["watch", "audit"] {
+        let said = lab.0.run(&["study", command, &lab.folder()]);
+        assert!(said.out.contains(counted), "{}", said.out);
+    }
+    let (runs, out) = (lab.0.runs().display().to_string(), lab.0.0.path().join("data"));
+    let collected = lab.0.run(&[
+        "study",
+        "collect",
+        &runs,
+        &runs,
+        "--out",
+        &out.display().to_string(),
+        "--protocol",
+        &lab.folder(),
+    ]);
+    assert!(collected.out.contains(counted), "{}{}", collected.out, collected.err);
+    let visits = fs::read_to_string(out.join("visits.csv")).expect("a table");
+    let told: Vec<String> =
+        visits.lines().map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(" ")).collect();
+    assert_eq!(
+        told,
+        ["participant event", "P02 came", "P02 consent_declined", "P03 came", "P03 withdrew", "P03 came"]
+    );
 }
 
 #[test]
@@ -201,6 +227,12 @@ fn in_a_study_nothing_else_opens_without_the_code() {
         with(&[&["--code", "guess"], command].concat()).fails(2, &["experimenter's code"]);
     }
     assert_eq!(with(&["--code", "open sesame", "runs"]).code, 0);
+    // Each word that was not the code is a line, without the word.
+    let list = fs::read_to_string(lab.0.runs().join("visits.jsonl")).expect("a list");
+    assert_eq!(
+        (lab.events(), list.contains("guess")),
+        (vec![(String::new(), VisitEvent::CodeRefused); 4], false)
+    );
     with(&["play", "--plain", "--seed", "3"]).fails(2, &["protocol"]);
     // Whoever began under one protocol does not go on under another.
     lab.visit("P1\nyes\n3\nquit\n");

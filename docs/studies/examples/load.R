@@ -5,7 +5,8 @@
 #
 # Missing values are NA. A ' that keeps a text from being a formula is taken away.
 
-names_of_tables <- c("runs", "weeks", "forecasts", "queries", "events", "answers", "notes")
+names_of_tables <- c("runs", "weeks", "forecasts", "queries", "events", "answers", "notes",
+                     "visits")
 whole <- c("count", "day", "days", "number", "bytes")
 real <- c("dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "per group", "units")
 

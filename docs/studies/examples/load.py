@@ -15,7 +15,7 @@ try:
 except ImportError:
     pandas = None
 
-NAMES = ("runs", "weeks", "forecasts", "queries", "events", "answers", "notes")
+NAMES = ("runs", "weeks", "forecasts", "queries", "events", "answers", "notes", "visits")
 WHOLE = {"count", "day", "days", "number", "bytes"}
 REAL = {"dollars", "dollars a month", "share", "seconds", "milliseconds", "minutes", "per week", "per 100 words", "per group", "units"}
 

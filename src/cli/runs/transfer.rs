@@ -13,7 +13,8 @@ use crate::report::Logbook;
 use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
 use crate::session::{
-    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey, import_run,
+    Export as Sealing, FoundVisit, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey,
+    VISITS, import_run, visits,
 };
 
 /// Options of `runs export`.
@@ -126,6 +127,7 @@ impl Export {
             }
         }
         progress.finish_and_clear();
+        tables.add_visits(&visits_in(folders, label));
         write_tables(tables, &self.out)?;
         print(&answers.concat())?;
         if !json {
@@ -160,6 +162,17 @@ impl Export {
         let seal = export.write(&archive, true, key.as_ref())?;
         Ok((export, seal, archive))
     }
+}
+
+/// The lines of the lists of visits in folders of runs; of one label, where one is named.
+fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
+    let of_folder = |folder: &PathBuf| {
+        let lines = visits(&folder.join(VISITS)).into_iter();
+        let folder = folder.clone();
+        lines.map(move |line| FoundVisit { line, folder: folder.clone() })
+    };
+    let all = folders.iter().flat_map(of_folder);
+    all.filter(|visit| label.is_none_or(|label| visit.line.label == label)).collect()
 }
 
 /// Writes every table into a folder, as comma-separated values.

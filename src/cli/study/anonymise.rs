@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::cli::runs::as_csv;
 use crate::cli::{Failure, print};
-use crate::report::anonymised::{Anonymiser, LINKS, NamedTable, Texts};
+use crate::report::anonymised::{Anonymiser, Anonymous, LINKS, NamedTable, Texts};
 use crate::report::count;
 use crate::report::tables::headings;
 
@@ -28,6 +28,9 @@ pub struct Options {
     /// Leave the lengths of texts that people wrote.
     #[arg(long)]
     mask: bool,
+    /// Further columns to leave out of every table, as `seed,condition`.
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
+    without: Vec<String>,
 }
 
 /// Runs the command.
@@ -41,7 +44,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         headings().iter().map(|(name, _)| read(&options.folder, name)).collect::<Result<Vec<_>, _>>()?;
     let secret = secret_of(&options.secret)?;
     let texts = if options.mask { Texts::Masked } else { Texts::Dropped };
-    let (made, links) = Anonymiser::new(secret, texts).anonymise(&tables).map_err(Failure::unreadable)?;
+    let mut anonymiser = Anonymiser::new(secret, texts, options.without.clone());
+    anonymiser.check_left_out().map_err(Failure::usage)?;
+    let Anonymous { tables: made, links, smallest_group } =
+        anonymiser.anonymise(&tables).map_err(Failure::unreadable)?;
     let failed =
         |path: &Path, error: &std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     if options.out.exists() {
@@ -72,8 +78,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     own_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(&links_path, &error))?;
+    let told_apart = smallest_group.map_or(String::new(), |(size, values)| {
+        format!(
+            "the smallest group of sessions with equal seed and condition has {size} ({values}); --without seed,condition \
+             leaves columns out\n"
+        )
+    });
     print(&format!(
-        "the tables of {} without names are in {}; keep {} and {}\n",
+        "the tables of {} without names are in {}; keep {} and {}\n{told_apart}",
         count(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),

@@ -45,7 +45,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn in_words(study: &Study, audit: &Audit) -> String {
     let mut text = format!("{} · protocol {}\n\n", study.protocol.name, &study.digest[..16]);
     text += &aligned(&facts(&audit.runs));
-    text += "\n\n";
+    text += &format!("\n\n{}\n\n", audit.visits);
     if !audit.witnessed {
         text +=
             "No witness was asked: lines that were rewritten or cut with fitting hashes stay unnoticed.\n\n";

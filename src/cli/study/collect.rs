@@ -52,7 +52,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let Collected { tables, runs, notes } = collected;
+    let Collected { tables, runs, notes, visits } = collected;
     write_tables(tables, &options.out)?;
     let log: String = notes.iter().map(|note| format!("{}\n", printable(&note.to_string()))).collect();
     let path = options.out.join("collect.log");
@@ -61,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let told = runs.iter().map(|(label, seal, archive)| {
             json!({ "run": seal.run, "participant": label, "file": archive, "checksum": seal.checksum })
         });
-        let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes });
+        let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes, "visits": visits });
         print(&format!("{object}\n"))?;
     } else {
         let signed = own
@@ -70,7 +70,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             .map_or(String::new(), |key| format!(" and signed by the lab key {}", key.fingerprint()));
         let one = if runs.len() == 1 { "run" } else { "runs" };
         print(&format!(
-            "{log}{} {one} verified{signed}; archives, tables and collect.log are in {}\n",
+            "{log}{visits}\n{} {one} verified{signed}; archives, tables and collect.log are in {}\n",
             runs.len(),
             options.out.display()
         ))?;

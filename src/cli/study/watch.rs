@@ -1,5 +1,6 @@
 //! `novamind study watch`: all running sessions of a machine, or of folders of runs that are shared.
 
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -9,8 +10,8 @@ use clap::Args;
 use crate::cli::{Context, Failure, print};
 use crate::plain::table as aligned;
 use crate::session::{
-    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, has_come, nanoseconds_of, participant_folder,
-    remarks, sittings, week_of, write_remark,
+    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, VISITS, VisitLine, VisitSummary, has_come,
+    nanoseconds_of, participant_folder, remarks, sittings, visits, week_of, write_remark,
 };
 
 /// Options of `study watch`.
@@ -90,13 +91,20 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
     let mut text =
         format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
     text += &aligned(&table(all));
-    text += "\n";
+    text += &format!("\n\n{}\n", visitors(study, all, machines));
     let mut noted: Vec<Remark> = machines.iter().flat_map(|runs| remarks(runs)).collect();
     noted.sort_by_key(|remark| nanoseconds_of(&remark.at));
     for remark in noted {
         text += &format!("{} {}: {}\n", remark.at, remark.participant, remark.text);
     }
     text
+}
+
+/// Who came, also where no run began.
+fn visitors(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> VisitSummary {
+    let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));
+    let lines: BTreeSet<VisitLine> = lines.filter(|line| line.study == study.digest).collect();
+    VisitSummary::of(&lines, &all.iter().map(|own| own.participant.as_str()).collect())
 }
 
 fn table(all: &[Sitting]) -> Rows {

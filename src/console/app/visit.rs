@@ -87,7 +87,6 @@ impl App {
                 }
             }
             VisitNews::Declined => self.turn_to(VisitPage::declined),
-            VisitNews::Withdrawn => self.turn_to(VisitPage::withdrawn),
             VisitNews::Due(due) | VisitNews::Answered(due) => visit.due = due,
             VisitNews::Code(Some(true)) => {
                 self.visit = None;

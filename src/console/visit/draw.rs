@@ -8,6 +8,7 @@ use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::keys::Keys;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
+use crate::session::DECLINED;
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;
@@ -134,19 +135,15 @@ impl VisitPage {
                 "Withdraw",
                 vec![strong(format!("Type {WITHDRAW} to erase everything you did in this study."))],
             ),
-            PageKind::Declined => (
-                "Not agreed",
-                vec![
-                    text("You did not agree. No run of yours was recorded. Please tell the experimenter."),
-                    next_person,
-                ],
-            ),
-            PageKind::Withdrawn => (
+            PageKind::Declined => {
+                ("Not agreed", vec![text(DECLINED), text("Please tell the experimenter."), next_person])
+            }
+            PageKind::Withdrawn(kept) => (
                 "Withdrawn",
                 vec![
-                    text(
-                        "You have withdrawn. What you did in this study was erased; a note of the withdrawal stays. Please tell the experimenter.",
-                    ),
+                    text("You have withdrawn from this study."),
+                    text(kept),
+                    text("Please tell the experimenter."),
                     next_person,
                 ],
             ),

@@ -78,8 +78,8 @@ enum PageKind {
     Withdraw(Option<Field>),
     /// The participant does not agree.
     Declined,
-    /// The participant has withdrawn.
-    Withdrawn,
+    /// The participant has withdrawn; what is kept of them.
+    Withdrawn(String),
     /// Everything is done.
     Thanks,
 }
@@ -117,11 +117,6 @@ impl VisitPage {
         VisitPage::new(title, PageKind::Declined)
     }
 
-    /// The page after somebody has withdrawn.
-    pub fn withdrawn(title: &str) -> VisitPage {
-        VisitPage::new(title, PageKind::Withdrawn)
-    }
-
     /// The page of what comes next.
     pub fn next(title: &str, step: NextStep) -> VisitPage {
         let kind = match step {
@@ -133,7 +128,7 @@ impl VisitPage {
             // The run opens by itself, with its questions over it.
             NextStep::Questions(_) => PageKind::Wait,
             NextStep::Thanks => PageKind::Thanks,
-            NextStep::Withdrawn => PageKind::Withdrawn,
+            NextStep::Withdrawn(kept) => PageKind::Withdrawn(kept),
         };
         VisitPage::new(title, kind)
     }
@@ -178,7 +173,7 @@ impl VisitPage {
             }
             PageKind::Withdraw(None) => vec![Action::Confirm, Action::Cancel],
             PageKind::Withdraw(Some(_)) => vec![Action::GoOn, Action::Discard],
-            PageKind::Declined | PageKind::Withdrawn => vec![Action::GoOn],
+            PageKind::Declined | PageKind::Withdrawn(_) => vec![Action::GoOn],
         }
     }
 
@@ -237,7 +232,7 @@ impl VisitPage {
                 Vec::new()
             }
             // The next participant.
-            PageKind::Left | PageKind::Declined | PageKind::Withdrawn | PageKind::Thanks => {
+            PageKind::Left | PageKind::Declined | PageKind::Withdrawn(_) | PageKind::Thanks => {
                 self.refused = 0;
                 self.turn_to(PageKind::Label(Field::default()))
             }

@@ -1,6 +1,6 @@
 //! The desk of a study: who has come, and what comes next for them.
 
-use crate::session::{ConsentGiven, DueQuestion, NextStep, RunError, Study, Visit};
+use crate::session::{Agreed, DueQuestion, NextStep, RunError, Study, Visit};
 
 /// A study that is being visited.
 pub(super) struct Desk {
@@ -8,7 +8,7 @@ pub(super) struct Desk {
     /// The participant who has come.
     pub(super) visit: Option<Visit>,
     /// How the participant has agreed, before a run records it.
-    pub(super) agreed: Option<ConsentGiven>,
+    pub(super) agreed: Option<Agreed>,
     /// What is due, as it was told last.
     pub(super) due: Vec<DueQuestion>,
 }

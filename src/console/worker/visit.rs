@@ -4,7 +4,7 @@ use super::desk::Desk;
 use super::{Open, SessionThread};
 use crate::console::message::{News, VisitNews};
 use crate::console::request::{GivenAnswer, VisitRequest};
-use crate::session::{NextStep, RunError, Visit};
+use crate::session::{NextStep, RunError, Visit, record_refused_code};
 
 impl SessionThread {
     /// Does what a participant's way asks for.
@@ -16,7 +16,7 @@ impl SessionThread {
             }
             VisitRequest::Begin { label, refused } => self.begin_visit(&label, refused),
             VisitRequest::Agree(given) => {
-                self.at_desk(|desk| desk.agreed = Some(given));
+                self.at_desk(|desk| desk.agreed = Some(given.now()));
                 self.say_next();
             }
             VisitRequest::Decline => {
@@ -41,6 +41,9 @@ impl SessionThread {
                     let protocol = &desk.study.protocol;
                     protocol.access.code.is_some().then(|| protocol.opens_with(Some(&code)))
                 });
+                if right != Some(true) {
+                    self.desk.iter().for_each(|desk| record_refused_code(&desk.study, &self.runs));
+                }
                 if right == Some(true) {
                     self.desk = None;
                 }
@@ -80,7 +83,7 @@ impl SessionThread {
     fn play_next(&mut self) {
         let Some(desk) = &self.desk else { return };
         let Some(visit) = &desk.visit else { return };
-        let begin = |practice: bool| visit.begin_run(practice, desk.agreed, &self.configuration);
+        let begin = |practice: bool| visit.begin_run(practice, desk.agreed.clone(), &self.configuration);
         let opened = desk.next().and_then(|step| match step {
             Some(NextStep::Practice { unfinished: None, .. }) => begin(true),
             Some(NextStep::Session(None)) => begin(false),
@@ -118,11 +121,9 @@ impl SessionThread {
     fn withdraw(&mut self) {
         self.queries.disconnect();
         let erased = self.desk.as_ref().and_then(|desk| desk.visit.as_ref()).map(Visit::withdraw);
-        let news = match erased {
-            Some(Ok(())) => VisitNews::Withdrawn,
-            Some(Err(problem)) => VisitNews::Failed(problem.to_string()),
-            None => VisitNews::Ready,
-        };
-        self.say(News::Visit(news));
+        match erased {
+            Some(Err(problem)) => self.say(News::Visit(VisitNews::Failed(problem.to_string()))),
+            Some(Ok(())) | None => self.say_next(),
+        }
     }
 }

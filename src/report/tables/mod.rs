@@ -1,4 +1,4 @@
-//! The tables of a study: runs, weeks, forecasts, queries, events, answers and notes, each column with its unit and
+//! The tables of a study: runs, weeks, forecasts, queries, events, answers, notes and visits, each column with its unit and
 //! meaning.
 //!
 //! Cells hold texts as people wrote them; [`crate::notation::csv_cell`] makes them harmless when a file is written.
@@ -10,12 +10,13 @@ mod notes;
 mod place;
 mod queries;
 mod runs;
+mod visits;
 mod weeks;
 
 use serde::Serialize;
 
 use super::logbook::{Logbook, WeekLog};
-use crate::session::{ForecastScore, Line};
+use crate::session::{ForecastScore, FoundVisit, Line};
 
 pub use runs::RUNS;
 pub use weeks::WEEKS;
@@ -70,6 +71,7 @@ pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
         ("events", events::HEADINGS.to_vec()),
         ("answers", answers::HEADINGS.to_vec()),
         ("notes", notes::HEADINGS.to_vec()),
+        ("visits", visits::HEADINGS.to_vec()),
     ]
 }
 
@@ -111,6 +113,11 @@ impl StudyTables {
         self.extend("events", events::rows(&lines));
         self.extend("answers", answers::rows(&lines));
         self.extend("notes", notes::rows(&lines));
+    }
+
+    /// Adds lines of lists of visits.
+    pub fn add_visits(&mut self, visits: &[FoundVisit]) {
+        self.extend("visits", visits.iter().map(visits::row));
     }
 
     /// Adds a run that could not be read: its name and the reason, nothing else.

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::report::logbook::Logbook;
 use crate::report::measures::ChannelSkill;
-use crate::session::{StudyStamp, TimeSpent};
+use crate::session::{ConsentGiven, ConsentMeans, StudyStamp, TimeSpent};
 
 fn scored<const DAYS: u32>(run: &Logbook) -> String {
     score(&run.measures.forecasts, DAYS).map_or(0, |score| score.scored).to_string()
@@ -28,6 +28,11 @@ fn first_error<const DAYS: u32>(run: &Logbook) -> String {
 /// Something of the study that a run belongs to; empty if to none.
 fn of_study(run: &Logbook, part: fn(&StudyStamp) -> Option<String>) -> String {
     run.study.as_ref().and_then(part).unwrap_or_default()
+}
+
+/// How the text for participants was agreed to, where the program showed it.
+fn on_screen(run: &Logbook) -> Option<ConsentGiven> {
+    run.consent.as_ref().and_then(|consent| consent.given).filter(|given| given.means != ConsentMeans::Paper)
 }
 
 const FIRST_ERROR: &str =
@@ -88,11 +93,20 @@ pub const RUNS: &[RunColumn] = &[
     column(
         "consent_at",
         "RFC 3339",
-        "when the text for participants was agreed to; empty if none was asked for",
+        "when the text for participants was agreed to, with --consent when the run was started; empty if none was asked for",
         |run| run.consent.as_ref().map(|consent| consent.at.clone()).unwrap_or_default(),
     ),
     column("consent_digest", "hash", "BLAKE3 hash of that text", |run| {
         run.consent.as_ref().map(|consent| consent.digest.clone()).unwrap_or_default()
+    }),
+    column(
+        "consent_read_ms",
+        "milliseconds",
+        "from showing that text to agreeing; this and what follows is empty if none was asked for or it was agreed to on paper",
+        |run| on_screen(run).map(|given| given.read_ms.to_string()).unwrap_or_default(),
+    ),
+    column("consent_scrolled_to_end", "0 or 1", "1: its end was shown before it was agreed to", |run| {
+        on_screen(run).map(|given| flag(given.scrolled_to_end)).unwrap_or_default()
     }),
     column("format", "number", "format of its trajectory", |run| run.format.to_string()),
     column("version", "version", "version of the program that recorded it", |run| run.version.clone()),

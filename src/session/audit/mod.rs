@@ -11,7 +11,7 @@ mod finding;
 mod machine;
 mod rehearsal;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -26,6 +26,7 @@ use crate::session::play::afterwards::lines_afterwards;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::verify::verify_sealed;
 use crate::session::study::definition::Study;
+use crate::session::study::visit_log::{VISITS, VisitLine, VisitSummary, visits};
 use crate::session::trajectory::record::{Activity, PresenceEvent};
 use crate::session::trajectory::{Record, Trajectory};
 use crate::session::witness::{Finding, FindingKind, Told, compare, read_witness};
@@ -40,6 +41,8 @@ pub struct Audit {
     pub findings: Vec<AuditFinding>,
     /// Whether a witness was asked.
     pub witnessed: bool,
+    /// How many came, and what became of them.
+    pub visits: VisitSummary,
 }
 
 /// Audits the runs of a study in the folders of runs of its machines, or copies of them. The witness is that of the
@@ -56,7 +59,12 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
     };
     let told_of =
         |run: &str| told.as_ref().and_then(|record| record.runs.get(run)).map_or(&[][..], Vec::as_slice);
-    let mut audit = Audit { runs: Vec::new(), findings: Vec::new(), witnessed: told.is_some() };
+    let mut audit = Audit {
+        runs: Vec::new(),
+        findings: Vec::new(),
+        witnessed: told.is_some(),
+        visits: VisitSummary::default(),
+    };
     for machine in &records {
         for run in machine.runs.iter().filter(|run| run.is_of(&study.digest)) {
             let own = Inspection { study, machine, run };
@@ -69,6 +77,13 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
     if let Some(record) = &told {
         audit.findings.extend(gone(&records, &record.runs));
     }
+    let visits: BTreeSet<VisitLine> = machines
+        .iter()
+        .flat_map(|base| visits(&base.join(VISITS)))
+        .filter(|own| own.study == study.digest)
+        .collect();
+    let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
+    audit.visits = VisitSummary::of(&visits, &with_runs);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     audit.findings.sort_by(|one, other| {
         (&one.participant, &one.run, one.line, one.kind).cmp(&(

@@ -8,7 +8,6 @@ use super::create::{NewRun, Storage};
 use super::derived::Derived;
 use super::runs::all_run_folders;
 use crate::session::error::RunError;
-use crate::session::trajectory::now;
 
 /// Name of the file in the configuration folder.
 const FILE: &str = "consent.md";
@@ -40,9 +39,9 @@ pub(in crate::session) fn agreed(
     };
     let Some(text) = text else { return Ok(None) };
     let digest = text.digest();
-    if let Some(given) = new.agreed {
+    if let Some(agreed) = new.agreed.clone() {
         let text = Some(text.text);
-        return Ok(Some(Consent { digest, at: now(), given: Some(given), text }));
+        return Ok(Some(Consent { digest, at: agreed.at, given: Some(agreed.given), text }));
     }
     let earlier = match (&new.storage, participant) {
         (Storage::Runs(runs), Some(participant)) => earlier_consent(runs, participant, &digest),
@@ -71,7 +70,7 @@ mod tests {
     use crate::session::state::Session;
 
     fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
-        let agreed = agreed.then(ConsentGiven::on_paper);
+        let agreed = agreed.then(|| ConsentGiven::on_paper().now());
         let storage = Storage::Runs(runs.to_owned());
         let participant = participant.map(str::to_owned);
         NewRun { mode, participant, agreed, storage, days: Some(28), ..NewRun::default() }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::agreement::agreed;
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use super::consent::{ConsentGiven, ConsentText};
+use super::consent::{Agreed, ConsentText};
 use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
@@ -44,8 +44,8 @@ pub struct NewRun {
     pub mode: Mode,
     /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
     pub participant: Option<String>,
-    /// How the person has agreed to the text that the experimenter asks for; baseline runs only.
-    pub agreed: Option<ConsentGiven>,
+    /// How and when the person has agreed to the text that the experimenter asks for; baseline runs only.
+    pub agreed: Option<Agreed>,
     /// The study it belongs to, and what that lays down.
     pub study: Option<StudyEntry>,
     /// Where the run is kept.

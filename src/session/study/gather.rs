@@ -11,8 +11,8 @@ use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
 use crate::session::study::assignment::Assignment;
-use crate::session::study::visit_log::{VISITS, VisitEvent, visits};
-use crate::session::trajectory::Trajectory;
+use crate::session::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
+use crate::session::trajectory::{Trajectory, nanoseconds};
 
 /// How deep folders are searched.
 const DEEPEST: usize = 12;
@@ -188,8 +188,17 @@ pub struct Gathered {
     pub conflicts: BTreeMap<String, Vec<FoundRun>>,
     /// What should be known.
     pub notes: Vec<CollectNote>,
-    /// What machines say of labels last.
-    pub last_visits: BTreeMap<String, VisitEvent>,
+    /// What machines say of who came, by moment; a line that stands in several copies of a list once.
+    pub visits: Vec<FoundVisit>,
+}
+
+/// A line of a list of visits, and the folder of runs in which the list lies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FoundVisit {
+    /// The line.
+    pub line: VisitLine,
+    /// The folder of runs.
+    pub folder: PathBuf,
 }
 
 /// Finds all runs below some folders and in archives there. Archives are unpacked into `workshop`; `without` is not searched.
@@ -197,15 +206,18 @@ pub struct Gathered {
 pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<&LabPublicKey>) -> Gathered {
     let mut gathered = Gathered::default();
     let without = without.canonicalize().unwrap_or_else(|_| without.to_owned());
-    let (mut folders, mut archives) = (BTreeSet::new(), BTreeSet::new());
+    let mut found_there = Found::default();
     for source in sources {
-        let found = look(source, &without, DEEPEST, &mut folders, &mut archives, &mut gathered.last_visits);
+        let found = look(source, &without, DEEPEST, &mut found_there);
         gathered.notes.extend(
             found
                 .err()
                 .map(|error| CollectNote::Unreadable { path: source.clone(), problem: error.to_string() }),
         );
     }
+    let Found { folders, archives, visits } = found_there;
+    gathered.visits = visits.into_iter().map(|(line, folder)| FoundVisit { line, folder }).collect();
+    gathered.visits.sort_by_cached_key(|visit| nanoseconds(&visit.line.at));
     let mut by_run: BTreeMap<String, Vec<FoundRun>> = BTreeMap::new();
     let mut take = |found: Result<FoundRun, RunError>, source: &Path| match found {
         Ok(found) => by_run.entry(found.manifest.id.clone()).or_default().push(found),
@@ -242,12 +254,14 @@ pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<
 pub fn missing_places(
     assignment: &Assignment,
     labels: &BTreeSet<String>,
-    last_visits: &BTreeMap<String, VisitEvent>,
+    visits: &[FoundVisit],
 ) -> Vec<CollectNote> {
+    let last_visits: BTreeMap<&String, VisitEvent> =
+        visits.iter().map(|visit| (&visit.line.label, visit.line.event)).collect();
     let missing = assignment.places.iter().filter(|place| !labels.contains(&place.label));
     let note = |label: &String| CollectNote::Missing {
         label: label.clone(),
-        last_visit: last_visits.get(label).cloned(),
+        last_visit: last_visits.get(label).copied(),
     };
     missing.map(|place| note(&place.label)).collect()
 }
@@ -258,22 +272,28 @@ fn unpacked(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<LabPublic
     Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 
-/// Folders of runs and archives below a path. Links are not followed.
-fn look(
-    path: &Path,
-    without: &Path,
-    depth: usize,
-    folders: &mut BTreeSet<PathBuf>,
-    archives: &mut BTreeSet<PathBuf>,
-    last_visits: &mut BTreeMap<String, VisitEvent>,
-) -> std::io::Result<()> {
+/// What lies below some paths.
+#[derive(Default)]
+struct Found {
+    /// Folders of runs.
+    folders: BTreeSet<PathBuf>,
+    archives: BTreeSet<PathBuf>,
+    /// Lines of lists of visits, with the folder of the first list that has them.
+    visits: BTreeMap<VisitLine, PathBuf>,
+}
+
+/// Folders of runs, archives and lists of visits below a path. Links are not followed.
+fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io::Result<()> {
     let path = path.canonicalize()?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if path.is_file() {
         if [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending)) {
-            archives.insert(path);
+            found.archives.insert(path);
         } else if name == VISITS {
-            last_visits.extend(visits(&path).into_iter().map(|line| (line.label, line.event)));
+            let folder = path.parent().unwrap_or(&path).to_owned();
+            for line in visits(&path) {
+                found.visits.entry(line).or_insert_with(|| folder.clone());
+            }
         }
         return Ok(());
     }
@@ -281,14 +301,14 @@ fn look(
         return Ok(());
     }
     if path.join("trajectory.jsonl").is_file() || path.join("run.toml").is_file() {
-        folders.insert(path);
+        found.folders.insert(path);
         return Ok(());
     }
     for entry in std::fs::read_dir(&path)? {
         let entry = entry?;
         let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
         if !is_hidden && !entry.file_type()?.is_symlink() {
-            look(&entry.path(), without, depth - 1, folders, archives, last_visits)?;
+            look(&entry.path(), without, depth - 1, found)?;
         }
     }
     Ok(())

@@ -11,7 +11,7 @@ use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
 use crate::session::error::RunError;
 use crate::session::folder::configuration::Configuration;
-use crate::session::folder::consent::{ConsentGiven, ConsentText};
+use crate::session::folder::consent::{Agreed, ConsentText};
 use crate::session::folder::create::{NewRun, Storage, StudyEntry};
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
@@ -20,6 +20,10 @@ use crate::session::folder::runs::{RunSummary, delete_run, list_runs, participan
 use crate::session::play::machine::Machine;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
+
+/// What is kept of a participant who does not agree.
+pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \
+                            recorded.";
 
 /// A participant who has given a label.
 #[derive(Debug, Clone)]
@@ -54,8 +58,8 @@ pub enum NextStep {
     Questions(PathBuf),
     /// They have done everything.
     Thanks,
-    /// They have withdrawn.
-    Withdrawn,
+    /// They have withdrawn; what was erased and what is kept, in words.
+    Withdrawn(String),
 }
 
 impl Visit {
@@ -114,7 +118,7 @@ impl Visit {
     /// The participant's runs cannot be read.
     pub fn next(&self) -> Result<NextStep, RunError> {
         if Tombstone::is_in(&self.runs) {
-            return Ok(NextStep::Withdrawn);
+            return Ok(NextStep::Withdrawn(self.kept_after_withdrawal()));
         }
         let own = self.own_runs()?;
         match self.open_consent(&own) {
@@ -156,7 +160,7 @@ impl Visit {
     }
 
     /// The new run of the practice or of the session.
-    pub fn new_run(&self, practice: bool, agreed: Option<ConsentGiven>) -> NewRun {
+    pub fn new_run(&self, practice: bool, agreed: Option<Agreed>) -> NewRun {
         let protocol = &self.study.protocol;
         let stamp = StudyStamp {
             name: protocol.name.clone(),
@@ -197,7 +201,7 @@ impl Visit {
     pub fn begin_run(
         &self,
         practice: bool,
-        agreed: Option<ConsentGiven>,
+        agreed: Option<Agreed>,
         configuration: &Configuration,
     ) -> Result<Session, RunError> {
         let mut session = Session::create(self.new_run(practice, agreed), configuration)?;
@@ -246,6 +250,21 @@ impl Visit {
         Tombstone::of(&own, &self.study.digest).write(&self.runs)?;
         self.log.write(&self.label, VisitEvent::Withdrew);
         Ok(())
+    }
+
+    /// What was erased and what is kept of a participant who has withdrawn.
+    fn kept_after_withdrawal(&self) -> String {
+        let witness = match self.study.witness() {
+            Some(_) => {
+                ", and on the witness the number, the hash and the moment of each of their lines, without content"
+            }
+            None => "",
+        };
+        format!(
+            "Erased: your runs with everything you did, wrote and answered in them. Kept: your label with when you came and \
+             that you withdrew; of each erased run its name, its world and when it was opened{witness}; and what the \
+             experimenter noted or copied before."
+        )
     }
 
     fn consent_text(&self) -> Option<ConsentText> {

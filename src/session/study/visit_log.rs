@@ -1,5 +1,7 @@
 //! `visits.jsonl` in the folder of runs: who came when, and what became of it, also where no run began.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use crate::session::trajectory::now;
 pub const VISITS: &str = "visits.jsonl";
 
 /// Something that happened around the runs of a study.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct VisitLine {
     /// When, RFC 3339.
     pub at: String,
@@ -22,7 +24,7 @@ pub struct VisitLine {
     pub machine: String,
     /// Digest of the study's protocol.
     pub study: String,
-    /// Label, as it was typed.
+    /// Label, as it was typed; empty where a code was refused.
     pub label: String,
     /// What happened.
     pub event: VisitEvent,
@@ -44,6 +46,8 @@ pub enum VisitEvent {
     Withdrew,
     /// Everything is done.
     Finished,
+    /// A word was given for the experimenter's code and was not it. The line has neither label nor word.
+    CodeRefused,
 }
 
 /// The list of visits of a machine.
@@ -81,6 +85,70 @@ impl VisitLog {
 /// Whether somebody came to a study under a label on the machine with a folder of runs.
 pub fn has_come(study: &Study, runs: &Path, label: &str) -> bool {
     VisitLog::of(runs, study).has(label, VisitEvent::Came)
+}
+
+/// Records that a word was given for the experimenter's code and was not it.
+pub fn record_refused_code(study: &Study, runs: &Path) {
+    VisitLog::of(runs, study).write("", VisitEvent::CodeRefused);
+}
+
+/// How many came to a study, and what became of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct VisitSummary {
+    /// Labels under which somebody came.
+    pub came: usize,
+    /// Of them, those who did not agree and have no run.
+    pub declined: usize,
+    /// Those who withdrew.
+    pub withdrew: usize,
+    /// Those who finished, and did not withdraw after it.
+    pub finished: usize,
+    /// Labels that were refused, each time.
+    pub refused_labels: usize,
+    /// Words that were refused as the experimenter's code.
+    pub refused_codes: usize,
+}
+
+impl VisitSummary {
+    /// Of the lines of all machines, given the labels that have runs.
+    pub fn of<'a>(
+        lines: impl IntoIterator<Item = &'a VisitLine>,
+        with_runs: &BTreeSet<&str>,
+    ) -> VisitSummary {
+        let mut summary = VisitSummary::default();
+        let mut events: BTreeMap<&str, BTreeSet<VisitEvent>> = BTreeMap::new();
+        for line in lines {
+            match line.event {
+                VisitEvent::LabelRefused => summary.refused_labels += 1,
+                VisitEvent::CodeRefused => summary.refused_codes += 1,
+                event => drop(events.entry(&line.label).or_default().insert(event)),
+            }
+        }
+        summary.came = events.len();
+        for (label, events) in events {
+            if events.contains(&VisitEvent::Withdrew) {
+                summary.withdrew += 1;
+            } else if events.contains(&VisitEvent::Finished) {
+                summary.finished += 1;
+            } else if events.contains(&VisitEvent::ConsentDeclined) && !with_runs.contains(label) {
+                summary.declined += 1;
+            }
+        }
+        summary
+    }
+}
+
+impl fmt::Display for VisitSummary {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let VisitSummary { came, declined, withdrew, finished, refused_labels, refused_codes } = self;
+        write!(out, "{came} came: {declined} declined, {withdrew} withdrew, {finished} finished")?;
+        write!(
+            out,
+            ", {} neither · refused: {refused_labels} labels",
+            came - declined - withdrew - finished
+        )?;
+        write!(out, ", {refused_codes} codes")
+    }
 }
 
 /// The lines of a list of visits; those that cannot be read are left out.

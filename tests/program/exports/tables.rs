@@ -284,6 +284,26 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         }
         assert_eq!(given.lines().count() > 1, name != "answers" || given.contains("mood"), "{name}");
     }
+    // Rows stand in the order of the new labels; who is alone is told, and columns can be left out.
+    for name in ["runs", "weeks", "events"] {
+        let rows = table(&Path::new(&anonymous).join(format!("{name}.csv")));
+        assert!(rows.iter().map(|row| &row["participant"]).is_sorted(), "{name}");
+    }
+    assert!(
+        said.out.contains("the smallest group of sessions with equal seed and condition has "),
+        "{}",
+        said.out
+    );
+    let fewer = place("fewer");
+    let said = anonymise(&fewer, &["--without", "seed,condition"]);
+    assert!(said.code == 0 && !said.out.contains("smallest group"), "{}{}", said.out, said.err);
+    let without = table(&Path::new(&fewer).join("runs.csv"));
+    assert!(!without[0].contains_key("seed") && !without[0].contains_key("condition"));
+    assert_eq!(without[0]["cash"], runs[0]["cash"]);
+    let events = table(&Path::new(&fewer).join("events.csv"));
+    assert!(events.iter().filter(|row| row["kind"] == "start").all(|row| row["value"].is_empty()));
+    anonymise(&place("none"), &["--without", "run"]).fails(2, &["run cannot be left out"]);
+    anonymise(&place("none"), &["--without", "sead"]).fails(2, &["no table has a column sead"]);
     // The same secret gives the same names; masked texts keep their lengths; nothing is written over.
     anonymise(&anonymous, &[]).fails(1, &["already exists"]);
     let masked = place("masked");

@@ -177,7 +177,10 @@ impl Menu {
             }
             (Action::Agree, Some(Asked::Agree(new, text))) => match text.given() {
                 Some(given) => {
-                    vec![Effect::Request(Request::Create(Box::new(NewRun { agreed: Some(given), ..*new })))]
+                    vec![Effect::Request(Request::Create(Box::new(NewRun {
+                        agreed: Some(given.now()),
+                        ..*new
+                    })))]
                 }
                 None => {
                     self.asked = Some(Asked::Agree(new, text));

@@ -367,7 +367,7 @@ fn a_participant_agrees_or_nothing_begins() {
     assert!(end.contains("You can stop at any time.") && end.contains("y I agree"), "{end}");
     match &menu.act(Action::Agree)[..] {
         [Effect::Request(Request::Create(new))] => {
-            assert!(new.agreed.is_some_and(|given| given.scrolled_to_end));
+            assert!(new.agreed.as_ref().is_some_and(|agreed| agreed.given.scrolled_to_end));
         }
         other => panic!("{other:?}"),
     }

@@ -29,6 +29,7 @@ fn twelve_participants_are_in_the_tables_as_they_played() {
     let notes = [
         "label P05 has no session; last visit: consent declined",
         "label P06 has no session; last visit: withdrew",
+        "12 came: 1 declined, 1 withdrew, 10 finished, 0 neither · refused: 2 labels, 0 codes",
     ];
     let told = said.out.lines().filter(|line| !line.contains("verified"));
     assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", said.out);

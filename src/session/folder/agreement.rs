@@ -3,11 +3,28 @@
 use std::path::Path;
 
 use super::configuration::Configuration;
-use super::consent::{Consent, ConsentText};
+use super::consent::{Consent, ConsentGiven, ConsentText};
 use super::create::{NewRun, Storage};
 use super::derived::Derived;
 use super::runs::all_run_folders;
 use crate::session::error::RunError;
+use crate::session::trajectory::now;
+
+/// An agreement that no run records yet.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Agreed {
+    /// How it was given.
+    pub given: ConsentGiven,
+    /// When, RFC 3339.
+    pub at: String,
+}
+
+impl ConsentGiven {
+    /// That it was given at the present moment.
+    pub fn now(self) -> Agreed {
+        Agreed { given: self, at: now() }
+    }
+}
 
 /// Name of the file in the configuration folder.
 const FILE: &str = "consent.md";
@@ -64,7 +81,6 @@ fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Conse
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::consent::ConsentGiven;
     use crate::session::folder::mode::Mode;
     use crate::session::resume::open::Access;
     use crate::session::state::Session;

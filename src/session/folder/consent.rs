@@ -5,8 +5,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::trajectory::now;
-
 /// That somebody has agreed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,21 +33,7 @@ pub struct ConsentGiven {
     pub read_ms: u64,
 }
 
-/// An agreement that no run records yet.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Agreed {
-    /// How it was given.
-    pub given: ConsentGiven,
-    /// When, RFC 3339.
-    pub at: String,
-}
-
 impl ConsentGiven {
-    /// That it was given at the present moment.
-    pub fn now(self) -> Agreed {
-        Agreed { given: self, at: now() }
-    }
-
     /// Signed on paper, as the experimenter says.
     pub fn on_paper() -> ConsentGiven {
         ConsentGiven { means: ConsentMeans::Paper, scrolled_to_end: false, read_ms: 0 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::agreement::agreed;
+use super::agreement::{Agreed, agreed};
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use super::consent::{Agreed, ConsentText};
+use super::consent::ConsentText;
 use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};

@@ -493,7 +493,7 @@ fn naive_forecasts_are_offered_where_they_fill_in_and_say_what_they_are() {
         console.shows("f fills empty cells: the last four weeks go on");
         console.press("f");
         let screen = console.screen();
-        assert!(screen.contains("naive cells") && !screen.contains("back-tests"), "{screen}");
+        assert!(screen.contains("naive, recorded as such") && !screen.contains("back-tests"), "{screen}");
         console.press("esc ; q");
     }
 }

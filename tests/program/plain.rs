@@ -323,7 +323,7 @@ fn weeks_and_runs_are_told() {
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",
         "“if it sells, more”",
-        "error usage: report takes week or run",
+        "error usage: at never: report takes week or run",
     ] {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }

@@ -35,6 +35,10 @@ impl VisitPage {
             let told = wrapped(&text, width.saturating_sub(4) as usize);
             lines.extend(told.into_iter().map(|line| (line, role)));
         }
+        // Where the window is small, blank lines give way to what is said.
+        if lines.len() + 2 > body.height as usize {
+            lines.retain(|(line, _)| !line.is_empty());
+        }
         let own = centered(body, width, (lines.len() as u16 + 6).max(9));
         let inside = canvas.pane(own, title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };

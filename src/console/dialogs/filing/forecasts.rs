@@ -55,7 +55,7 @@ impl FilingDialog {
         let filled = self.filled.as_flattened().contains(&true);
         let fills = match (filled, look.keys.label(Action::FillNaively)) {
             (false, Some(key)) => format!("{key} fills empty cells"),
-            _ => "naive cells, recorded as such".to_owned(),
+            _ => "naive, recorded as such".to_owned(),
         };
         let said = format!("{fills}: the last four weeks go on, at the costs set now");
         let mut lines: Vec<(String, Role)> =

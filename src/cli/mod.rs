@@ -121,6 +121,8 @@ pub struct Context {
     names_runs: bool,
     /// Folder of the study whose keys count: the one that was named, or the folder of work if it is a study.
     pub study_folder: Option<PathBuf>,
+    /// The experimenter's code of a study was given with the command.
+    pub is_experimenter: bool,
 }
 
 impl Context {
@@ -229,12 +231,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         )));
     }
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
-    let context = Context {
+    let mut context = Context {
         configuration: Configuration::of_user(),
         names_runs: arguments.runs_dir.is_some() && arguments.runs_dir != from_environment,
         runs: arguments.runs_dir.or_else(Configuration::runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
         study_folder: arguments.study.clone().or_else(study_here),
+        is_experimenter: false,
     };
     if let Some(runs) = Configuration::runs_folder() {
         list_worlds_in(&runs);
@@ -253,6 +256,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             };
             return play::lead(folder, &options, &context);
         }
+        context.is_experimenter = has_code;
         if !has_code {
             return Err(Failure::usage(
                 "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
@@ -305,6 +309,7 @@ mod tests {
             participant: None,
             names_runs,
             study_folder: None,
+            is_experimenter: false,
         };
         let study = Path::new("pilot");
         assert_eq!(context("/data/runs", false).again_in_study(study), "novamind --study pilot");

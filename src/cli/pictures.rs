@@ -77,6 +77,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         configuration: context.configuration.clone(),
         runs,
         again: context.again(),
+        lists_everybody: false,
     };
     let places = places(options, &settings.keys)?;
     let mut console = Headless::new(settings, options.size);

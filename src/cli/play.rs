@@ -250,6 +250,7 @@ fn show_console_again(
         configuration: context.configuration.clone(),
         runs: context.runs()?,
         again,
+        lists_everybody: context.is_experimenter,
     };
     let (code, farewell) = crate::console::play(settings, start)
         .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;

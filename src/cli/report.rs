@@ -131,6 +131,7 @@ mod tests {
             participant: None,
             names_runs: true,
             study_folder: None,
+            is_experimenter: false,
         };
         let written = |format: ReportFormat, name: &str| {
             let path = runs.path().join(name);

@@ -256,6 +256,8 @@ pub struct Settings {
     pub runs: PathBuf,
     /// The command that goes on with the newest run.
     pub again: String,
+    /// The start menu lists the runs of all participants.
+    pub lists_everybody: bool,
 }
 
 impl App {

@@ -46,7 +46,12 @@ impl Headless {
     /// A console that has shown nothing yet.
     pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
-        let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
+        let workers = Workers::start(
+            sender.clone(),
+            settings.configuration.clone(),
+            settings.runs.clone(),
+            settings.lists_everybody,
+        );
         let mut app = App::new(settings);
         app.window = size;
         Headless {

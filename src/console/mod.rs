@@ -64,7 +64,12 @@ const BEFORE_SUSPENSION: Duration = Duration::from_millis(500);
 /// The terminal fails.
 pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
     let (sender, messages) = channel();
-    let workers = Workers::start(sender.clone(), settings.configuration.clone(), settings.runs.clone());
+    let workers = Workers::start(
+        sender.clone(),
+        settings.configuration.clone(),
+        settings.runs.clone(),
+        settings.lists_everybody,
+    );
     let again = settings.again.clone();
     let mut app = App::new(settings);
     app.window = crossterm::terminal::size().unwrap_or_default();

@@ -142,6 +142,7 @@ mod tests {
             configuration,
             runs: runs.to_owned(),
             again: String::new(),
+            lists_everybody: false,
         }
     }
 

@@ -86,7 +86,12 @@ pub struct Workers {
 
 impl Workers {
     /// Starts the threads; what they report goes into the channel.
-    pub fn start(news: Sender<Message>, configuration: Configuration, runs: PathBuf) -> Workers {
+    pub fn start(
+        news: Sender<Message>,
+        configuration: Configuration,
+        runs: PathBuf,
+        lists_everybody: bool,
+    ) -> Workers {
         let (jobs, todo) = channel();
         let queries = QueryThreads::start(&news, &jobs);
         let for_session = queries.clone();
@@ -98,6 +103,7 @@ impl Workers {
                 looked: Instant::now(),
                 mending: None,
                 desk: None,
+                lists_everybody,
                 limits: None,
                 minutes_left: Vec::new(),
                 news,
@@ -166,6 +172,8 @@ struct SessionThread {
     mending: Option<Instant>,
     /// The study whose participants are led.
     desk: Option<Desk>,
+    /// The experimenter's code was given: the list holds the runs of all participants.
+    lists_everybody: bool,
     /// When time limits are looked at next; none where the rules have none.
     limits: Option<Instant>,
     /// Minutes that are left to each limit, as they were told last.

@@ -4,8 +4,9 @@
 use crate::notation::{dollars, grouped};
 use crate::report::tables::headings;
 use crate::session::{
-    AtLimit, AuditKind, Configuration, DraftsKept, Form, FreeText, Moment, PracticeOffer, Questionnaire,
-    ResultsShown, RunError, SeedPlan, SessionRules, Study,
+    ASSIGNMENT_FILE, Assignment, AtLimit, AuditKind, BREAK_SECONDS, Configuration, DraftsKept,
+    FAST_WEEK_SECONDS, Form, FreeText, IDLE_AFTER, Moment, PracticeOffer, Questionnaire, ResultsShown,
+    RunError, SeedPlan, Study, TimeLimits, lab_public_key_of,
 };
 
 /// The protocol as Markdown.
@@ -18,7 +19,8 @@ pub fn protocol(study: &Study, configuration: &Configuration) -> Result<String, 
         world(study, configuration)?,
         participants(study),
         procedure(study),
-        rules(&study.rules()),
+        rules(study),
+        time(),
         questions(study),
         measures(),
         exclusion(study),
@@ -29,8 +31,12 @@ pub fn protocol(study: &Study, configuration: &Configuration) -> Result<String, 
 }
 
 fn heading(study: &Study) -> String {
+    let key = lab_public_key_of(&study.folder).ok().flatten();
+    let signed = key.map_or("There is no lab key: archives are not signed.".to_owned(), |key| {
+        format!("Archives are signed by the lab key {}.", key.fingerprint())
+    });
     format!(
-        "# {}\n\nProtocol of the study {}, digest {}. Version {} of NovaMind console.\n",
+        "# {}\n\nProtocol of the study {}, digest {}. Version {} of NovaMind console. {signed}\n",
         study.protocol.title,
         study.protocol.name,
         study.digest,
@@ -81,18 +87,38 @@ fn participants(study: &Study) -> String {
     };
     let conditions = match seeds.conditions.as_slice() {
         [] => String::new(),
-        some => format!(" Conditions: {}.", some.join(", ")),
+        some => format!(
+            " Conditions: {}. They label and balance participants; the program is the same under all of them, so what \
+             differs between them happens outside of it.",
+            some.join(", ")
+        ),
     };
     let places = study.assignment.as_ref().map_or("Any label is taken.".to_owned(), |assignment| {
-        format!("{} labels are assigned (assignment.csv).", assignment.places.len())
+        format!("{} labels are assigned{}.", assignment.places.len(), drawn(study, assignment))
     });
     format!("## Participants\n\n{places} {plan}{conditions} Participants do not see seeds.\n")
+}
+
+/// How the assignment came about, as far as it can be computed again, and its digest.
+fn drawn(study: &Study, assignment: &Assignment) -> String {
+    let seeds = &study.protocol.seeds;
+    let labels: Vec<String> = assignment.places.iter().map(|place| place.label.clone()).collect();
+    let draw = seeds.draw.unwrap_or(1);
+    let is_drawn = Assignment::in_blocks(&labels, &seeds.of_block(), &seeds.conditions, draw) == *assignment;
+    let blocks = match (seeds.plan, is_drawn) {
+        (SeedPlan::One | SeedPlan::Assigned, _) if seeds.conditions.is_empty() => String::new(),
+        (_, true) => format!("in blocks of {}, drawn with seed {draw}, ", seeds.cells()),
+        (_, false) => format!("not as `novamind study assign` draws them with seed {draw}, "),
+    };
+    let digest = std::fs::read(study.folder.join(ASSIGNMENT_FILE))
+        .map_or_else(|problem| problem.to_string(), |bytes| blake3::hash(&bytes).to_hex().to_string());
+    format!(" ({blocks}BLAKE3 hash of assignment.csv {digest})")
 }
 
 fn procedure(study: &Study) -> String {
     let mut steps = vec!["Label. Labels that are not assigned are refused and counted."];
     if study.consent.is_some() {
-        steps.push("Consent, to the text below. Who declines leaves no record but the refusal.");
+        steps.push("Consent, to the text below. Whoever declines leaves no run; the label and the refusal stay in the list of visits.");
     }
     match study.protocol.practice.offer {
         PracticeOffer::None => {}
@@ -109,7 +135,8 @@ fn procedure(study: &Study) -> String {
     )
 }
 
-fn rules(rules: &SessionRules) -> String {
+fn rules(study: &Study) -> String {
+    let rules = study.rules();
     let yes = |on: bool| if on { "yes" } else { "no" };
     let results = match rules.results {
         ResultsShown::None => "that the run is over",
@@ -126,33 +153,76 @@ fn rules(rules: &SessionRules) -> String {
         DraftsKept::Text => "as lengths, and the text that was left",
     };
     let mut text = format!(
-        "## Rules of the session\n\n\
+        "## Rules of the session\n\nThe practice is played by the same rules, limits of time among them.\n\n\
          | Rule | |\n|---|---|\n\
          | Alerts recommend amounts | {} |\n\
-         | Participants see how their forecasts have done while they make new ones | {} |\n\
+         | Participants see a summary of how their forecasts have done while they make new ones | {} |\n\
          | The final page shows | {results} |\n\
          | Texts of notes and answers | {texts} |\n\
          | Texts that were edited | {drafts} |\n\
          | Lines that are left out | {} |\n",
         yes(rules.advice),
-        yes(rules.calibration),
+        match rules.calibration {
+            true => "yes",
+            false =>
+                "no; single forecasts and what came stand in the week report and on the Cash and Journal screens",
+        },
         if rules.unrecorded.is_empty() { "none".to_owned() } else { rules.unrecorded.join(", ") },
     );
-    let limits = &rules.limits;
-    let all =
-        [("week", limits.week_minutes), ("sitting", limits.session_minutes), ("study", limits.study_minutes)];
-    for (what, minutes) in all {
+    if study.protocol.practice.offer != PracticeOffer::None {
         text += &format!(
-            "| Active minutes for a {what} | {} |\n",
-            minutes.map_or("no limit".to_owned(), |own| own.to_string())
+            "| The practice begins with the tour (console) | {} |\n",
+            yes(study.protocol.session.tour)
         );
     }
+    text += &format!("| Whoever stops the clock is asked why | {} |\n", yes(rules.pause_reason));
+    text += &format!("| Week reports and the last page show four code words | {} |\n", yes(rules.code_words));
+    text + &limits(&rules.limits)
+}
+
+/// The rows about limits of time.
+fn limits(limits: &TimeLimits) -> String {
+    let all = [
+        ("Active minutes per week of the company", limits.week_minutes),
+        ("Active minutes per sitting", limits.session_minutes),
+        ("Active minutes per run, all sittings together", limits.study_minutes),
+    ];
+    let minutes = |own: Option<u32>, none: &str| own.map_or(none.to_owned(), |own| own.to_string());
+    let row = |(what, own): (&str, Option<u32>)| format!("| {what} | {} |\n", minutes(own, "no limit"));
+    let text: String = all.into_iter().map(row).collect();
+    if all.iter().all(|(_, own)| own.is_none()) {
+        return text;
+    }
     let at_limit = match limits.at_limit {
-        AtLimit::Remind => "the participant is reminded",
-        AtLimit::Naive => "the week is filed with the naive projection",
+        AtLimit::Remind => "the participant is reminded, once",
+        AtLimit::Naive => {
+            "of a week: it is filed with the naive projection; of a sitting or run: the clock is stopped until the experimenter \
+             starts it"
+        }
         AtLimit::Pause => "the clock is stopped until the experimenter starts it",
     };
-    text + &format!("| At a limit | {at_limit} |\n")
+    let warning = minutes(limits.warning_minutes, "none");
+    text + &format!(
+        "| Minutes before a limit at which the participant is warned | {warning} |\n| At a limit | {at_limit} |\n"
+    )
+}
+
+/// The classes of time, with the thresholds in force.
+fn time() -> String {
+    format!(
+        "## Time\n\n\
+         - Active: the run is open and in front, its clock runs, no question of the study is open, and the person is not idle.\n\
+         - Answering: the same, while a question of the study is open.\n\
+         - Idle: in the console, from the last key, once {} s have passed without one. Plain mode does not see keys: there, a gap \
+         of more than {} s between two lines is idle.\n\
+         - Away: the run is closed, suspended or in the background, or its clock is stopped.\n\
+         - The days that the program simulates are none of these.\n\
+         - A week decided in less than {} active seconds counts as implausibly fast.\n\
+         - Limits count active time.\n",
+        IDLE_AFTER.as_secs(),
+        BREAK_SECONDS,
+        FAST_WEEK_SECONDS
+    )
 }
 
 fn questions(study: &Study) -> String {
@@ -163,7 +233,7 @@ fn questions(study: &Study) -> String {
     for own in &study.questionnaires {
         text += &format!("\n**{}** ({})\n\n", own.title, when(own));
         for question in &own.questions {
-            let required = if question.required { "" } else { ", may be passed over" };
+            let required = if question.required { ", required" } else { ", may be passed over" };
             text += &format!("- `{}`: {} ({}{required})\n", question.id, question.text, form(&question.form));
         }
     }
@@ -177,7 +247,9 @@ fn when(own: &Questionnaire) -> String {
             let weeks: Vec<String> = own.weeks.iter().map(u32::to_string).collect();
             format!("after weeks {}", weeks.join(", "))
         }
-        Moment::Break => "after each break".to_owned(),
+        Moment::Break => {
+            "whenever the participant takes up the run again or starts the clock again, however short the break".to_owned()
+        }
         Moment::End => "at the end".to_owned(),
     }
 }

@@ -64,7 +64,7 @@ pub use play::clock::TIME_LIMIT;
 pub use play::drafts::UnsentTexts;
 pub use play::machine::Machine;
 pub use play::personal_clock::TimeLeft;
-pub use play::presence::Interface;
+pub use play::presence::{IDLE_AFTER, Interface};
 pub use play::surroundings::Calculated;
 pub use play::undo::undone_calls;
 pub use playback::Playback;

@@ -46,6 +46,7 @@ impl Console {
             configuration,
             runs: runs.to_owned(),
             again: "novamind --run latest".to_owned(),
+            lists_everybody: false,
         };
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");

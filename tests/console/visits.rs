@@ -335,6 +335,15 @@ fn nothing_but_the_own_session_can_be_reached_until_the_code_is_given() {
     assert!(!console.screen().contains("guess"));
     console.press("ctrl-u 'open' _ 'sesame' enter");
     console.shows("New run");
+    // The experimenter finds the participants' runs, and replays them.
+    let runs = std::fs::read_dir(lab.runs().join("participants/P01")).expect("a folder").flatten();
+    let run = runs.map(|entry| entry.file_name().to_string_lossy().into_owned()).next().expect("a run");
+    console.shows(&run);
+    console.request(Request::Open(run.clone(), Access::Write)).expect("nothing to wait for");
+    console.shows("only its participant goes on with this run");
+    let recorded = Recorded::Run(run);
+    console.request(Request::Replay { recorded, goal: Goal::First, follow: false }).expect("it opens");
+    assert!(!console.screen().contains("New run"), "{}", console.screen());
 }
 
 #[test]

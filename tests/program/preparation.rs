@@ -162,3 +162,42 @@ fn a_remark_lies_beside_the_runs_of_its_label() {
     let places: Vec<usize> = texts.iter().map(|text| shown.find(text).expect(text)).collect();
     assert!(places.is_sorted(), "by time\n{shown}");
 }
+
+#[test]
+fn the_protocol_tells_what_was_drawn_and_every_limit() {
+    let lab = Lab::new();
+    lab.edit(
+        "plan = \"one\" ",
+        "plan = \"blocks\"\nblock = [11, 12]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",
+    );
+    lab.edit("# week_minutes = 20", "week_minutes = 20");
+    lab.edit("# warning_minutes = 2", "warning_minutes = 3");
+    lab.edit("at_limit = \"remind\"", "at_limit = \"naive\"");
+    lab.edit("offer = \"none\"", "offer = \"optional\"");
+    assert_eq!(lab.run("assign", &["--participants", "4"]).code, 0);
+    let bare = lab.run("protocol", &[]).out;
+    assert!(bare.contains("There is no lab key"), "{bare}");
+    let made = lab.run("key", &[]).out;
+    let fingerprint = made.lines().find_map(|line| line.strip_prefix("fingerprint ")).expect("one");
+    let digest = blake3::hash(lab.assignment().as_bytes()).to_hex().to_string();
+    let said = lab.run("protocol", &[]).out;
+    for words in [
+        format!("signed by the lab key {fingerprint}"),
+        format!(
+            "4 labels are assigned (in blocks of 4, drawn with seed 5, BLAKE3 hash of assignment.csv {digest})"
+        ),
+        "Conditions: A, B. They label and balance participants; the program is the same".to_owned(),
+        "The practice is played by the same rules".to_owned(),
+        "| The practice begins with the tour (console) | yes |".to_owned(),
+        "| Active minutes per week of the company | 20 |".to_owned(),
+        "| Active minutes per sitting | no limit |".to_owned(),
+        "warned | 3 |".to_owned(),
+        "of a week: it is filed with the naive projection".to_owned(),
+        "once 60 s have passed without one".to_owned(),
+        "no; single forecasts and what came stand in".to_owned(),
+    ] {
+        assert!(said.contains(&words), "{words} is missing in\n{said}");
+    }
+    fs::write(lab.path("pilot/assignment.csv"), lab.assignment().replacen(",A,", ",B,", 1)).expect("written");
+    assert!(lab.run("protocol", &[]).out.contains("not as `novamind study assign` draws them with seed 5"));
+}

@@ -45,6 +45,7 @@ fn settings(bench: &Bench) -> Result<Settings, BenchError> {
         configuration,
         runs: bench.scratch.clone(),
         again: String::new(),
+        lists_everybody: false,
     })
 }
 

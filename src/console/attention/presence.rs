@@ -3,10 +3,9 @@
 use std::time::Duration;
 
 use super::stopwatch::ms;
+use crate::session::IDLE_AFTER;
 use crate::session::record::PresenceEvent;
 
-/// Time without a key after which the person counts as idle.
-const IDLE: Duration = Duration::from_secs(60);
 /// A window that is being resized is recorded once it has kept its size for this long.
 const SETTLED: Duration = Duration::from_secs(1);
 
@@ -59,7 +58,7 @@ impl PresenceWatch {
         if let Some((window, _)) = self.resized.take_if(|(_, since)| now >= *since + SETTLED) {
             noted.push((PresenceEvent::Resized, None, Some(window)));
         }
-        if !self.idle && now >= self.last_key + IDLE {
+        if !self.idle && now >= self.last_key + IDLE_AFTER {
             self.idle = true;
             noted.push((PresenceEvent::Idle, Some(ms(now.saturating_sub(self.last_key))), None));
         }
@@ -68,7 +67,7 @@ impl PresenceWatch {
 
     /// When time alone brings something next.
     pub fn next(&self) -> Option<Duration> {
-        let idle = (!self.idle).then_some(self.last_key + IDLE);
+        let idle = (!self.idle).then_some(self.last_key + IDLE_AFTER);
         let resized = self.resized.map(|(_, since)| since + SETTLED);
         [idle, resized].into_iter().flatten().min()
     }

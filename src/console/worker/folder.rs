@@ -1,18 +1,32 @@
 //! The session's thread with the folder of runs: what is there, and opening a run of it.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Instead, News};
 use crate::session::{
-    Access, NewRun, RunError, SealKey, Session, Storage, delete_run, end_run, find_run, find_run_to_read,
-    list_runs, rescue, run_preview,
+    Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
+    find_run, find_run_to_read, list_runs, rescue, run_preview,
 };
 
 impl SessionThread {
     pub(super) fn list_runs(&self) {
-        self.say(News::Runs(list_runs(&self.runs).map_err(|error| error.to_string())));
+        self.say(News::Runs(self.listed().map_err(|error| error.to_string())));
+    }
+
+    /// The runs of the folder; for the experimenter of a study those of all participants.
+    fn listed(&self) -> Result<Vec<RunSummary>, RunError> {
+        if !self.lists_everybody {
+            return list_runs(&self.runs);
+        }
+        let mut all = Vec::new();
+        for folder in all_run_folders(&self.runs) {
+            all.extend(list_runs(&folder)?);
+        }
+        all.sort_by(|one, other| other.played.cmp(&one.played).then_with(|| one.id.cmp(&other.id)));
+        Ok(all)
     }
 
     pub(super) fn preview_run(&self, id: String) {
@@ -30,7 +44,7 @@ impl SessionThread {
 
     /// What became of a run of the folder, and the runs that are there now.
     fn say_kept(&self, done: Result<(), RunError>, words: String) {
-        let list = list_runs(&self.runs).map_err(|error| error.to_string());
+        let list = self.listed().map_err(|error| error.to_string());
         self.say(News::Kept(done.map(|()| words).map_err(|error| error.to_string()), list));
     }
 
@@ -52,8 +66,22 @@ impl SessionThread {
             Access::Write => find_run(&self.runs, id),
             Access::Read => find_run_to_read(&self.runs, id),
         };
-        let opened = found.and_then(|folder| Session::open(&folder, access, true));
+        let opened = found.and_then(|folder| {
+            self.refuse_session_of_study(&folder, access)?;
+            Session::open(&folder, access, true)
+        });
         self.take(opened, id, None);
+    }
+
+    /// Only its participant goes on with a session of a study, under its protocol and before its witness.
+    fn refuse_session_of_study(&self, folder: &Path, access: Access) -> Result<(), RunError> {
+        let is_elsewhere = folder.parent() != Some(self.runs.as_path());
+        if self.lists_everybody && access == Access::Write && is_elsewhere {
+            return Err(RunError::NotPossible(
+                "only its participant goes on with this run: replay it instead".to_owned(),
+            ));
+        }
+        Ok(())
     }
 
     /// Opens the good beginning of a damaged run as a branch.

@@ -45,7 +45,7 @@ impl SessionThread {
                     self.desk.iter().for_each(|desk| record_refused_code(&desk.study, &self.runs));
                 }
                 if right == Some(true) {
-                    self.desk = None;
+                    (self.desk, self.lists_everybody) = (None, true);
                 }
                 self.say(News::Visit(VisitNews::Code(right)));
             }

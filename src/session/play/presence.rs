@@ -1,5 +1,7 @@
 //! Who is there, and when: the program taking up and leaving a run, on which machine, by which clocks.
 
+use std::time::Duration;
+
 use crate::session::figures::attendance::TimeSpent;
 use crate::session::folder::world_log::worlds_seen;
 use crate::session::play::machine::Machine;
@@ -7,6 +9,9 @@ use crate::session::play::recorder::Recorder;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
 use crate::session::trajectory::{Durability, Record, nanoseconds, now};
+
+/// Time without a key after which a person counts as idle, where keys are watched.
+pub const IDLE_AFTER: Duration = Duration::from_secs(60);
 
 /// What a person plays with, and in which window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,6 +8,7 @@ mod readings;
 mod report;
 mod rules;
 mod thread;
+mod why;
 mod words;
 mod xray;
 
@@ -70,6 +71,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("redo", "redo                     redo what undo reverted"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
     ("report", "report [week|run]        what changed in the last week; or the story of the run"),
+    ("why", "why FIGURE [WEEK]        how much of the change of a week's figure each cause brought"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
@@ -123,6 +125,8 @@ pub struct Interpreter {
     pub(super) code_check: Option<CodeCheck>,
     /// A participant of a study is led: some commands are not theirs.
     pub(super) leads_participant: bool,
+    /// What was simulated to answer the last question why.
+    asked: Option<why::Asked>,
 }
 
 impl Interpreter {
@@ -136,6 +140,7 @@ impl Interpreter {
             locked: false,
             code_check: None,
             leads_participant: false,
+            asked: None,
         }
     }
 
@@ -153,6 +158,7 @@ impl Interpreter {
         let answer = match parsed {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
+            Ok(Line::Text { word, rest }) if word == "why" => self.why(&rest).unwrap_or_else(usage),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest, line),
             Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
                 self.next(&arguments, input)?

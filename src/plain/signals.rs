@@ -1,5 +1,6 @@
-//! Ctrl-c and termination: a query is cancelled, a week is waited for, a prompt is left at once.
+//! Ctrl-c and termination: a query or a simulation of causes is cancelled, a week is waited for, a prompt is left at once.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use crate::session::Interrupt;
@@ -13,6 +14,8 @@ pub enum Phase {
     Working,
     /// Asking the database.
     Query,
+    /// Simulating something that can be stopped.
+    Simulation,
 }
 
 /// Watches for signals.
@@ -22,6 +25,8 @@ pub struct Watch(Arc<Mutex<State>>);
 struct State {
     phase: Phase,
     interrupt: Option<Interrupt>,
+    /// Stops what is simulated.
+    stop: Arc<AtomicBool>,
     caught: Option<i32>,
     /// The dialogue was asked to leave its prompt.
     leaving: bool,
@@ -31,7 +36,13 @@ impl Watch {
     /// Starts watching; a prompt is told of signals. Where signals cannot be watched they end the program as ever; nothing
     /// is lost by it.
     pub fn start(prompt: impl Fn(i32) + Send + 'static) -> Watch {
-        let state = State { phase: Phase::Working, interrupt: None, caught: None, leaving: false };
+        let state = State {
+            phase: Phase::Working,
+            interrupt: None,
+            stop: Arc::default(),
+            caught: None,
+            leaving: false,
+        };
         let watch = Watch(Arc::new(Mutex::new(state)));
         #[cfg(unix)]
         watch.listen(prompt);
@@ -70,6 +81,12 @@ impl Watch {
                 return;
             }
         }
+        if state.phase == Phase::Simulation {
+            state.stop.store(true, Ordering::Relaxed);
+            if by_key {
+                return;
+            }
+        }
         state.caught = Some(signal);
     }
 
@@ -92,6 +109,13 @@ impl Watch {
     pub fn enter_query(&self, interrupt: Interrupt) {
         let mut state = self.state();
         (state.phase, state.interrupt) = (Phase::Query, Some(interrupt));
+    }
+
+    /// Says that something is simulated; what is returned becomes true when it is to stop.
+    pub fn enter_stoppable(&self) -> Arc<AtomicBool> {
+        let mut state = self.state();
+        (state.phase, state.stop) = (Phase::Simulation, Arc::default());
+        state.stop.clone()
     }
 
     /// A signal has ended the wait at a prompt.

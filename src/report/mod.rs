@@ -1,5 +1,6 @@
 //! A run reported: what a week changed, and the whole run as a `Story` that can be written as Markdown or as a page for
-//! a browser. A report says what the records show; it names no causes.
+//! a browser. A report says what the records show; it names no causes but those
+//! that days simulated again have shown (`why`).
 //!
 //! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
 //! is one pure function. `outline` turns a story into a `page::Page`; the writers know nothing of companies.
@@ -38,6 +39,7 @@ pub(crate) mod tables;
 pub(crate) mod test_kit;
 mod turn;
 pub(crate) mod week;
+pub(crate) mod why;
 mod words;
 
 pub use logbook::Logbook;

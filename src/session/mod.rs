@@ -7,6 +7,7 @@
 pub(crate) mod archive;
 mod ask;
 mod audit;
+mod counterfactual;
 mod error;
 mod figures;
 mod folder;
@@ -16,6 +17,7 @@ mod resume;
 mod state;
 mod study;
 mod trajectory;
+mod why;
 mod witness;
 mod xray;
 
@@ -97,6 +99,9 @@ pub use study::visit_log::{
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
     Line, Record, ScriptedClock, Trajectory, nanoseconds as nanoseconds_of, record, steady, written_moment,
+};
+pub use why::{
+    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart, WhyProgress,
 };
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,

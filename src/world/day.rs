@@ -11,6 +11,7 @@ use super::customers::columns::sums;
 use super::enterprise::Negotiation;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
+use super::held::Held;
 use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
@@ -47,14 +48,15 @@ pub fn step_day(
     streams: &Streams,
     facts: &mut Facts,
 ) -> (DayFigures, DayTrace) {
-    step_day_watched(world, params, streams, facts, &Unwatched)
+    step_day_watched(world, params, streams, &Held::default(), facts, &Unwatched)
 }
 
-/// Simulates one day as [`step_day`] does, and shows it to somebody on the way.
+/// Simulates one day as [`step_day`] does, with what is held of its inputs, and shows it to somebody on the way.
 pub fn step_day_watched(
     world: &mut World,
     params: &Params,
     streams: &Streams,
+    held: &Held,
     facts: &mut Facts,
     watch: &dyn DayWatch,
 ) -> (DayFigures, DayTrace) {
@@ -66,24 +68,29 @@ pub fn step_day_watched(
     surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
     let morning = morning_of(world, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
-    if drift::is_drift_day(day - 1, &params.drift) {
+    if drift::is_drift_day(day - 1, &params.drift) && !held.holds_drift(day - 1) {
         refresh_requirements(customers, &morning, params);
     }
 
     // The product is used, and holds up or not.
     let metered = usage::meter(customers, &morning, params, facts);
-    let service = service::observe(metered.total, &morning, params, streams, facts);
+    let service = service::observe(metered.total, &morning, held.service_on(day), params, streams, facts);
     research::complete(day, product, facts);
     studies::complete(day, market, params, facts);
 
     // The market moves.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
-    if drift::apply(day, &mut market.drift, customers, &seats, params) {
+    if !held.holds_drift(day) && drift::apply(day, &mut market.drift, customers, &seats, params) {
         refresh_requirements(customers, &morning, params);
     }
-    yields::vary(day, &mut market.yields, params, streams);
-    economy::step(day, &mut market.economy, params, streams, facts);
-    competitors::react(day, total_days, &mut market.competitors, product, &mut market.drift, params, streams);
+    if !held.yields {
+        yields::vary(day, &mut market.yields, params, streams);
+    }
+    economy::step(day, &mut market.economy, held.economy, params, streams, facts);
+    if !held.rivals {
+        let (events, drift) = (&mut market.competitors, &mut market.drift);
+        competitors::react(day, total_days, events, product, drift, params, streams);
+    }
     press::write_about_rivals(day, &market.competitors, &mut market.social, params, streams, facts);
     development::improve(day, product, settings, params, streams);
 
@@ -129,7 +136,8 @@ pub fn step_day_watched(
     // New customers come.
     let coming = arrivals::Arrivals { day: &today, market };
     let subscribers = customers.active();
-    let factors = arrivals::expect(&coming, &subscribers);
+    let mut factors = arrivals::expect(&coming, &subscribers);
+    held.hold_leads(day, morning.weekday, &mut factors);
     watch.leads_expected(&coming, &subscribers, &factors);
     let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;

@@ -11,6 +11,7 @@ pub mod day;
 pub mod enterprise;
 pub mod events;
 mod finance;
+pub mod held;
 pub mod identifiers;
 pub mod market;
 pub mod morning;

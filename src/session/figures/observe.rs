@@ -201,13 +201,7 @@ impl Session {
 
     /// Active subscribers with an open issue.
     pub(in crate::session) fn open_issues(&self) -> u32 {
-        let open = |days: &&u32| **days > 0;
-        self.simulation
-            .world
-            .customers
-            .blocks()
-            .map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32)
-            .sum()
+        self.simulation.open_issues()
     }
 
     /// Threads that wait for an answer, the first to be lost first.

@@ -7,7 +7,10 @@ use super::booked::Booked;
 use crate::notation::json_number;
 use crate::session::trajectory::record::FiledForecast;
 use crate::tools::{FORECAST_KEYS, Forecast};
-use crate::world::events::DayFigures;
+use crate::world::events::{
+    Category, DayFigures, Facts, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
+};
+use crate::world::params::Params;
 
 /// Figures of a week, or of the part of it that ran.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -86,6 +89,41 @@ impl WeekFigures {
         match self.new_individual_leads {
             0 => f64::NAN,
             leads => f64::from(self.new_individual_subscribers) / f64::from(leads),
+        }
+    }
+
+    /// Counts a day that was simulated: its figures, what happened on it, and the money that calls moved before it.
+    pub(in crate::session) fn count(
+        &mut self,
+        figures: &DayFigures,
+        facts: &Facts,
+        called: &[LedgerEntry],
+        params: &Params,
+    ) {
+        self.add(figures);
+        let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
+        self.booked.add(Category::LeadAcquisitionCost, -leads);
+        self.booked.add(Category::SubscriptionPayment, figures.payments_received);
+        for entry in called.iter().chain(&facts.ledger) {
+            self.booked.add(entry.category, entry.amount);
+        }
+        for turn in facts.turns.iter().filter(|turn| turn.number == 0) {
+            self.threads_opened += 1;
+            self.thread_seats += turn.seats;
+        }
+        self.issues_opened += facts.issues_opened.len() as u32;
+        let replies = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        self.replies += replies.filter(|turn| turn.number > 0).count() as u32;
+        let finished = |notice: &&Notice| {
+            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
+        };
+        self.research_finished += facts.notices.iter().filter(finished).count() as u32;
+        let left = |ending: &&SubscriptionEnded| {
+            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
+        };
+        for ending in facts.endings.iter().filter(left) {
+            self.companies_lost += 1;
+            self.seats_lost += ending.seats;
         }
     }
 

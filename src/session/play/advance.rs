@@ -15,6 +15,7 @@ use crate::session::trajectory::{Durability, Record, seconds};
 use crate::session::xray::last_day::Xray;
 use crate::tools::{self, Kind, Refusal, ToolId};
 use crate::world::events::DayFigures;
+use crate::world::held::Held;
 use crate::world::market::surges::week_end;
 
 /// A day that was just simulated.
@@ -164,9 +165,10 @@ impl Session {
     ) -> StateHash {
         let week_end = self.next_decision_day();
         self.history.notices.clear();
-        let mut day_before = None;
+        let (mut day_before, nothing) = (None, Held::default());
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
-            let figures = self.simulation.simulate_day(self.projection.entries(), day_before.take());
+            let figures =
+                self.simulation.simulate_day(&nothing, self.projection.entries(), day_before.take());
             self.simulation.judge_own_posts(self.projection.entries());
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);

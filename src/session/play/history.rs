@@ -9,9 +9,7 @@ use crate::session::figures::groups::{self, GroupWeek};
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::trajectory::record::Ended;
-use crate::world::events::{
-    Category, DayFigures, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
-};
+use crate::world::events::{DayFigures, LedgerEntry, Notice};
 use crate::world::identifiers::ByGroup;
 use crate::world::state::World;
 
@@ -87,32 +85,7 @@ impl History {
         let told = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
         self.notices.extend(told.map(|(_, text)| (figures.day, text.clone())));
         groups::count(&mut self.running_groups, figures, facts, world);
-        let week = &mut self.running_week;
-        week.add(figures);
-        let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
-        week.booked.add(Category::LeadAcquisitionCost, -leads);
-        week.booked.add(Category::SubscriptionPayment, figures.payments_received);
-        for entry in self.called.iter().chain(&facts.ledger) {
-            week.booked.add(entry.category, entry.amount);
-        }
-        for turn in facts.turns.iter().filter(|turn| turn.number == 0) {
-            week.threads_opened += 1;
-            week.thread_seats += turn.seats;
-        }
-        week.issues_opened += facts.issues_opened.len() as u32;
-        let replies = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
-        week.replies += replies.filter(|turn| turn.number > 0).count() as u32;
-        let finished = |notice: &&Notice| {
-            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
-        };
-        week.research_finished += facts.notices.iter().filter(finished).count() as u32;
-        let left = |ending: &&SubscriptionEnded| {
-            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
-        };
-        for ending in facts.endings.iter().filter(left) {
-            week.companies_lost += 1;
-            week.seats_lost += ending.seats;
-        }
+        self.running_week.count(figures, facts, &self.called, params);
     }
 
     /// Ends the figures of the days that ran, and the week if it is complete.

@@ -19,6 +19,7 @@ use crate::world::command::{Command, ResolvedCommand};
 use crate::world::day::watch::{DayWatch, Unwatched};
 use crate::world::day::{DayTrace, step_day_watched};
 use crate::world::events::{DayFigures, Facts};
+use crate::world::held::Held;
 use crate::world::params::Params;
 use crate::world::random::Streams;
 use crate::world::state::World;
@@ -72,6 +73,33 @@ impl Simulation {
         }
     }
 
+    /// A company at some moment of a run, and what was written in public until then.
+    pub(in crate::session) fn at(
+        (params, streams, names): (Arc<Params>, Streams, CompanyNames),
+        world: World,
+        feed: Feed,
+    ) -> Simulation {
+        Simulation {
+            params,
+            streams,
+            world,
+            facts: Arc::default(),
+            facts_before: Arc::default(),
+            trace: DayTrace::default(),
+            names,
+            feed,
+            facts_chain: FactsChain::default(),
+            watch: Arc::new(Unwatched),
+        }
+    }
+
+    /// Active subscribers with an open issue.
+    pub(in crate::session) fn open_issues(&self) -> u32 {
+        let open = |days: &&u32| **days > 0;
+        let blocks = self.world.customers.blocks();
+        blocks.map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32).sum()
+    }
+
     /// Hash of the whole state with one hash per part, by name.
     pub(in crate::session) fn state_hash(&self) -> StateHash {
         state_hash(self.world.part_hashes(), self.facts_chain.hash())
@@ -95,9 +123,11 @@ impl Simulation {
         (&mut self.world, to_fill(&mut self.facts, entries), &self.params, &self.streams)
     }
 
-    /// Simulates a day, and meanwhile what follows from the day before, if that is left, with its notices.
+    /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,
+    /// with its notices.
     pub(in crate::session) fn simulate_day(
         &mut self,
+        held: &Held,
         entries: Entries<'_>,
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
@@ -106,7 +136,7 @@ impl Simulation {
         let today = to_fill(facts, entries);
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
-            || step_day_watched(world, params, streams, today, &**watch),
+            || step_day_watched(world, params, streams, held, today, &**watch),
             || follow_up.follow(facts_before, day_before, None),
         );
         self.trace = trace;

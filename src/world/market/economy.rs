@@ -98,15 +98,24 @@ fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
     }
 }
 
-/// Moves the index by a day, measures when a month is full, and publishes what has waited long enough.
-pub fn step(day: u32, economy: &mut Economy, params: &Params, streams: &Streams, facts: &mut Facts) {
+/// Moves the index by a day unless it is held, measures when a month is full, and publishes what has waited long enough.
+pub fn step(
+    day: u32,
+    economy: &mut Economy,
+    held: bool,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
     let law = &params.economy;
     let drawn = || {
         let target = cycle_target(day, phase_of_run(law, streams), law);
         let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
         next_pmi(economy.pmi, target, z, law)
     };
-    economy.pmi = params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn);
+    if !held {
+        economy.pmi = params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn);
+    }
     economy.started = true;
     economy.history.push(economy.pmi);
     let interval = law.macro_pmi_update_interval_days;
@@ -164,7 +173,7 @@ pub(crate) mod tests {
         let mut readings = Vec::new();
         for day in 1..=61 {
             let mut facts = Facts::default();
-            step(day, &mut economy, &params, &streams, &mut facts);
+            step(day, &mut economy, false, &params, &streams, &mut facts);
             readings.extend(facts.readings.iter().map(|reading| (day, *reading)));
             match day {
                 1 => near(economy.pmi, 49.250007889),
@@ -255,7 +264,7 @@ pub(crate) mod tests {
             let (mut economy, streams) = (Economy::opening(&params), Streams::new(seed));
             let path: Vec<f64> = (1..=500)
                 .map(|day| {
-                    step(day, &mut economy, &params, &streams, &mut Facts::default());
+                    step(day, &mut economy, false, &params, &streams, &mut Facts::default());
                     economy.pmi
                 })
                 .collect();

@@ -1,6 +1,7 @@
 //! Service health of the day (`docs/mechanics/product/service.md`).
 
 use crate::events::{Facts, ServiceDay};
+use crate::held::HeldService;
 use crate::morning::Morning;
 use crate::params::{Operations, Params};
 use crate::random::{Part, Stream, Streams};
@@ -41,18 +42,21 @@ fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
     choices[2]
 }
 
-/// Observes the service of the day and records it.
+/// Observes the service of the day, under what is held of its strain, and records it.
 pub fn observe(
     total_usage: u64,
     morning: &Morning,
+    held: Option<HeldService>,
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) -> ServiceDay {
     let operations = &params.operations;
     let capacity_units = params.capacity(morning.core.capacity_tier).capacity_units;
-    let overload = overload(total_usage, f64::from(capacity_units), operations);
-    let mut stream = streams.open(Part::Service, [u64::from(morning.day)]);
+    let load = held.map_or(total_usage, |held| (total_usage as f64 * held.load).round() as u64);
+    let overload = overload(load, f64::from(capacity_units), operations);
+    let luck_of = held.map_or(morning.day, |held| held.luck_of);
+    let mut stream = streams.open(Part::Service, [u64::from(luck_of)]);
     let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
     let downtime_minutes = if outage { downtime(&mut stream, operations) } else { 0 };
     let service = ServiceDay {

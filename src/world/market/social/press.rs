@@ -165,7 +165,7 @@ mod tests {
         for day in 1..=500 {
             let mut facts = Facts::default();
             facts.begin(day);
-            crate::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+            crate::market::economy::step(day, &mut economy, false, &params, &streams, &mut facts);
             write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
             let published =
                 facts.posts.iter().filter(|post| matches!(post.matter, Matter::Reading(_))).count();
@@ -194,7 +194,7 @@ mod tests {
             let mut social = Social::opening(&Settings::opening(&params));
             let mut economy = Economy::opening(&params);
             for day in 1..=60 {
-                crate::market::economy::step(day, &mut economy, &params, &streams, &mut facts);
+                crate::market::economy::step(day, &mut economy, false, &params, &streams, &mut facts);
                 write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
             }
             count += f64::from(social.next_post - 1);

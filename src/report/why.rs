@@ -1,0 +1,133 @@
+//! Why a figure changed, in words and numbers.
+
+use super::chapters::change_in_words;
+use super::words::{count, number, whole};
+use crate::notation::{grouped, percent};
+use crate::session::{Detail, FigureUnit, InputDetail, WeekFigure, Why};
+
+/// What no cause explains.
+pub const REST: &str = "composition and chance";
+
+/// A line of an answer: a cause, or the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CauseLine {
+    /// Name of the cause.
+    pub name: &'static str,
+    /// Its share of the change.
+    pub amount: f64,
+    /// The same, written with its sign.
+    pub written: String,
+    /// What differs about it, old → new.
+    pub details: Vec<String>,
+}
+
+/// Every cause, the largest first, and the rest.
+pub fn lines(why: &Why) -> Vec<CauseLine> {
+    let line = |name, amount, details| {
+        let written = signed(why.figure, amount);
+        CauseLine { name, amount, written, details }
+    };
+    let part = |part: &crate::session::WhyPart| {
+        line(part.cause.name(), part.amount, part.details.iter().map(in_words).collect())
+    };
+    why.parts.iter().map(part).chain([line(REST, why.rest, Vec::new())]).collect()
+}
+
+/// The change and its causes: `cancellations +942 = price +938 · rivals +4 · composition and chance 0`.
+pub fn equation(why: &Why) -> String {
+    let parts: Vec<String> =
+        lines(why).iter().map(|line| format!("{} {}", line.name, line.written)).collect();
+    format!("{} {} = {}", why.figure.name(), signed(why.figure, why.change()), parts.join(" · "))
+}
+
+/// The figure in both weeks: `week 20: 195 → 1,137`.
+pub fn heading(why: &Why) -> String {
+    let value = |value| written(why.figure, value);
+    format!("{}, week {}: {} → {}", why.figure.name(), why.week, value(why.before), value(why.after))
+}
+
+/// A value of a figure.
+pub fn written(figure: WeekFigure, value: f64) -> String {
+    match figure.unit() {
+        FigureUnit::Dollars => crate::notation::dollars(value + 0.0),
+        FigureUnit::Count => whole(value),
+        FigureUnit::Share => percent(value, 1),
+        FigureUnit::FineShare => percent(value, 2),
+    }
+}
+
+/// A change of a figure with its sign; shares change by percentage points.
+fn signed(figure: WeekFigure, change: f64) -> String {
+    let size = change.abs();
+    let text = match figure.unit() {
+        FigureUnit::Dollars => format!("${}", grouped(size, 0)),
+        FigureUnit::Count if size < 100.0 && (size - size.round()).abs() > 0.05 => grouped(size, 1),
+        FigureUnit::Count => grouped(size, 0),
+        FigureUnit::Share => format!("{} pt", grouped(100.0 * size, 1)),
+        FigureUnit::FineShare => format!("{} pt", grouped(100.0 * size, 2)),
+    };
+    let is_nothing = !text.contains(|digit: char| ('1'..='9').contains(&digit));
+    match change {
+        _ if is_nothing => "0".to_owned(),
+        change if change > 0.0 => format!("+{text}"),
+        _ => format!("-{text}"),
+    }
+}
+
+fn in_words(detail: &Detail) -> String {
+    match detail {
+        Detail::Setting(change) => change_in_words(change),
+        Detail::Happened(times, noun) => count(*times as u32, noun),
+        Detail::Input(InputDetail { name, old, new, is_share }) => {
+            let value = |value: f64| if *is_share { percent(value, 1) } else { number(value) };
+            format!("{name}: {} → {}", value(*old), value(*new))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Cause, ToolId, WhyPart};
+
+    fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
+        let part =
+            |(cause, amount): &(Cause, f64)| WhyPart { cause: *cause, amount: *amount, details: Vec::new() };
+        let parts: Vec<WhyPart> = amounts.iter().map(part).collect();
+        let rest = after - before - parts.iter().map(|part| part.amount).sum::<f64>();
+        Why { week: 20, figure, before, after, parts, rest, simulations: 4 }
+    }
+
+    #[test]
+    fn an_equation_names_every_cause_with_its_sign_and_the_rest() {
+        let price = Cause::Calls(ToolId::SetPrices);
+        let told = why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Rivals, 3.5)]);
+        let equation_told = equation(&told);
+        assert_eq!(
+            equation_told,
+            "cancellations +942 = price +938 · rivals +3.5 · composition and chance +0.5"
+        );
+        assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
+        let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
+        assert_eq!(
+            equation(&told),
+            "conversion -1.00 pt = price -1.00 pt · load and outages 0 · composition and chance 0"
+        );
+        let told = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
+        assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · composition and chance 0");
+    }
+
+    #[test]
+    fn details_say_what_was_and_what_is() {
+        let input = |name, old, new, is_share| Detail::Input(InputDetail { name, old, new, is_share });
+        let told = [
+            (Detail::Happened(2, "move"), "2 moves"),
+            (Detail::Happened(1, "call"), "1 call"),
+            (input("peak overload", 0.0, 0.131, true), "peak overload: 0.0% → 13.1%"),
+            (input("index", 49.0, 50.25, false), "index: 49 → 50.25"),
+        ];
+        for (detail, words) in told {
+            assert_eq!(in_words(&detail), words);
+        }
+    }
+}

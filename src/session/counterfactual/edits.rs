@@ -1,0 +1,36 @@
+//! What is changed when days are simulated again.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use crate::tools::ToolId;
+use crate::world::held::Held;
+use crate::world::params::Params;
+
+/// Changes to the days of a run. Without any, they lead to the state they led to.
+#[derive(Debug, Clone, Default)]
+pub(in crate::session) struct Edits {
+    /// Lines of calls that are not made.
+    pub dropped: BTreeSet<u64>,
+    /// Other arguments of calls, by line.
+    pub changed: BTreeMap<u64, Value>,
+    /// Calls that are made besides.
+    pub added: Vec<AddedCall>,
+    /// Inputs of the world that are held.
+    pub held: Held,
+    /// Other parameters.
+    pub params: Option<Arc<Params>>,
+}
+
+/// A call that was not made in the run.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct AddedCall {
+    /// Decision day; it is made after the calls of the run on that day.
+    pub day: u32,
+    /// Tool.
+    pub tool: ToolId,
+    /// Arguments.
+    pub args: Value,
+}

@@ -1,0 +1,39 @@
+//! A moment of a run, kept in memory: what everything after it follows from.
+
+use std::sync::Arc;
+
+use crate::session::folder::manifest::Manifest;
+use crate::session::play::feed::Feed;
+use crate::session::play::simulation::Simulation;
+use crate::voice::CompanyNames;
+use crate::world::params::Params;
+use crate::world::random::Streams;
+use crate::world::state::World;
+
+/// A company at the end of a day, before anything is decided on it.
+#[derive(Clone)]
+pub(in crate::session) struct KeptState {
+    /// Parameters of the run.
+    pub params: Arc<Params>,
+    /// Its luck.
+    pub streams: Streams,
+    /// What its companies are called.
+    pub names: CompanyNames,
+    /// The company and its market.
+    pub world: World,
+    /// What was written in public; empty unless a call needs the words.
+    pub feed: Feed,
+}
+
+impl KeptState {
+    /// Day 0 of a run.
+    pub(in crate::session) fn opening(manifest: &Manifest, params: Arc<Params>) -> KeptState {
+        KeptState::of(Simulation::open(manifest, params))
+    }
+
+    /// The moment a simulation has come to.
+    pub(in crate::session) fn of(simulation: Simulation) -> KeptState {
+        let Simulation { params, streams, names, world, feed, .. } = simulation;
+        KeptState { params, streams, names, world, feed }
+    }
+}

@@ -1,0 +1,126 @@
+//! A recorded run, as far as its days can be simulated again.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::branch::counterfactual;
+use super::edits::Edits;
+use super::kept_state::KeptState;
+use super::script::{Move, between, moves};
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::playback::{Origin, read};
+use crate::session::trajectory::Record;
+
+/// Moments that are kept in memory besides the first: a moment is as large as its company.
+const KEPT: usize = 4;
+
+/// The moves of a run, and moments from which they can be made again.
+pub(in crate::session) struct Past {
+    /// The file they were read from.
+    path: PathBuf,
+    /// What the run is.
+    pub(in crate::session) manifest: Manifest,
+    /// Everything that moved it on.
+    moves: Vec<Move>,
+    /// Whether it is over.
+    pub(in crate::session) ended: bool,
+    /// Moments by day.
+    kept: BTreeMap<u32, Arc<KeptState>>,
+}
+
+impl Past {
+    /// The past of the run in a folder, or of a trajectory file.
+    ///
+    /// # Errors
+    /// It is missing, damaged or of another version.
+    pub(in crate::session) fn read(path: &Path) -> Result<Past, RunError> {
+        let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
+        let ended = trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_)));
+        let opening = Arc::new(KeptState::opening(&manifest, params));
+        Ok(Past {
+            path,
+            manifest,
+            moves: moves(&trajectory.lines),
+            ended,
+            kept: BTreeMap::from([(0, opening)]),
+        })
+    }
+
+    /// The moves that follow a day and lead no further than another.
+    pub(in crate::session) fn between(&self, from: u32, until: u32) -> &[Move] {
+        between(&self.moves, from, until)
+    }
+
+    /// The last day that was simulated.
+    pub(in crate::session) fn last_day(&self) -> u32 {
+        let days = self.moves.iter().rev().find_map(|step| match step {
+            Move::Days(days) => Some(days.until),
+            Move::Call(_) => None,
+        });
+        days.unwrap_or(0)
+    }
+
+    /// Days of a week.
+    pub(in crate::session) fn days_per_week(&self) -> u32 {
+        self.kept[&0].params.run.days_per_week
+    }
+
+    /// Whether days of the record end on a day.
+    pub(in crate::session) fn ends_on(&self, day: u32) -> bool {
+        day == 0 || self.moves.iter().any(|step| matches!(step, Move::Days(days) if days.until == day))
+    }
+
+    /// The run at the end of a day on which days of the record end, simulated from the nearest moment before it that is
+    /// kept. None if it was stopped: `progress` is told each day.
+    ///
+    /// # Errors
+    /// The record does not lead to the state it names.
+    pub(in crate::session) fn moment(
+        &mut self,
+        day: u32,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Option<Arc<KeptState>>, RunError> {
+        let (from, nearest) = self.kept.range(..=day).next_back().expect("day 0 is always kept");
+        if *from == day {
+            return Ok(Some(nearest.clone()));
+        }
+        let way = between(&self.moves, *from, day);
+        let Some(outcome) = counterfactual(nearest, way, &Edits::default(), day, progress) else {
+            return Ok(None);
+        };
+        self.compare(day, &outcome.end)?;
+        let moment = Arc::new(outcome.end);
+        if self.kept.len() > KEPT {
+            let oldest = self.kept.keys().copied().nth(1);
+            oldest.and_then(|day| self.kept.remove(&day));
+        }
+        self.kept.insert(day, moment.clone());
+        Ok(Some(moment))
+    }
+
+    /// Whether a moment is the one that the record names on a day.
+    ///
+    /// # Errors
+    /// It is another.
+    pub(in crate::session) fn compare(&self, day: u32, reached: &KeptState) -> Result<(), RunError> {
+        let recorded = self.moves.iter().find_map(|step| match step {
+            Move::Days(days) if days.until == day => Some(&days.parts),
+            _ => None,
+        });
+        let own = reached.world.part_hashes();
+        let differs = own.iter().find(|own| {
+            let known = recorded.and_then(|parts| parts.get(own.part));
+            known.is_none_or(|known| own.hash.to_hex()[..16] != **known)
+        });
+        let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
+        Err(RunError::NotPossible(format!(
+            "{}: simulated again, day {day} is not the one on record (different: {}). Nothing was changed; \
+             `novamind verify` names the line",
+            self.path.display(),
+            differs.part
+        )))
+    }
+}

@@ -1,0 +1,85 @@
+//! What was done in a run and how its days passed, line by line.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::session::trajectory::record::{Call, Outcome};
+use crate::session::trajectory::{Line, Record};
+use crate::tools::{Kind, ToolId};
+
+/// Something that moved the company on.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) enum Move {
+    /// A call that could act on the company.
+    Call(PastCall),
+    /// Days passed.
+    Days(PastDays),
+}
+
+/// A call of the past.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct PastCall {
+    /// Its line.
+    pub seq: u64,
+    /// Decision day.
+    pub day: u32,
+    /// Tool.
+    pub tool: ToolId,
+    /// Arguments.
+    pub args: Value,
+    /// Whether it was accepted.
+    pub accepted: bool,
+}
+
+/// Days of the past.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct PastDays {
+    /// The last of them.
+    pub until: u32,
+    /// Hash of the state they led to.
+    pub state_hash: String,
+    /// Hash of each part of it.
+    pub parts: BTreeMap<String, String>,
+}
+
+/// The moves of some lines, in their order.
+pub(in crate::session) fn moves(lines: &[Line]) -> Vec<Move> {
+    lines.iter().filter_map(move_of).collect()
+}
+
+fn move_of(line: &Line) -> Option<Move> {
+    if let Some(closing) = line.record.closing() {
+        let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
+        return Some(Move::Days(PastDays { until: line.day, state_hash, parts }));
+    }
+    let Record::Call(Call { tool, args, outcome, .. }) = &line.record else { return None };
+    let kind = tool.tool().spec().kind;
+    (kind.acts() && kind != Kind::Time).then(|| {
+        let accepted = matches!(outcome, Outcome::Accepted(_));
+        Move::Call(PastCall { seq: line.seq, day: line.day, tool: *tool, args: args.clone(), accepted })
+    })
+}
+
+/// Those moves that follow a day and lead no further than another; what is decided on a day follows it.
+pub(in crate::session) fn between(moves: &[Move], from: u32, until: u32) -> &[Move] {
+    let after = |day: u32| {
+        let before = |step: &Move| match step {
+            Move::Call(call) => call.day < day,
+            Move::Days(days) => days.until <= day,
+        };
+        moves.partition_point(before)
+    };
+    let (first, last) = (after(from), after(until));
+    &moves[first..last.max(first)]
+}
+
+/// Whether an accepted call answers a post of somebody else: then the words of posts matter.
+pub(in crate::session) fn has_replies(moves: &[Move]) -> bool {
+    moves.iter().any(|step| match step {
+        Move::Call(call) => {
+            call.accepted && call.tool == ToolId::PostSocialMedia && !call.args["reply_to_post_id"].is_null()
+        }
+        Move::Days(_) => false,
+    })
+}

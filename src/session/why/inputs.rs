@@ -1,0 +1,109 @@
+//! Inputs of the world that differ between two weeks, and how each is held.
+
+use super::cause::{Cause, Detail, InputDetail};
+use crate::session::counterfactual::branch::BranchOutcome;
+use crate::session::counterfactual::kept_state::KeptState;
+use crate::world::events::DayFigures;
+use crate::world::held::{Held, HeldService};
+use crate::world::market::surges::surge_factor;
+
+/// Two weeks that follow each other, as they were: the moment between them, and what came of each.
+pub(super) struct TwoWeeks<'a> {
+    pub between: &'a KeptState,
+    pub before: &'a BranchOutcome,
+    pub after: &'a BranchOutcome,
+}
+
+impl TwoWeeks<'_> {
+    fn days(&self) -> impl Iterator<Item = u32> + use<> {
+        self.between.world.day + 1..=self.after.end.world.day
+    }
+
+    /// Factor of demand surges on the days of the week and on those a week before.
+    fn surges(&self) -> (Vec<f64>, Vec<f64>) {
+        let start = self.between.params.fidelity.surge_start;
+        let factor = |day, moment: &KeptState| surge_factor(day, &moment.world.market.surges, start);
+        let week = self.between.params.run.days_per_week;
+        let now = self.days().map(|day| factor(day, &self.after.end)).collect();
+        (now, self.days().map(|day| factor(day - week, self.between)).collect())
+    }
+
+    /// Factor of the day of the month, the same way.
+    fn month_days(&self) -> (Vec<f64>, Vec<f64>) {
+        let calendar = &self.between.params.calendar.monthly;
+        let factor = |day: u32| calendar[day as usize % calendar.len()];
+        let week = self.between.params.run.days_per_week;
+        (self.days().map(factor).collect(), self.days().map(|day| factor(day - week)).collect())
+    }
+
+    /// The inputs that differ, each with what differs about it.
+    pub(super) fn differing(&self) -> Vec<(Cause, Vec<Detail>)> {
+        let (eve, end) = (&self.between.world.market, &self.after.end.world.market);
+        let mut found = Vec::new();
+        let mut note = |cause, differs: bool, details: Vec<Detail>| {
+            if differs {
+                found.push((cause, details));
+            }
+        };
+        let input = |name, old, new| Detail::Input(InputDetail { name, old, new, is_share: false });
+        let share = |name, old, new| Detail::Input(InputDetail { name, old, new, is_share: true });
+        let moves = end.competitors.len() - eve.competitors.len();
+        note(Cause::Rivals, moves > 0, vec![Detail::Happened(moves, "move")]);
+        let law = &self.between.params.drift;
+        let drift = self.days().any(|day| crate::world::market::drift::is_drift_day(day, law));
+        note(Cause::Drift, drift, vec![Detail::Happened(1, "step")]);
+        note(Cause::Yields, end.yields != eve.yields, Vec::new());
+        let index = input("index", eve.economy.pmi, end.economy.pmi);
+        note(Cause::Economy, eve.economy.pmi != end.economy.pmi, vec![index]);
+        let (now, before) = self.surges();
+        note(Cause::Surges, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        let (now, before) = self.month_days();
+        note(Cause::Calendar, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        let service =
+            |of: &BranchOutcome, read: fn(&DayFigures) -> f64| of.days.iter().map(read).fold(0.0, f64::max);
+        let both = |read| (service(self.before, read), service(self.after, read));
+        let (overload, outage) = (both(|day| day.overload), both(|day| f64::from(day.downtime_minutes)));
+        let details = vec![
+            share("peak overload", overload.0, overload.1),
+            input("longest outage, minutes", outage.0, outage.1),
+        ];
+        note(Cause::Service, true, details);
+        found
+    }
+
+    /// Holds some inputs at what they were a week before; load of the service against days with the player's changes undone.
+    pub(super) fn held(&self, causes: impl Iterator<Item = Cause>, undone: &[DayFigures]) -> Held {
+        let mut held = Held { from: self.between.world.day + 1, ..Held::default() };
+        for cause in causes {
+            match cause {
+                Cause::Rivals => held.rivals = true,
+                Cause::Drift => held.drift = true,
+                Cause::Yields => held.yields = true,
+                Cause::Economy => held.economy = true,
+                Cause::Surges => held.surges = self.surges().1,
+                Cause::Calendar => held.month_days = self.month_days().1,
+                Cause::Service => held.service = self.service(undone),
+                _ => {}
+            }
+        }
+        held
+    }
+
+    /// Load as it would be if as much had been used as a week before, with the luck of that day.
+    fn service(&self, undone: &[DayFigures]) -> Vec<HeldService> {
+        let week = self.between.params.run.days_per_week;
+        let used = |days: &[DayFigures], wanted: u32| {
+            days.iter().find(|day| day.day == wanted).map_or(0, |day| day.total_usage)
+        };
+        let on = |day: u32| {
+            let (before, now) = (used(&self.before.days, day - week), used(undone, day));
+            let load = if now == 0 { 1.0 } else { before as f64 / now as f64 };
+            HeldService { load, luck_of: day - week }
+        };
+        self.days().map(on).collect()
+    }
+}
+
+fn mean(factors: &[f64]) -> f64 {
+    factors.iter().sum::<f64>() / factors.len().max(1) as f64
+}

@@ -1,0 +1,184 @@
+//! Inputs that nobody in the company controls, held at what they were a week before: for days that are simulated again with
+//! one thing changed. A day that is played holds nothing.
+
+use super::identifiers::ByGroup;
+use super::market::leads::LeadFactors;
+
+/// Which inputs are held from a day on, and at what. What is not named takes its course.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Held {
+    /// The first day on which they are held; lists begin with it.
+    pub from: u32,
+    /// Rivals make no move.
+    pub rivals: bool,
+    /// Expectations and budgets do not drift.
+    pub drift: bool,
+    /// Channels bring what they brought.
+    pub yields: bool,
+    /// The index of the economy stays where it is.
+    pub economy: bool,
+    /// Factor of demand surges, day by day; empty where they take their course.
+    pub surges: Vec<f64>,
+    /// Factor of the day of the month, day by day; empty where the calendar goes on.
+    pub month_days: Vec<f64>,
+    /// What strains the service, day by day; empty where it takes its course.
+    pub service: Vec<HeldService>,
+}
+
+/// What strains the service on a day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldService {
+    /// Share of the metered usage that counts as its load.
+    pub load: f64,
+    /// The day whose luck decides on outages, latency and errors.
+    pub luck_of: u32,
+}
+
+impl Held {
+    /// Whether the drift that a day would bring is held back.
+    pub fn holds_drift(&self, day: u32) -> bool {
+        self.drift && day >= self.from
+    }
+
+    /// What strains the service on a day, if that is held.
+    pub fn service_on(&self, day: u32) -> Option<HeldService> {
+        self.on(day, &self.service)
+    }
+
+    /// Puts held factors in place of those of a day.
+    pub fn hold_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
+        let month_day = self.on(day, &self.month_days);
+        for own in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
+            own.calendar = month_day.map_or(own.calendar, |factor| weekday * factor);
+            own.surge = self.on(day, &self.surges).unwrap_or(own.surge);
+        }
+    }
+
+    fn on<T: Copy>(&self, day: u32, list: &[T]) -> Option<T> {
+        list.get(day.checked_sub(self.from)? as usize).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::day::watch::Unwatched;
+    use crate::day::{step_day, step_day_watched};
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use crate::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
+    use crate::identifiers::{Channel, Group};
+    use crate::market::surges::Surge;
+    use crate::params::Params;
+    use crate::random::Streams;
+    use crate::settings::PerGroup;
+    use crate::state::World;
+    use crate::test_kit::policy_p;
+
+    /// So much usage that the service of the company is overloaded.
+    const LOAD: f64 = 1000.0;
+
+    /// A company on an eve, and the laws it lives under.
+    fn company(eve: u32) -> (World, Params, Streams) {
+        let (params, streams) = (Params::shipped(), Streams::new(9));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        policy_p(&mut world);
+        world.settings.core.capacity_tier = 7;
+        let ads = &mut world.settings.targeted_ads.targeted_spend;
+        ads.insert(Channel::SearchAds, PerGroup::from([(Group::parse("S1").expect("a group"), 20_000.0)]));
+        for _ in 0..eve {
+            step_day(&mut world, &params, &streams, &mut facts);
+        }
+        (world, params, streams)
+    }
+
+    fn next_day(eve: &(World, Params, Streams), held: &Held) -> (World, DayFigures) {
+        let (world, params, streams) = eve;
+        let mut world = world.clone();
+        let figures =
+            step_day_watched(&mut world, params, streams, held, &mut Facts::default(), &Unwatched).0;
+        (world, figures)
+    }
+
+    #[test]
+    fn what_is_held_stays_and_nothing_else_does() {
+        let eve = company(89);
+        let held = |change: fn(&mut Held)| {
+            let mut held = Held { from: 90, ..Held::default() };
+            change(&mut held);
+            next_day(&eve, &held).0.market
+        };
+        let (before, free) = (&eve.0.market, held(|_| {}));
+        assert!(free.drift != before.drift && free.yields != before.yields);
+        assert!(free.economy.pmi != before.economy.pmi);
+        let drift = held(|held| held.drift = true);
+        assert_eq!(drift.drift.c_max, before.drift.c_max);
+        assert_eq!((&drift.yields, drift.economy.pmi), (&free.yields, free.economy.pmi));
+        let yields = held(|held| held.yields = true);
+        assert_eq!((&yields.yields, &yields.drift), (&before.yields, &free.drift));
+        let economy = held(|held| held.economy = true);
+        assert_eq!((economy.economy.pmi, &economy.yields), (before.economy.pmi, &free.yields));
+    }
+
+    #[test]
+    fn rivals_that_are_held_make_no_move() {
+        let moves = |rivals: bool| {
+            let mut eve = company(89);
+            let held = Held { from: 90, rivals, ..Held::default() };
+            (0..60).for_each(|_| eve.0 = next_day(&eve, &held).0);
+            eve.0.market.competitors.len()
+        };
+        assert_eq!((moves(true), moves(false) > 2), (company(89).0.market.competitors.len(), true));
+    }
+
+    #[test]
+    fn held_factors_replace_those_of_the_leads() {
+        let mut eve = company(59);
+        eve.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
+        let leads = |held: Held| next_day(&eve, &Held { from: 60, ..held }).1.new_leads;
+        let free = leads(Held::default());
+        assert!(leads(Held { surges: vec![1.0], ..Held::default() }) * 2 < free);
+        assert!(leads(Held { month_days: vec![0.25], ..Held::default() }) * 2 < free);
+        // A list that has ended holds nothing.
+        assert_eq!(leads(Held { surges: Vec::new(), ..Held::default() }), free);
+    }
+
+    #[test]
+    fn the_service_is_strained_by_what_is_held() {
+        let eve = company(59);
+        let service = |load: f64, luck_of: u32| {
+            let held = Held { from: 60, service: vec![HeldService { load, luck_of }], ..Held::default() };
+            next_day(&eve, &held).1
+        };
+        let free = next_day(&eve, &Held::default()).1;
+        assert_eq!(service(1.0, 60), free);
+        assert!(service(LOAD, 60).overload > 0.0 && free.overload == 0.0);
+        assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);
+        // What is used is used.
+        assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
+    }
+
+    /// A lead who comes with and without overload decides the same: the service has no term in that choice.
+    #[test]
+    fn the_service_has_no_part_in_what_a_lead_decides() {
+        let (world, params, streams) = company(59);
+        let decisions = |load: f64| -> BTreeMap<(Group, u32), bool> {
+            let held = Held { from: 60, service: vec![HeldService { load, luck_of: 60 }], ..Held::default() };
+            let mut facts = Facts::default();
+            step_day_watched(&mut world.clone(), &params, &streams, &held, &mut facts, &Unwatched);
+            let signed: BTreeSet<u32> = facts
+                .openings
+                .iter()
+                .filter(|opening| opening.status == SubscriptionStatus::Subscribed)
+                .map(|opening| opening.customer)
+                .collect();
+            let decided = |own: &Arrival| ((own.group, own.n), signed.contains(&own.customer));
+            facts.arrivals.iter().map(decided).collect()
+        };
+        let (calm, strained) = (decisions(1.0), decisions(LOAD));
+        let both: Vec<_> = calm.iter().filter(|(lead, _)| strained.contains_key(lead)).collect();
+        assert!(both.len() > 20 && both.iter().any(|(_, signed)| **signed));
+        assert!(both.into_iter().all(|(lead, signed)| strained[lead] == *signed));
+    }
+}

@@ -339,6 +339,7 @@ fn nothing_but_the_own_session_can_be_reached_until_the_code_is_given() {
     let runs = std::fs::read_dir(lab.runs().join("participants/P01")).expect("a folder").flatten();
     let run = runs.map(|entry| entry.file_name().to_string_lossy().into_owned()).next().expect("a run");
     console.shows(&run);
+    assert!(!console.screen().contains("No such file"), "{}", console.screen());
     console.request(Request::Open(run.clone(), Access::Write)).expect("nothing to wait for");
     console.shows("only its participant goes on with this run");
     let recorded = Recorded::Run(run);

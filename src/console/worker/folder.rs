@@ -30,7 +30,12 @@ impl SessionThread {
     }
 
     pub(super) fn preview_run(&self, id: String) {
-        let preview = run_preview(&self.runs, &id).map_err(|error| error.to_string());
+        let place = match self.lists_everybody {
+            true => find_run_to_read(&self.runs, &id).ok().and_then(|own| own.parent().map(Path::to_owned)),
+            false => None,
+        };
+        let runs = place.as_deref().unwrap_or(&self.runs);
+        let preview = run_preview(runs, &id).map_err(|error| error.to_string());
         self.say(News::Preview(id, preview));
     }
 

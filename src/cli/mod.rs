@@ -24,8 +24,8 @@ use clap::{Parser, Subcommand};
 pub use failure::Failure;
 
 use crate::session::{
-    Configuration, LabKey, STUDY_FILE, SealKey, Study, lab_key_of, list_worlds_in, participant_folder,
-    record_refused_code, seal_key_of,
+    Configuration, LabKey, Manifest, Record, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
+    list_worlds_as_experimenter, list_worlds_in, participant_folder, record_refused_code, seal_key_of,
 };
 
 /// Run a simulated AI subscription company for 500 days.
@@ -189,6 +189,39 @@ impl Context {
         }
     }
 
+    /// Refuses to show a run whose protocol hides results from everybody but the experimenter.
+    ///
+    /// # Errors
+    /// It is one, and no code was given; its manifest cannot be read.
+    pub fn check_look(&self, folder: &Path) -> Result<(), Failure> {
+        let manifest = Manifest::read(folder)?;
+        if self.is_experimenter || manifest.study.is_none() || !manifest.session_rules().hides_results() {
+            return Ok(());
+        }
+        Err(Failure::usage(format!(
+            "run {} belongs to a study that shows no results: `--study DIR --code CODE` before the command opens it",
+            manifest.id
+        )))
+    }
+
+    /// Refuses to play, or to watch, an unfinished run of a study outside of it.
+    ///
+    /// # Errors
+    /// It is one, and no code was given; its manifest cannot be read.
+    pub fn check_play(&self, folder: &Path) -> Result<(), Failure> {
+        self.check_look(folder)?;
+        let manifest = Manifest::read(folder)?;
+        let Some(study) = manifest.study.filter(|_| !self.is_experimenter) else { return Ok(()) };
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+        if trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_))) {
+            return Ok(());
+        }
+        Err(Failure::usage(format!(
+            "run {} belongs to the study {}: `novamind --study DIR` goes on with it",
+            manifest.id, study.name
+        )))
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors
@@ -262,6 +295,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
                 "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
             ));
         }
+        list_worlds_as_experimenter();
     }
     match arguments.command {
         None => play::run(arguments.play, &context),

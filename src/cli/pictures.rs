@@ -68,6 +68,7 @@ fn size(text: &str) -> Result<(u16, u16), String> {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     let folder = find_run_to_read(&runs, &options.run)?;
+    context.check_look(&folder)?;
     record_look(&folder, "pictures", &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")))?;
     let id = folder.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let settings = Settings {

@@ -121,6 +121,9 @@ impl Options {
 
 /// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
+    if let Some(id) = &options.run {
+        context.check_play(&find_run(&context.runs()?, id)?)?;
+    }
     if asks_for_lines(&options) { play_plain(&options, context) } else { play_console(&options, context) }
 }
 

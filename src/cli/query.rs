@@ -43,6 +43,7 @@ pub enum RowFormat {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    context.check_look(&folder)?;
     let statement = statement(&options.sql, context)?;
     record_look(&folder, "query", &statement)?;
     let rows = ask(&folder, &statement, &context.seal_key()?)?;

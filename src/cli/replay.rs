@@ -54,6 +54,9 @@ fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(),
             None => return Ok(()),
         },
     };
+    if detail != "verify" {
+        context.check_look(&folder)?;
+    }
     Ok(record_look(&folder, "replay", detail)?)
 }
 

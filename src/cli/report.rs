@@ -47,6 +47,7 @@ pub enum ReportFormat {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    context.check_look(&folder)?;
     let usual = if options.card { ReportFormat::Text } else { ReportFormat::Markdown };
     let format = options.format.unwrap_or(usual);
     record_look(&folder, "report", if options.session { "session" } else { "run" })?;

@@ -58,7 +58,9 @@ pub use folder::runs::{
     RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
 };
-pub use folder::world_log::{WORLDS, WorldLine, WorldLog, list_world, list_worlds_in};
+pub use folder::world_log::{
+    WORLDS, WorldLine, WorldLog, list_world, list_worlds_as_experimenter, list_worlds_in,
+};
 pub use play::act::Preview;
 pub use play::advance::{DayReport, Week};
 pub use play::afterwards::lines_afterwards;

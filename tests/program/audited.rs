@@ -443,3 +443,45 @@ fn answers_after_the_end_are_told_and_compared() {
     fs::write(&path, &good).expect("written");
     assert_eq!(study.audit(&["one"]), []);
 }
+
+#[cfg(unix)]
+#[test]
+fn stones_pipes_and_copies_deceive_nobody() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}", WEEKS[0]));
+    let run = study.only_run("one", "P01");
+    let id = run.file_name().expect("a name").to_string_lossy().into_owned();
+    // A run of the study is not played outside of it, nor watched while it is unfinished.
+    for options in [&["--run", &id][..], &["--run", &id, "--watch"]] {
+        let said = study.run("one", &[&["--as", "P01", "play", "--plain"], options, &["--strict"]].concat());
+        assert_eq!(said.code, 2, "{}", said.out);
+        assert!(said.err.contains("belongs to the study"), "{}", said.err);
+    }
+    // A copy of a folder of runs is no second session.
+    copy(&study.machine("one"), &study.machine("copy"));
+    assert_eq!(study.kinds(&["one", "copy"]), [] as [&str; 0]);
+    // The run is removed, and a stone is laid that nobody was told of.
+    fs::remove_dir_all(&run).expect("gone");
+    let other = study.machine("one").join("participants/P02");
+    fs::create_dir_all(&other).expect("a folder");
+    let stone = format!("run = \"{id}\"\nstudy = \"x\"\nat = \"2026-11-24T11:30:00Z\"\n");
+    fs::write(other.join("withdrawn.toml"), stone).expect("written");
+    let found = study.audit(&["one"]);
+    assert!(
+        found.iter().any(|(kind, _, words)| kind == "missing" && words.contains("no withdrawal")),
+        "{found:?}"
+    );
+    // Pipes in the place of files keep nobody waiting.
+    let pipes = [
+        study.machine("one").join("participants/P02/11112222/trajectory.jsonl"),
+        study.machine("one").join("visits.jsonl"),
+        study.home.0.path().join("pilot/witness/11112222-1.jsonl"),
+    ];
+    for pipe in pipes {
+        fs::create_dir_all(pipe.parent().expect("a folder")).expect("a folder");
+        let _ = fs::remove_file(&pipe);
+        assert!(Command::new("mkfifo").arg(&pipe).status().expect("it runs").success());
+    }
+    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
+    assert_eq!(study.run("one", &["study", "watch", &study.folder(), "--once"]).code, 0);
+}

@@ -33,6 +33,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut compared = Vec::new();
     for name in &options.runs {
         let own = find_run_to_read(&folder, name)?;
+        context.check_look(&own)?;
         record_look(&own, "compare", &options.runs.join(" "))?;
         let session = Session::open(&own, Access::Read, true)?;
         let trajectory = Trajectory::read(&own.join("trajectory.jsonl"))?;

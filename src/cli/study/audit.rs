@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::{Context, Failure, print};
+use crate::notation::printable;
 use crate::plain::table as aligned;
 use crate::session::{Audit, AuditFinding, Cell, Rows, RunFacts, Study, audit};
 
@@ -33,7 +34,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
     } else {
-        print(&in_words(&study, &audit))?;
+        // Names of folders and lines of others may hold anything.
+        print(&printable(&in_words(&study, &audit)))?;
     }
     match audit.findings.len() {
         0 => Ok(()),

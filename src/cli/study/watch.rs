@@ -8,6 +8,7 @@ use std::time::Duration;
 use clap::Args;
 
 use crate::cli::{Context, Failure, print};
+use crate::notation::printable;
 use crate::plain::table as aligned;
 use crate::session::{
     Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, VISITS, VisitLine, VisitSummary, has_come,
@@ -51,11 +52,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&lines.concat());
     }
     if options.once || !std::io::stdout().is_terminal() {
-        return print(&shown(&study, &look(), &machines));
+        return print(&printable(&shown(&study, &look(), &machines)));
     }
     loop {
         // Only the text changes: the terminal keeps its own scrolling and its own way to stop.
-        print(&format!("\x1b[H\x1b[2J{}\nctrl-c stops watching\n", shown(&study, &look(), &machines)))?;
+        print(&format!(
+            "\x1b[H\x1b[2J{}\nctrl-c stops watching\n",
+            printable(&shown(&study, &look(), &machines))
+        ))?;
         std::thread::sleep(BETWEEN_LOOKS);
     }
 }

@@ -300,7 +300,11 @@ fn second_sessions(study: &Study, machines: &[MachineRecord]) -> Vec<AuditFindin
     for run in machines.iter().flat_map(|machine| &machine.runs).filter(|run| run.is_of(&study.digest)) {
         let Some(manifest) = &run.manifest else { continue };
         if manifest.study.as_ref().is_some_and(|stamp| !stamp.practice) {
-            sessions.entry(manifest.participant.clone().unwrap_or_default()).or_default().push(run);
+            let known = sessions.entry(manifest.participant.clone().unwrap_or_default()).or_default();
+            // The same run in two folders is a copy.
+            if !known.iter().any(|other| other.id == run.id && is_copy(other, run)) {
+                known.push(run);
+            }
         }
     }
     let several = sessions.into_iter().filter(|(_, runs)| runs.len() > 1);
@@ -325,21 +329,33 @@ fn second_sessions(study: &Study, machines: &[MachineRecord]) -> Vec<AuditFindin
         .collect()
 }
 
+fn is_copy(one: &RunRecord, other: &RunRecord) -> bool {
+    let last = |run: &RunRecord| run.trajectory.as_ref().ok()?.lines.last().map(|line| line.hash.clone());
+    last(one).is_some() && last(one) == last(other)
+}
+
 /// Runs that a witness was told of, and that are nowhere.
 fn gone(machines: &[MachineRecord], told: &BTreeMap<String, Vec<Told>>) -> Vec<AuditFinding> {
     let is_there = |run: &str| machines.iter().any(|machine| machine.runs.iter().any(|own| own.id == run));
     let withdrawn = |run: &str| machines.iter().any(|machine| machine.withdrawn.iter().any(|own| own == run));
-    let missing = told.iter().filter(|(run, _)| !is_there(run) && !withdrawn(run));
+    // A stone is laid by anybody; the witness is told by the program alone.
+    let is_told = |lines: &[Told]| lines.iter().any(Told::is_withdrawal);
+    let missing = told.iter().filter(|(run, lines)| !(is_there(run) || withdrawn(run) && is_told(lines)));
     missing
         .map(|(run, lines)| {
-            let last = lines.iter().max_by_key(|told| told.seq);
+            let last = lines.iter().filter(|told| !told.is_withdrawal()).max_by_key(|told| told.seq);
+            let words = match (withdrawn(run), is_told(lines)) {
+                (true, _) => "withdrawn.toml says that its participant has withdrawn, and the witness was told of no withdrawal",
+                (false, true) => "the witness was told that its participant has withdrawn, and no withdrawn.toml says so",
+                (false, false) => "the witness was told of this run, and it is in none of the folders",
+            };
             AuditFinding {
                 kind: AuditKind::Missing,
                 run: run.clone(),
                 participant: None,
                 line: last.map(|told| told.seq + 1),
                 at: last.map(|told| told.at.clone()).unwrap_or_default(),
-                words: "the witness was told of this run, and it is in none of the folders".to_owned(),
+                words: words.to_owned(),
             }
         })
         .collect()

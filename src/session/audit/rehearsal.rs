@@ -3,7 +3,7 @@
 use super::machine::RunRecord;
 use super::{AuditFinding, AuditKind, Inspection};
 use crate::session::folder::manifest::Manifest;
-use crate::session::folder::world_log::WorldLine;
+use crate::session::folder::world_log::{EXPERIMENTER, WorldLine};
 use crate::session::trajectory::{Record, Trajectory, seconds};
 
 /// What the machine knows of the world of a run.
@@ -33,8 +33,9 @@ fn listed(
     over: Option<f64>,
 ) -> Vec<AuditFinding> {
     let study = manifest.study.as_ref().map(|stamp| stamp.digest.as_str());
+    // A copy of the scenario may have any name: the seed tells.
     let same_world = |line: &&WorldLine| {
-        (line.seed..=line.to_seed).contains(&manifest.seed) && line.scenario == manifest.scenario
+        (line.seed..=line.to_seed).contains(&manifest.seed) && !line.by.starts_with(EXPERIMENTER)
     };
     // Sessions of the study are no rehearsal, and what happens once the run is over teaches its player nothing.
     let counts = |line: &&WorldLine| {
@@ -47,7 +48,12 @@ fn listed(
     lines
         .map(|line| {
             let run = line.run.as_ref().map_or(String::new(), |run| format!(" (run {run})"));
-            let words = format!("`{}` opened the world of this session on the machine{run}", line.by);
+            let scenario = match line.scenario == manifest.scenario {
+                true => String::new(),
+                false => format!(" in scenario {}", line.scenario),
+            };
+            let words =
+                format!("`{}` opened the seed of this session on the machine{scenario}{run}", line.by);
             own.finding(AuditKind::Rehearsal, line_at(trajectory, seconds(&line.at)), &line.at, words)
         })
         .collect()
@@ -66,7 +72,7 @@ fn left(
     let runs = own.machine.runs.iter().filter(other).filter_map(|run| Some((run, run.manifest.as_ref()?)));
     runs.filter(|(_, other)| {
         let branched = other.parent.as_ref().is_some_and(|parent| parent.run == manifest.id);
-        let same = other.seed == manifest.seed && other.scenario == manifest.scenario;
+        let same = other.seed == manifest.seed;
         let of_study = other.study.as_ref().map(|stamp| &stamp.digest) == study;
         (branched || same) && !of_study && over.is_none_or(|end| seconds(&other.created) < end)
     })

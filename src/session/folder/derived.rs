@@ -1,7 +1,6 @@
 //! What a run is, as the first line of its trajectory says; `run.toml` repeats it, and is made anew where it does not.
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -9,7 +8,7 @@ use toml::{Table, Value};
 
 use super::manifest::Manifest;
 use crate::session::error::RunError;
-use crate::session::trajectory::Line;
+use crate::session::trajectory::{Line, open_regular_file};
 
 /// What a run is, and what is wrong with its `run.toml`.
 pub(in crate::session) struct Derived {
@@ -66,7 +65,7 @@ pub fn manifest_text(folder: &Path) -> Result<String, RunError> {
 /// The first line of a file, if it is whole.
 fn first_line(path: &Path) -> Option<Line> {
     let mut bytes = Vec::new();
-    BufReader::new(File::open(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
+    BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
     Line::first(bytes.strip_suffix(b"\n")?)
 }
 

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::derived::Derived;
 use super::runs::run_folder;
 use crate::session::error::RunError;
-use crate::session::trajectory::{Line, Record};
+use crate::session::trajectory::{Line, Record, open_regular_file};
 
 /// The preview of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -33,7 +33,7 @@ pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     let folder = run_folder(runs, id);
     let Derived { manifest, .. } = Derived::of(&folder)?;
     let path = folder.join("trajectory.jsonl");
-    let file = std::fs::File::open(&path).map_err(RunError::io(&path))?;
+    let file = open_regular_file(&path).map_err(RunError::io(&path))?;
     let mut preview = RunPreview { cash: vec![(0, manifest.cash)], ..RunPreview::default() };
     let closing = ["\"kind\":\"week\"", "\"kind\":\"step\"", "\"kind\":\"end\""];
     for line in BufReader::new(file).split(b'\n') {

@@ -1,6 +1,5 @@
 //! The folder of runs: names, locks, the list.
 
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -13,6 +12,7 @@ use crate::session::error::RunError;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::session::study::stamp::EarlierRun;
+use crate::session::trajectory::open_regular_file;
 use crate::session::trajectory::record::Ended;
 use crate::session::trajectory::{Line, Record};
 
@@ -192,7 +192,7 @@ pub(in crate::session) fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
 }
 
 fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
-    let mut file = File::open(path)?;
+    let mut file = open_regular_file(path)?;
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(window)))?;
     let mut bytes = Vec::new();

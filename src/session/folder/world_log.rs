@@ -7,13 +7,14 @@
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{PoisonError, RwLock};
 
 use serde::{Deserialize, Serialize};
 
 use crate::session::play::machine::Machine;
-use crate::session::trajectory::now;
 use crate::session::trajectory::record::WorldsSeen;
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const WORLDS: &str = "worlds.jsonl";
@@ -61,6 +62,17 @@ pub fn list_worlds_in(runs: &Path) {
     *PLACE.write().unwrap_or_else(PoisonError::into_inner) = Some(runs.join(WORLDS));
 }
 
+/// Whether the experimenter's code was given.
+static BY_EXPERIMENTER: AtomicBool = AtomicBool::new(false);
+
+/// What is opened from now on is opened by the experimenter, who has given the code.
+pub fn list_worlds_as_experimenter() {
+    BY_EXPERIMENTER.store(true, Ordering::Relaxed);
+}
+
+/// What stands before the command in lines of the experimenter.
+pub(in crate::session) const EXPERIMENTER: &str = "experimenter: ";
+
 fn place() -> Option<PathBuf> {
     PLACE.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
@@ -71,7 +83,10 @@ pub fn list_world(by: &str, seeds: (u64, u64), scenario: &str, run: Option<&str>
     let line = WorldLine {
         at: now(),
         machine: Machine::here().id,
-        by: by.to_owned(),
+        by: match BY_EXPERIMENTER.load(Ordering::Relaxed) {
+            true => format!("{EXPERIMENTER}{by}"),
+            false => by.to_owned(),
+        },
         seed: seeds.0,
         to_seed: seeds.1,
         scenario: scenario.to_owned(),
@@ -115,7 +130,7 @@ pub(in crate::session) fn worlds_seen() -> Option<WorldsSeen> {
 impl WorldLog {
     /// Reads a list; a missing one is empty.
     pub fn read(path: &Path) -> WorldLog {
-        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let text = read_regular_text(path);
         let mut log = WorldLog::default();
         let mut prev = String::new();
         for (at, text) in text.lines().enumerate() {

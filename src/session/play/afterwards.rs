@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::study::answer_book::AnswerBook;
-use crate::session::trajectory::{Line, Record, Trajectory};
+use crate::session::trajectory::{Line, Record, Trajectory, read_regular_file};
 
 /// Name of the file in the folder of the run.
 pub(in crate::session) const AFTERWARDS: &str = "afterwards.jsonl";
@@ -20,7 +20,7 @@ pub(in crate::session) const AFTERWARDS: &str = "afterwards.jsonl";
 pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajectory, RunError> {
     let path = folder.join(AFTERWARDS);
     let last = trajectory.lines.last().map(Line::position);
-    match (std::fs::read(&path), last) {
+    match (read_regular_file(&path), last) {
         (Ok(bytes), Some(last)) => Trajectory::of_file_after(&path, last, &bytes),
         (Ok(_), None) => Ok(Trajectory::default()),
         (Err(error), _) if error.kind() == std::io::ErrorKind::NotFound => Ok(Trajectory::default()),

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
-use crate::session::trajectory::now;
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";
@@ -41,6 +41,6 @@ pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), Ru
 
 /// The remarks of a folder of runs; lines that cannot be read are left out.
 pub fn remarks(runs: &Path) -> Vec<Remark> {
-    let text = std::fs::read_to_string(runs.join(REMARKS)).unwrap_or_default();
+    let text = read_regular_text(&runs.join(REMARKS));
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }

@@ -126,7 +126,12 @@ pub enum AtLimit {
 impl SessionRules {
     /// Whether neither result nor figures are shown any more, given how the run ended.
     pub fn hide_result(&self, ended: Option<Ended>) -> bool {
-        self.results == ResultsShown::None && ended.is_some()
+        self.hides_results() && ended.is_some()
+    }
+
+    /// Whether results are kept from participants.
+    pub fn hides_results(&self) -> bool {
+        self.results == ResultsShown::None
     }
 
     /// The rules of a run that belongs to no study.

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
-use crate::session::trajectory::now;
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 const FILE: &str = "withdrawn.toml";
@@ -34,7 +34,7 @@ impl Tombstone {
 
     /// The one in a folder of runs; none where there is none that can be read.
     pub(in crate::session) fn read(folder: &Path) -> Option<Tombstone> {
-        toml::from_str(&std::fs::read_to_string(folder.join(FILE)).ok()?).ok()
+        toml::from_str(&read_regular_text(&folder.join(FILE))).ok()
     }
 
     /// Leaves it in a folder of runs.

@@ -21,6 +21,8 @@ use crate::session::folder::runs::{RunSummary, delete_run, list_runs, participan
 use crate::session::play::machine::Machine;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
+use crate::session::trajectory::now;
+use crate::session::witness::Witness;
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \
@@ -247,6 +249,11 @@ impl Visit {
     /// They are in use, or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
         let own: Vec<String> = self.own_runs()?.into_iter().map(|(_, run)| run.id).collect();
+        if let Some(folder) = self.study.witness() {
+            let (machine, at) = (Machine::here().id, now());
+            // A witness that is not reached keeps nobody from withdrawing; the audit asks about it.
+            own.iter().for_each(|run| drop(Witness::tell_withdrawal(&folder, &machine, run, &at)));
+        }
         own.iter().try_for_each(|run| delete_run(&self.runs, run))?;
         Tombstone::of(&own, &self.study.digest).write(&self.runs)?;
         self.log.write(&self.label, VisitEvent::Withdrew);

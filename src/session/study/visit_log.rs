@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
 use crate::session::play::machine::Machine;
-use crate::session::trajectory::now;
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const VISITS: &str = "visits.jsonl";
@@ -70,6 +70,10 @@ impl VisitLog {
             VisitLine { at: now(), machine: Machine::here().id, study: self.study.clone(), label, event };
         let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
         let folder = self.path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        // A pipe in its place would keep the participant waiting.
+        if std::fs::metadata(&self.path).is_ok_and(|own| !own.is_file()) {
+            return;
+        }
         let _ = folder
             .and_then(|()| File::options().create(true).append(true).open(&self.path))
             .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
@@ -153,6 +157,6 @@ impl fmt::Display for VisitSummary {
 
 /// The lines of a list of visits; those that cannot be read are left out.
 pub fn visits(path: &Path) -> Vec<VisitLine> {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = read_regular_text(path);
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }

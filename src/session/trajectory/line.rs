@@ -1,7 +1,6 @@
 //! A line: its frame, the sum at its end, and what it says.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -9,6 +8,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::record::Record;
+use super::regular_file::open_regular_file;
 use super::time::{nanoseconds, seconds};
 use crate::database::Position;
 use crate::session::trajectory::DOES_NOT_FOLLOW;
@@ -131,7 +131,7 @@ pub(super) fn line_hash(bytes: &[u8]) -> String {
 /// Hash of the first line of a file; none if it cannot be read or has no whole line.
 pub(in crate::session) fn hash_of_first_line(path: &Path) -> Option<String> {
     let mut line = Vec::new();
-    BufReader::new(File::open(path).ok()?).read_until(b'\n', &mut line).ok()?;
+    BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut line).ok()?;
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 

@@ -8,6 +8,7 @@ mod clock;
 mod line;
 mod medium;
 pub mod record;
+mod regular_file;
 mod time;
 mod writer;
 
@@ -19,6 +20,7 @@ pub(super) use line::hash_of_first_line;
 #[cfg(test)]
 pub(super) use medium::Medium;
 pub use record::Record;
+pub(super) use regular_file::{open_regular_file, read_regular_file, read_regular_text};
 pub(super) use time::scripted_steady;
 pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
 pub use writer::{Durability, TrajectoryWriter};
@@ -46,7 +48,7 @@ impl Trajectory {
     /// # Errors
     /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
-        Trajectory::of_file(path, &std::fs::read(path).map_err(RunError::io(path))?)
+        Trajectory::of_file(path, &read_regular_file(path).map_err(RunError::io(path))?)
     }
 
     /// Checks the bytes of a file as [`Trajectory::read`] does.

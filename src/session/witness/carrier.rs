@@ -68,6 +68,15 @@ impl Witness {
         self.shared.changed.notify_all();
     }
 
+    /// Tells a folder that a run is erased because its participant has withdrawn.
+    ///
+    /// # Errors
+    /// The folder cannot be told. Nothing waits then: the run's own folder is about to go.
+    pub fn tell_withdrawal(folder: &Path, machine: &str, run: &str, at: &str) -> io::Result<()> {
+        let told = Told::withdrawal(run, at, machine);
+        append(&folder.join(file_name(run, machine)), told.text().as_bytes())
+    }
+
     /// Why the folder could not be told when it was last tried; none while all is well.
     pub fn problem(&self) -> Option<String> {
         self.shared.lock().problem.clone()
@@ -127,15 +136,19 @@ impl Shared {
 
     /// Appends lines to the file. It is opened each time: a share comes and goes.
     fn deliver(&self, lines: &[u8]) -> io::Result<()> {
-        let mut file = File::options().read(true).append(true).create(true).open(&self.file)?;
-        let mut bytes = Vec::with_capacity(lines.len() + 1);
-        if is_torn(&mut file)? {
-            bytes.push(b'\n');
-        }
-        bytes.extend_from_slice(lines);
-        file.write_all(&bytes)?;
-        file.sync_data()
+        append(&self.file, lines)
     }
+}
+
+fn append(path: &Path, lines: &[u8]) -> io::Result<()> {
+    let mut file = File::options().read(true).append(true).create(true).open(path)?;
+    let mut bytes = Vec::with_capacity(lines.len() + 1);
+    if is_torn(&mut file)? {
+        bytes.push(b'\n');
+    }
+    bytes.extend_from_slice(lines);
+    file.write_all(&bytes)?;
+    file.sync_data()
 }
 
 /// Whether the last line of a file lacks its end, because a connection broke.

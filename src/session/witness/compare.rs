@@ -63,7 +63,7 @@ pub fn compare(trajectory: &Trajectory, afterwards: &[Line], told: &[Told]) -> V
 /// What was told of a run, each line once: after a crash some are told again.
 fn distinct<'a>(told: &'a [Told], run: &str) -> Vec<&'a Told> {
     let mut known = HashSet::new();
-    told.iter().filter(|told| told.run == run && known.insert(*told)).collect()
+    told.iter().filter(|told| told.run == run && !told.is_withdrawal() && known.insert(*told)).collect()
 }
 
 struct Comparison<'a> {

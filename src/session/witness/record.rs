@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
+use crate::session::trajectory::read_regular_file;
 
 /// A line of a trajectory as a witness was told of it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -22,7 +23,21 @@ pub struct Told {
     pub machine: String,
 }
 
+/// What stands in the place of a hash where a run was erased because its participant has withdrawn.
+const WITHDRAWN: &str = "withdrawn";
+
 impl Told {
+    /// That a run is erased at a moment.
+    pub(super) fn withdrawal(run: &str, at: &str, machine: &str) -> Told {
+        let (run, machine) = (run.to_owned(), machine.to_owned());
+        Told { run, seq: 0, hash: WITHDRAWN.to_owned(), at: at.to_owned(), machine }
+    }
+
+    /// Whether it tells that the run was erased.
+    pub fn is_withdrawal(&self) -> bool {
+        self.hash == WITHDRAWN
+    }
+
     /// As a line of a file.
     pub(super) fn text(&self) -> String {
         let mut text = serde_json::to_string(self).unwrap_or_default();
@@ -54,7 +69,7 @@ fn plain(text: &str) -> String {
 /// Reads what a witness was told.
 ///
 /// # Errors
-/// The folder or one of its files cannot be read.
+/// The folder cannot be read.
 pub fn read_witness(folder: &Path) -> Result<WitnessRecord, RunError> {
     let entries = std::fs::read_dir(folder).map_err(RunError::io(folder))?;
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -62,8 +77,11 @@ pub fn read_witness(folder: &Path) -> Result<WitnessRecord, RunError> {
     paths.sort_unstable();
     let mut record = WitnessRecord::default();
     for path in paths {
-        let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
-        record.add(&path, &bytes);
+        match read_regular_file(&path) {
+            Ok(bytes) => record.add(&path, &bytes),
+            // One file that somebody has replaced keeps nobody from reading the others.
+            Err(_) => record.unreadable.push((path, 1)),
+        }
     }
     Ok(record)
 }

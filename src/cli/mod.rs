@@ -24,8 +24,9 @@ use clap::{Parser, Subcommand};
 pub use failure::Failure;
 
 use crate::session::{
-    Configuration, LabKey, Manifest, Record, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
-    list_worlds_as_experimenter, list_worlds_in, participant_folder, record_refused_code, seal_key_of,
+    Configuration, LabKey, Record, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
+    list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_refused_code,
+    seal_key_of,
 };
 
 /// Run a simulated AI subscription company for 500 days.
@@ -194,7 +195,7 @@ impl Context {
     /// # Errors
     /// It is one, and no code was given; its manifest cannot be read.
     pub fn check_look(&self, folder: &Path) -> Result<(), Failure> {
-        let manifest = Manifest::read(folder)?;
+        let manifest = manifest_of(folder)?;
         if self.is_experimenter || manifest.study.is_none() || !manifest.session_rules().hides_results() {
             return Ok(());
         }
@@ -210,7 +211,7 @@ impl Context {
     /// It is one, and no code was given; its manifest cannot be read.
     pub fn check_play(&self, folder: &Path) -> Result<(), Failure> {
         self.check_look(folder)?;
-        let manifest = Manifest::read(folder)?;
+        let manifest = manifest_of(folder)?;
         let Some(study) = manifest.study.filter(|_| !self.is_experimenter) else { return Ok(()) };
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
         if trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_))) {

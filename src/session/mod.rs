@@ -49,7 +49,7 @@ pub use folder::agreement::Agreed;
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
 pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
-pub use folder::derived::manifest_text;
+pub use folder::derived::{manifest_of, manifest_text};
 pub use folder::library::{self, Library};
 pub use folder::manifest::{FORMAT, Manifest};
 pub use folder::mode::Mode;

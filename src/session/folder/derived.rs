@@ -54,6 +54,14 @@ impl Derived {
     }
 }
 
+/// What a run is, as the first line of its trajectory says, whatever `run.toml` holds.
+///
+/// # Errors
+/// As [`manifest_text`].
+pub fn manifest_of(folder: &Path) -> Result<Manifest, RunError> {
+    Derived::of(folder).map(|derived| derived.manifest)
+}
+
 /// `run.toml` of a run as the first line of its trajectory says, whatever the file holds.
 ///
 /// # Errors

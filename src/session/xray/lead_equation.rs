@@ -164,9 +164,12 @@ fn two_sided(mean: f64, number: u32) -> f64 {
         let k = f64::from(k);
         libm::exp(k * libm::log(mean) - mean - libm::lgamma(k + 1.0))
     };
-    let below: f64 = (0..number).map(chance).sum();
-    let own = chance(number);
-    (2.0 * (below + own).min(1.0 - below)).clamp(0.0, 1.0)
+    // The small tail is summed itself: what is left of 1 would be rounding.
+    let tail: f64 = match f64::from(number) > mean {
+        true => (number..).map(chance).take_while(|chance| *chance > 0.0).sum(),
+        false => (0..=number).map(chance).sum(),
+    };
+    (2.0 * tail).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

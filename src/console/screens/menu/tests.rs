@@ -349,7 +349,7 @@ fn a_run_that_does_not_open_is_offered_another_way_after_a_question() {
 
 #[test]
 fn a_participant_agrees_or_nothing_begins() {
-    let text = "We keep what you do for a year.\n".repeat(40) + "You can stop at any time.";
+    let text = "We keep what you do for a year.\n".repeat(40) + "\nYou can stop at any time.";
     let asked = || {
         let mut menu = three();
         menu.refused(text.clone(), Some(Instead::Agree(Box::default())));

@@ -181,7 +181,7 @@ actions! {
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
         Help "help" "help" "Show every key that works here, those of the focused pane first."
         Changes "changes" "changes" "Show the settings changed since the last week."
-        Undo "undo" "undo" "Undo the last setting of this week and say what it was and is again; c lists the changes."
+        Undo "undo" "undo" "Undo the last setting of this week and say its value; c lists the changes."
         Redo "redo" "redo" "Redo what undo reverted."
         FocusNext "focus-next" "next pane" "Move to the next pane."
         FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
@@ -224,7 +224,7 @@ actions! {
         EditCell "edit" "edit" "Type a value."
         SameDown "same-down" "same down" "Copy the value to the cells below."
         ClearCell "clear-cell" "0" "Clear the cell."
-        ResetForm "reset-form" "reset" "Discard the draft and show the current values."
+        ResetForm "reset-form" "reset" "Discard the draft and show the current values; again to bring the draft back."
         CopyCall "copy-call" "copy call" "Copy the equivalent call."
         SaveCalls "save-calls" "calls to file" "Write this week's calls and the drafts to calls.txt in the run's folder."
     }

@@ -89,8 +89,12 @@ impl App {
 
     /// What a chord means before the dialog on top gives it a meaning of its own.
     fn before_dialogs(&self, chord: Chord) -> Option<Action> {
-        let Some(Layer::Dialog(dialog)) = self.layers.last() else { return None };
-        self.keys.action(&[Scope::Global], chord).filter(|action| dialog.goes_before(*action))
+        let global = self.keys.action(&[Scope::Global], chord)?;
+        let goes_before = match self.layers.last()? {
+            Layer::Dialog(dialog) => dialog.goes_before(global),
+            Layer::Filing => global == Action::Help,
+        };
+        goes_before.then_some(global)
     }
 
     /// What a chord means even over a dialog: leaving and drawing again must always be possible.
@@ -187,6 +191,12 @@ impl App {
             // Over questions, too: nobody has to answer them first.
             Action::Withdraw if matches!(self.stage, Stage::Run(_)) => return self.withdraw(),
             _ => {}
+        }
+        if let (Action::Help, Some(Layer::Filing), Stage::Run(run)) =
+            (action, self.layers.last(), &self.stage)
+        {
+            let help = Help::of_dialog(&run.filing, &self.keys);
+            return self.open(help);
         }
         if !self.layers.is_empty() {
             return self.in_dialog(|dialog, look| dialog.act(action, look));

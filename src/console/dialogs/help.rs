@@ -23,34 +23,34 @@ struct Part {
     actions: Vec<Action>,
 }
 
+/// What chooses among rows, which only lists have.
+const CHOOSES: [Action; 2] = [Action::Filter, Action::Sort];
+
 impl Help {
     /// Shows the keys of a screen whose panes have these, the focused one first.
     pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &Keys) -> Help {
-        let columns = vec![
-            Column::words("where").at_most(8),
-            Column::words("keys").at_most(16),
-            Column::words("what").at_most(14),
-            Column::words("").at_most(90),
-        ];
-        let mut table = Table::new(columns);
-        let mut listed: Vec<Action> = Vec::new();
-        let mut rows = Vec::new();
-        for part in parts(panes, replay) {
-            for action in part.actions {
-                let chords = keys.working(action, &part.scopes);
-                let unbound = keys.label(action).is_none();
-                if listed.contains(&action) || chords.is_empty() && !unbound {
-                    continue;
-                }
-                listed.push(action);
-                rows.push(row(part.name, &chords, action));
-            }
-        }
-        table.set_rows(rows);
+        let table = table_of(parts(panes, replay), keys);
         let screen = here.action().entry().title;
         let pane = panes.first().map(|pane| pane.title.as_str()).filter(|title| !title.is_empty());
         let title = pane.map_or_else(|| screen.to_owned(), |pane| format!("{screen} › {pane}"));
         Help { title: format!("Keys: {title}"), table }
+    }
+
+    /// Shows the keys of a dialog, where what works on screens does not.
+    pub fn of_dialog(dialog: &dyn Dialog, keys: &Keys) -> Help {
+        let scopes = dialog.scopes();
+        let hints = dialog.hints().into_iter();
+        let part = |name, actions| Part { name, scopes: scopes.clone(), actions };
+        let others = scopes.iter().filter(|scope| **scope != Scope::List);
+        let own = part("step", hints.chain(others.flat_map(|scope| of(*scope))).collect());
+        let lists = part(
+            "lists",
+            of(Scope::List)
+                .filter(|action| scopes.contains(&Scope::List) && !CHOOSES.contains(action))
+                .collect(),
+        );
+        let step = dialog.step().map_or(String::new(), |step| format!(" › {step}"));
+        Help { title: format!("Keys: {}{step}", dialog.what()), table: table_of([own, lists], keys) }
     }
 
     /// The rows as text.
@@ -58,6 +58,32 @@ impl Help {
     fn rows(&self) -> Vec<Vec<String>> {
         self.table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
     }
+}
+
+/// A row for each action of the parts that has a key there, or none at all.
+fn table_of(parts: impl IntoIterator<Item = Part>, keys: &Keys) -> Table {
+    let columns = vec![
+        Column::words("where").at_most(8),
+        Column::words("keys").at_most(16),
+        Column::words("what").at_most(14),
+        Column::words("").at_most(90),
+    ];
+    let mut table = Table::new(columns);
+    let mut listed: Vec<Action> = Vec::new();
+    let mut rows = Vec::new();
+    for part in parts {
+        for action in part.actions {
+            let chords = keys.working(action, &part.scopes);
+            let unbound = keys.label(action).is_none();
+            if listed.contains(&action) || chords.is_empty() && !unbound {
+                continue;
+            }
+            listed.push(action);
+            rows.push(row(part.name, &chords, action));
+        }
+    }
+    table.set_rows(rows);
+    table
 }
 
 fn row(part: &str, chords: &[String], action: Action) -> Vec<Cell> {
@@ -94,7 +120,10 @@ fn parts(panes: &[PaneKeys], replay: bool) -> Vec<Part> {
     let own = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
     for (scope, name) in [(Scope::Viewer, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
         if own.contains(&scope) {
-            parts.push(Part { name, scopes: own.clone(), actions: of(scope).collect() });
+            // A form moves like a list, but has nothing to filter or to sort.
+            let idle = |action: &Action| own.contains(&Scope::Form) && CHOOSES.contains(action);
+            let actions = of(scope).filter(|action| !idle(action)).collect();
+            parts.push(Part { name, scopes: own.clone(), actions });
         }
     }
     parts
@@ -170,6 +199,9 @@ mod tests {
         assert_eq!(help.title, "Keys: Tools › set_prices");
         let rows = help.rows();
         assert_eq!(rows[0][..3], ["pane", "enter, e", "edit"]);
+        let filters: Vec<&str> =
+            rows.iter().filter(|row| row[2] == "filter").map(|row| row[0].as_str()).collect();
+        assert_eq!(filters, ["screen"], "a form has nothing to filter");
         assert_eq!(rows[1][..3], ["pane", "esc", "close"], "what one does most comes first");
         let place = |title: &str| rows.iter().position(|row| row[2] == title).expect(title);
         assert_eq!(rows[place("open")][..2], ["screen", "enter"], "enter opens in the list only");

@@ -1,6 +1,6 @@
 //! An editor of several lines, on top of the text area of a library.
 
-use crossterm::event::KeyEvent;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::Widget;
@@ -71,9 +71,18 @@ impl Editor {
         self.area.scroll_offset()
     }
 
-    /// Takes a key.
+    /// Takes a key; ctrl-u removes to the beginning of the line, as in a field.
     pub fn key(&mut self, key: &KeyEvent) {
-        self.area.input(*key);
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        match key.code {
+            KeyCode::Char('u') if ctrl && self.cursor().1 > 0 => {
+                self.area.delete_line_by_head();
+            }
+            KeyCode::Char('u') if ctrl => {}
+            _ => {
+                self.area.input(*key);
+            }
+        }
     }
 
     /// Puts text at the cursor, as far as there is room.

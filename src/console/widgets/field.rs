@@ -60,7 +60,11 @@ impl Field {
             return true;
         }
         match key.code {
-            KeyCode::Char('u') if ctrl => *self = Field::default(),
+            KeyCode::Char('u') if ctrl => {
+                let to = self.byte_of(self.cursor);
+                self.text.replace_range(..to, "");
+                self.cursor = 0;
+            }
             KeyCode::Char('w') if ctrl => self.delete_word(),
             KeyCode::Char(letter) if !ctrl && !key.modifiers.contains(KeyModifiers::ALT) => {
                 self.selected = selected;

@@ -188,6 +188,7 @@ fn verdict(fit: &Fit, plan: Plan, concern: Concern) -> (String, Role) {
     match fit.beside(plan, concern) {
         None => ("negotiated".to_owned(), Role::Dim),
         Some(Beside::Inside) => ("inside".to_owned(), Role::Text),
+        Some(_) if concern == Concern::Price => ("within budget".to_owned(), Role::Good),
         Some(_) => ("enough".to_owned(), Role::Good),
     }
 }

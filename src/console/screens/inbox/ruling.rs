@@ -1,6 +1,6 @@
 //! Rules that are typed: what every waiting thread would be sent by them, and sending it once it was confirmed.
 
-use crossterm::event::KeyEvent;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::{Inbox, InboxPane};
@@ -85,8 +85,13 @@ impl Inbox {
 
     /// A key of the rules.
     pub(super) fn rules_key(&mut self, key: &KeyEvent, company: &Company) {
-        self.type_rules(company, &mut |field| {
-            field.key(key);
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        self.type_rules(company, &mut |field| match key.code {
+            // Empties them, as it empties the SQL editor.
+            KeyCode::Char('n') if ctrl => *field = Field::default(),
+            _ => {
+                field.key(key);
+            }
         });
     }
 

@@ -270,6 +270,10 @@ impl Paned for Market {
     fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::FindGroup => Some(self.check(FIND, json!({}))),
+            // What is ordered is the group that is seen to be selected.
+            Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
+                Some(vec![Effect::Complain("select the group to study in the pane of groups first".to_owned())])
+            }
             Action::StudyGroup => Some(self.study(look.company)),
             Action::LevelUp | Action::LevelDown => {
                 self.choose_level(look.company, action == Action::LevelUp);

@@ -14,7 +14,7 @@ use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, percent};
-use crate::report::fit::Fit;
+use crate::report::fit::{Fit, TruthRange};
 use crate::session::truth_behind;
 use crate::tools::{Estimates, Influence};
 use crate::world::identifiers::Group;
@@ -40,10 +40,13 @@ impl ReportLine {
 /// An estimate: where the insights hold it, the words for it, its unit, and how the ends of its range are written.
 type Estimate = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f64) -> String);
 
+/// The floor has a range on other screens, too.
+const QUALITY_FLOOR: &str = "quality floor";
+
 const ESTIMATES: [Estimate; 8] = [
     (|all| Some(all.willingness_to_pay), "budget", "$/month", figure),
     (|all| Some(all.usage_volume), "usage demand", "units/day", figure),
-    (|all| Some(all.quality_floor_q_min), "quality floor", "", exact),
+    (|all| Some(all.quality_floor_q_min), QUALITY_FLOOR, "", exact),
     (|all| Some(all.market_cap as f64), "market", "customers", figure),
     (|all| Some(all.annual_market_cap_growth_rate), "growth of the market", "a year", share),
     (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
@@ -82,7 +85,12 @@ pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
             ("customers", true) => "companies",
             (unit, _) => unit,
         };
-        let range = format!("{} to {}", write(from), write(to));
+        // Ranges that other screens show, too, are written by the one that defines them.
+        let truth = TruthRange::behind(value, noise);
+        let range = match words {
+            QUALITY_FLOOR => truth.quality(),
+            _ => format!("{} to {}", write(from), write(to)),
+        };
         lines.push(ReportLine::of(format!("{words:<21}{unit}").trim_end().to_owned(), range));
     }
     if let Some(range) = insights.estimates.seat_range {

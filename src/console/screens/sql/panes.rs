@@ -16,6 +16,7 @@ use crate::console::widgets::{Field, Table};
 use crate::session::library::Head;
 
 const NO_RESULT: &str = "no result yet: run a statement first";
+const REFUSED: &str = "the last statement was refused: it has no rows";
 
 /// The statement.
 pub struct EditorPane;
@@ -214,7 +215,7 @@ impl Sql {
         let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
         let shown = self.results.shown();
         let (Some(sql), Some((rows, at))) = (self.results.statement(), shown.focused_column()) else {
-            return complain(NO_RESULT);
+            return complain(if shown.is_refused() { REFUSED } else { NO_RESULT });
         };
         let meant = shown.rows_meant();
         let warning = meant.warning().map(Effect::Say);

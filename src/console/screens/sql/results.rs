@@ -165,6 +165,9 @@ impl Results {
             (None, Some(_)) => {
                 vec![Effect::Complain("no numeric column to chart".to_owned())]
             }
+            (None, None) if self.is_refused() => {
+                vec![Effect::Complain("no result to chart: the last statement was refused".to_owned())]
+            }
             (None, None) => {
                 vec![Effect::Complain("no result to chart: run a statement first".to_owned())]
             }

@@ -1,5 +1,7 @@
 //! A form: where the person is in a sheet, what is typed, what the call would do, what came of it.
 
+use std::collections::BTreeMap;
+
 use crossterm::event::KeyEvent;
 use serde_json::Value;
 
@@ -12,6 +14,7 @@ use crate::console::effect::Effect;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
+use crate::report::count;
 use crate::report::research::outlook_lines;
 use crate::session::{Preview, Refusal};
 use crate::tools::{ArgumentKind, Key, Kind, Spec};
@@ -29,6 +32,8 @@ pub struct Form {
     pub typing: Option<Option<Field>>,
     /// A customer number is being typed, to add a row to a block.
     pub adding: Option<(usize, Field)>,
+    /// What the last reset discarded, by path: a second one brings it back.
+    dropped: BTreeMap<String, String>,
     /// What the call would do, as far as is known.
     pub preview: Option<Result<Preview, Refusal>>,
     /// The last answer.
@@ -46,6 +51,7 @@ impl Form {
             at: CellPlace::default(),
             typing: None,
             adding: None,
+            dropped: BTreeMap::new(),
             preview: None,
             answer: None,
             earlier: earlier::calls(spec.id, company, earlier::MOST),
@@ -69,7 +75,28 @@ impl Form {
     pub fn reset(&mut self, company: &Company) {
         self.sheet = Sheet::of(self.spec, company);
         (self.typing, self.adding, self.preview) = (None, None, None);
+        self.dropped.clear();
         self.keep_inside();
+    }
+
+    /// Drops the drafts; done again before anything else is typed, it brings them back.
+    fn drop_drafts(&mut self, company: &Company) -> Vec<Effect> {
+        if self.sheet.is_changed() {
+            let typed = self.sheet.typed();
+            self.reset(company);
+            self.dropped = typed;
+            let dropped = count(self.dropped.len() as u32, "value");
+            return vec![Effect::Say(format!("{dropped} discarded; reset again brings back what was typed"))];
+        }
+        let dropped = std::mem::take(&mut self.dropped);
+        if dropped.is_empty() {
+            return vec![Effect::Complain("nothing to reset: the form shows the current values".to_owned())];
+        }
+        self.reset(company);
+        self.sheet.retype(&dropped);
+        let mut effects = self.check();
+        effects.push(Effect::Say(format!("{} brought back", count(dropped.len() as u32, "value"))));
+        effects
     }
 
     fn keep_inside(&mut self) {
@@ -155,10 +182,7 @@ impl Form {
             Action::EditCell => self.edit(),
             Action::SameDown => return self.same_down(),
             Action::ClearCell => return self.clear(),
-            Action::ResetForm => {
-                self.reset(company);
-                return vec![Effect::Say("form reset".to_owned())];
-            }
+            Action::ResetForm => return self.drop_drafts(company),
             Action::CopyCall => return vec![Effect::Copy(self.call())],
             Action::Discard => {
                 if let Some(before) = self.typing.take()
@@ -188,6 +212,14 @@ impl Form {
             let held = slot.text();
             // A number is replaced by what is typed; words are changed.
             slot.draft = Some(if text { Field::of(held) } else { Field::to_replace(held) });
+        }
+    }
+
+    /// Goes on typing behind what the cell holds.
+    fn go_on_here(&mut self) {
+        if let Some(slot) = self.sheet.slot_mut(self.at) {
+            self.typing = Some(slot.draft.clone());
+            slot.draft = Some(Field::of(slot.text()));
         }
     }
 
@@ -221,9 +253,13 @@ impl Form {
             Action::CommitPrevious => self.walk(Action::Up),
             _ => self.walk(Action::Down),
         }
-        // Enter ends typing; the keys that move go on in the cell they lead to, but not in the one that was typed.
-        if action != Action::Commit && self.at != left {
-            self.edit();
+        // Enter ends typing; the keys that move go on in the cell they lead to, but not in the one that was typed. Below
+        // the last row, typing stays open: digits that follow are meant for the form and must not switch screens.
+        match action {
+            Action::CommitDown if self.at == left => self.go_on_here(),
+            Action::Commit => {}
+            _ if self.at == left => {}
+            _ => self.edit(),
         }
         self.check()
     }
@@ -258,7 +294,10 @@ impl Form {
     }
 
     fn same_down(&mut self) -> Vec<Effect> {
-        let Some(text) = self.sheet.slot(self.at).map(super::sheet::Slot::text) else { return Vec::new() };
+        let text = self.sheet.slot(self.at).map(super::sheet::Slot::text).unwrap_or_default();
+        if text.trim().is_empty() {
+            return vec![Effect::Complain("this cell is empty: there is no value to copy down".to_owned())];
+        }
         let below = self.sheet.blocks[self.at.block].rows.len();
         // A block of one row stands for one argument; those below it are meant then.
         let blocks = if self.sheet.blocks[self.at.block].is_scalar() {

@@ -40,6 +40,33 @@ fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
 }
 
 #[test]
+fn down_in_the_last_row_goes_on_typing_there() {
+    let (tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
+    let form = tools.seen_form().expect("a form");
+    assert!(form.is_typing());
+    assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
+}
+
+#[test]
+fn a_second_reset_brings_the_draft_back() {
+    let keys = ["enter", "1", "2", "down", "2", "5", "enter", "r"];
+    let (tools, said) = typed(ToolId::SetPrices, &keys);
+    assert!(!tools.holds_unsent_text());
+    assert!(matches!(&said[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{said:?}");
+    let (tools, said) = typed(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
+    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
+    assert!(matches!(said.last(), Some(Effect::Say(text)) if text == "2 values brought back"), "{said:?}");
+    let (_, said) = typed(ToolId::SetPrices, &["r"]);
+    assert!(matches!(&said[..], [Effect::Complain(_)]), "{said:?}");
+}
+
+#[test]
+fn an_empty_cell_says_that_it_has_nothing_to_copy() {
+    let (_, said) = typed(ToolId::SetTargetedAdSpend, &["="]);
+    assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
+}
+
+#[test]
 fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
     let (mut tools, _) =
         typed(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab", "7"]);

@@ -318,7 +318,7 @@ fn weeks_and_runs_are_told() {
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
         "decided before it: price A: 0 → 12 $/month",
-        "forecast from 1 week ago: inside the interval, off by ",
+        "forecast from 1 week ago: inside the interval, point ",
         "new: ",
         "> report run\n# NovaMind · run ",
         "price A: 0 → 12 $/month",

@@ -14,11 +14,12 @@ use crate::console::screens::overview::needs::screen_of;
 use crate::console::screens::{Look, ScreenId};
 use crate::console::text::{arrow, flowed, short_dollars, wrapped};
 use crate::console::theme::Role;
-use crate::notation::{dollars, grouped, percent, signed_dollars};
+use crate::notation::{dollars, grouped, signed_dollars};
 use crate::report::WeekReport;
 use crate::report::needs::Need;
 use crate::report::week::Move;
 use crate::session::{ScoredForecast, Verdict};
+use crate::tools::Forecast;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -103,7 +104,7 @@ impl Report {
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
-        let coming = next(canvas, &needs[..shown_needs.min(needs.len())], width, look);
+        let coming = next(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, look);
         let taken = coming.len() + usize::from(!notices.is_empty());
         let moves = moved(canvas, told, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
@@ -170,12 +171,10 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
         (true, 90..) => "the naive projection filed at the limit",
         (true, _) => "the naive one filed at the limit",
     };
-    let said = format!(
-        "{ago} {who} said {}, {} to {}: ",
-        short_dollars(due.forecast.point),
-        short_dollars(due.forecast.lower),
-        short_dollars(due.forecast.upper)
-    );
+    let said = |write: fn(f64) -> String| {
+        let Forecast { point, lower, upper, .. } = due.forecast;
+        format!("{ago} {who} said {}, {} to {}: ", write(point), write(lower), write(upper))
+    };
     // With a sign that needs no colour.
     let (verdict, role) = match due.verdict() {
         Some(Verdict::Inside) => ("✓ inside", Role::Good),
@@ -183,11 +182,12 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
         Some(Verdict::Below) => ("▼ below", Role::Warning),
         None => ("open", Role::Dim),
     };
-    Line::from(vec![
-        canvas.span(said, Role::Dim),
-        canvas.span(verdict, role),
-        canvas.span(format!(", off by {}", percent(due.error().unwrap_or_default().abs(), 1)), Role::Dim),
-    ])
+    let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", point {miss}"));
+    // Rounded ends can seem to hold what they do not: to the dollar, as the cash above them, where there is room.
+    let exact = said(dollars);
+    let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
+    let said = if fits { exact } else { said(short_dollars) };
+    Line::from(vec![canvas.span(said, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
 }
 
 /// What was decided before the week, in so many lines at the most.
@@ -323,8 +323,8 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, company: &Company, width: u16, room: us
     told.into_iter().rev().map(line).collect()
 }
 
-/// What needs the person, in two rows each at most, and the key that goes on.
-fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, look: &Look<'_>) -> Section<'a> {
+/// What needs the person, in two rows each at most, and the key that goes on. A proposal that fits is told where there is room.
+fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: &Look<'_>) -> Section<'a> {
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing waits; {key} starts the next week");
@@ -334,7 +334,8 @@ fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, look: &Look<'_>) ->
         let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
         let (sign, role) = if need.urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
-        let rows = wrapped(&need.text, room);
+        let proposed = wrapped(&need.in_words(), room);
+        let rows = if roomy && proposed.len() <= 2 { proposed } else { wrapped(&need.text, room) };
         let first = rows.first().cloned().unwrap_or_default();
         let rest = rows.get(1..).unwrap_or_default().join(" ");
         let mut lines = vec![Line::from(vec![

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::notation::{percent, signed_dollars};
+use crate::notation::signed_dollars;
 use crate::report::{Story, WeekReport, as_markdown};
 use crate::session::{Refusal, Verdict};
 
@@ -78,11 +78,11 @@ fn in_words(report: &WeekReport) -> String {
         lines.push(line);
     }
     for due in &report.due {
-        let (weeks, miss) =
-            (due.forecast.horizon_days / 7, percent(due.error().unwrap_or_default().abs(), 1));
+        let ago = counted(due.forecast.horizon_days / 7, "week", "weeks");
+        let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", point {miss}"));
         let verdict = due.verdict().map_or("open", Verdict::word);
         let filed = if report.is_of_limit(due) { ", which the program filed at the time limit" } else { "" };
-        lines.push(format!("forecast from {weeks} weeks ago{filed}: {verdict} the interval, off by {miss}"));
+        lines.push(format!("forecast from {ago} ago{filed}: {verdict} the interval{miss}"));
     }
     lines.push(format!(
         "new: {}, {}, {}, {}, {}, {}",

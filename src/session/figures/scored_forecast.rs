@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use super::journal::JournalEntry;
+use crate::notation::percent;
 use crate::tools::Forecast;
 
 /// A forecast of cash that was filed, and what came if its day has come.
@@ -76,6 +77,21 @@ impl ScoredForecast {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / size(outcome))
     }
 
+    /// Where the point lay beside what came, in words: `0.2% below`, `on it` where no digit shows a difference; none before
+    /// its day. Near zero cash any miss is a large share of it: beyond some size only that matters.
+    pub fn miss_in_words(&self) -> Option<String> {
+        let error = self.error()?;
+        let shown = match error.abs() {
+            size if size < 10.0 => percent(size, 1),
+            _ => ">999%".to_owned(),
+        };
+        Some(match error {
+            _ if shown == percent(0.0, 1) => "on it".to_owned(),
+            error if error < 0.0 => format!("{shown} below"),
+            _ => format!("{shown} above"),
+        })
+    }
+
     /// How wide the interval was, as a share of what came.
     pub fn sharpness(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / size(outcome))
@@ -145,6 +161,19 @@ mod tests {
         assert_eq!(verdicts, [Below, Inside, Inside, Inside, Above].map(Some));
         let open = ScoredForecast { outcome: None, ..came(5.0) };
         assert_eq!((open.verdict(), open.is_inside(), open.error(), open.due()), (None, false, None, 14));
+    }
+
+    #[test]
+    fn a_miss_is_told_by_the_side_of_the_point_and_never_as_a_negative_zero() {
+        let told = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2].map(|outcome| came(outcome).miss_in_words());
+        let told = told.each_ref().map(|told| told.as_deref().unwrap_or_default());
+        assert_eq!(
+            told,
+            ["50.0% below", "25.0% above", "on it", "on it", "on it", "500.0% above", "480.0% above"]
+        );
+        let far = Forecast { point: -50.0, ..came(1.0).forecast };
+        let far = ScoredForecast { forecast: far, ..came(1.0) };
+        assert_eq!(far.miss_in_words().as_deref(), Some(">999% below"));
     }
 
     #[test]

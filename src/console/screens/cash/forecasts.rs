@@ -1,6 +1,7 @@
 //! Forecasts against what happened: a curve with the 95 % band, and every forecast with its outcome.
 
 use ratatui::layout::{Constraint, Layout, Rect};
+use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
 use crate::console::action::Action;
@@ -11,6 +12,7 @@ use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
+use crate::console::widgets::chart::note_room;
 use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
 use crate::notation::percent;
 use crate::session::{ScoredForecast, Verdict, filed_forecasts};
@@ -40,13 +42,18 @@ impl Pane<Cash> for ForecastsPane {
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, cash: &Cash, area: Rect, look: &Look<'_>) -> Border {
         let label = |action| look.keys.label(action).unwrap_or_default();
         let horizons = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
         let weeks = cash.outlook.horizon() / 7;
+        let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
+        // Half a figure would be a wrong one.
+        let room = note_room(area, &title);
+        let scores = cash.outlook.scores(look.company);
+        let note = scores.into_iter().find(|note| note.width() <= room).unwrap_or_default();
         Border {
-            title: format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" }),
-            note: cash.outlook.score(look.company),
+            title,
+            note,
             keys: format!("{horizons} · {} journal", label(Action::Open)),
             ..Border::default()
         }
@@ -96,12 +103,12 @@ impl Outlook {
 
     fn refresh(&mut self) {
         let columns = vec![
-            Column::numbers("for day"),
+            Column::numbers("day"),
             Column::numbers("low"),
-            Column::numbers("expected"),
+            Column::numbers("point"),
             Column::numbers("high"),
-            Column::numbers("it was"),
-            Column::numbers("miss"),
+            Column::numbers("was"),
+            Column::numbers("point was"),
             Column::words("95 %"),
         ];
         let rows = self.listed().map(row_of).collect();
@@ -143,16 +150,16 @@ impl Outlook {
         Some(Figure { title, term: "forecast", sql: Some(sql) })
     }
 
-    fn score(&self, company: &Company) -> String {
+    /// How the horizon turned out, the longest words first.
+    fn scores(&self, company: &Company) -> Vec<String> {
         match company.scores.get(self.horizon).filter(|score| score.scored > 0) {
-            Some(score) if !company.shows_calibration() => format!("{} came due", score.scored),
-            Some(score) => format!(
-                "{} of {} inside · typical miss {}",
-                score.covered,
-                score.scored,
-                percent(score.mean_error, 1)
-            ),
-            None => "none has come due".to_owned(),
+            Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
+            Some(score) => {
+                let (inside, miss) =
+                    (format!("{} of {} inside", score.covered, score.scored), percent(score.mean_error, 1));
+                vec![format!("{inside} · typical miss {miss}"), format!("{inside} · miss {miss}"), inside]
+            }
+            None => vec!["none has come due".to_owned()],
         }
     }
 
@@ -185,12 +192,11 @@ impl Outlook {
 
 fn row_of(filed: &ScoredForecast) -> Vec<Cell> {
     let amount = |value: f64| Cell::number(value, short_dollars(value));
-    let (outcome, miss) = match filed.outcome.zip(filed.error()) {
-        Some((outcome, miss)) => {
-            let shown = format!("{}{}", if miss >= 0.0 { "+" } else { "" }, percent(miss, 1));
+    let (outcome, miss) = match (filed.outcome, filed.error(), filed.miss_in_words()) {
+        (Some(outcome), Some(miss), Some(shown)) => {
             (amount(outcome).role(Role::Strong), Cell::number(miss, shown))
         }
-        None => (Cell::words("–").role(Role::Dim), Cell::words("–").role(Role::Dim)),
+        _ => (Cell::words("–").role(Role::Dim), Cell::words("–").role(Role::Dim)),
     };
     let verdict = match filed.verdict() {
         Some(Verdict::Inside) => Cell::words("inside").role(Role::Good),

@@ -120,6 +120,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         };
         told(name, &format!("{plan} {}", fit.lacks(plan)), role);
     }
+    told("", "█ reached · ▓ reached, inside the range · ▒ rest of the range", Role::Dim);
     told(
         "",
         &format!(

@@ -13,11 +13,19 @@ use crate::console::screens::panes::{Border, Seat, draw_pane};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
-use crate::notation::cents;
+use crate::notation::{cents, json_number};
 use crate::rules::{self, AskingThread, Batch, Problem, RuledThread};
+use crate::tools::ToolId;
+use crate::world::identifiers::Plan;
 
-/// What is typed at first.
-const EXAMPLE: &str = "accept asked >= 18; offer where asked is null: B list*0.9";
+/// What is typed at first: whoever asks for a plan at its list price or more is accepted. Plans without a price are left out.
+fn first_rules(company: &Company) -> String {
+    let rule = |plan: Plan| {
+        let list = company.setting(ToolId::SetPrices, plan.id());
+        (list > 0.0).then(|| format!("accept asked_plan = {plan} and asked >= {}", json_number(list)))
+    };
+    Plan::ALL.into_iter().filter_map(rule).collect::<Vec<_>>().join("; ")
+}
 
 /// Rules that are typed, and what they do.
 #[derive(Debug, Clone)]
@@ -31,10 +39,10 @@ pub struct Ruling {
 }
 
 impl Ruling {
-    /// Starts with the rules of before, or an example.
+    /// Starts with the rules of before, or with those that follow from the list prices.
     pub fn new(before: Option<&str>, threads: &[AskingThread], company: &Company, inbox: &Inbox) -> Ruling {
         let mut ruling = Ruling {
-            field: Field::to_replace(before.unwrap_or(EXAMPLE)),
+            field: Field::to_replace(before.map_or_else(|| first_rules(company), str::to_owned)),
             typing: true,
             outcome: Err(Problem { text: String::new(), column: 1 }),
         };

@@ -102,7 +102,7 @@ impl Pane<Journal> for ScoresPane {
             let text = match (none, summary) {
                 (true, _) => "no forecast has come due yet",
                 (false, true) => "miss, width: share of cash",
-                (false, false) => "miss: share of cash",
+                (false, false) => "point was: share of cash",
             };
             canvas.text(row, text, Role::Dim);
         }
@@ -113,7 +113,7 @@ impl Pane<Journal> for ScoresPane {
         }
         if let Some(row) = rows.next() {
             let head =
-                format!("{:<9}{:>9}{:>9}{:>9}  {}", "due", "said", "was", "miss", weeks(score.horizon_days));
+                format!("{:<9}{:>8}{:>8}{:>12} {}", "due", "said", "was", "point was", weeks(score.horizon_days));
             canvas.text(row, &head, Role::Header);
         }
         for (row, outcome) in rows.zip(single) {
@@ -124,12 +124,9 @@ impl Pane<Journal> for ScoresPane {
 }
 
 fn line_of_outcome(filed: &ScoredForecast) -> String {
-    let error = filed.error().map_or("–".to_owned(), |error| {
-        let sign = if error < 0.0 { '-' } else { '+' };
-        format!("{sign}{}", limited(error.abs()))
-    });
+    let miss = filed.miss_in_words().unwrap_or("–".to_owned());
     format!(
-        "day {:<5}{:>9}{:>9}{error:>9}  {}",
+        "day {:<5}{:>8}{:>8}{miss:>12} {}",
         filed.due(),
         short_dollars(filed.forecast.point),
         filed.outcome.map_or("–".to_owned(), short_dollars),

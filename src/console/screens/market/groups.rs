@@ -89,7 +89,7 @@ impl Pane<Market> for KnownGroupsPane {
 
 /// The columns of the table.
 pub fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::words("group"), Column::words("name").at_most(20)];
+    let mut columns = vec![Column::words("group"), Column::words("name").at_most(28).at_least(20)];
     columns.extend(["level", "error"].map(Column::numbers));
     columns.push(Column::words("next study"));
     columns.extend(["found", "figures of"].map(Column::numbers));

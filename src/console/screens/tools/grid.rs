@@ -1,6 +1,7 @@
 //! The values of a form: now → new, one line per value or row of a matrix, with sums.
 
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use super::form::Form;
 use super::outcome::Leads;
@@ -193,8 +194,12 @@ fn draw_row(form: &Form, at: usize, index: usize, canvas: &mut Canvas<'_>, row: 
     let x = cell_area(block, row, 1).right() + 2;
     let doc = Rect { x, width: row.right().saturating_sub(x), ..row };
     if block.is_scalar() {
-        let words = format!("{}, {} · {}", block.argument.unit, block.range().words(), block.doc);
-        canvas.text(doc, &words, Role::Text);
+        let short = format!("{}, {}", block.argument.unit, block.range().words());
+        let brief = block.doc.split("; ").next().unwrap_or_default();
+        // The longest words that are not cut.
+        let words = [format!("{short} · {}", block.doc), format!("{short} · {brief}")];
+        let fitting = words.into_iter().find(|words| words.width() <= usize::from(doc.width));
+        canvas.text(doc, &fitting.unwrap_or(short), Role::Text);
     }
 }
 

@@ -8,6 +8,7 @@ use crate::console::canvas::{Canvas, centered};
 use crate::console::keys::Keys;
 use crate::console::screens::{Look, PaneKeys, ScreenId};
 use crate::console::theme::Role;
+use crate::console::widgets::editor::EDITING;
 use crate::console::widgets::{Cell, Column, Table};
 
 /// The keys of a place.
@@ -29,7 +30,11 @@ const CHOOSES: [Action; 2] = [Action::Filter, Action::Sort];
 impl Help {
     /// Shows the keys of a screen whose panes have these, the focused one first.
     pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &Keys) -> Help {
-        let table = table_of(parts(panes, replay), keys);
+        let mut table = table_of(parts(panes, replay), keys);
+        if panes.first().is_some_and(|pane| pane.scopes.contains(&Scope::Editor)) {
+            let edits = EDITING.map(|(key, title, doc)| row_of("typing", (key, Role::Key), title, doc));
+            table.set_rows(table.rows().iter().cloned().chain(edits).collect());
+        }
         let screen = here.action().entry().title;
         let pane = panes.first().map(|pane| pane.title.as_str()).filter(|title| !title.is_empty());
         let title = pane.map_or_else(|| screen.to_owned(), |pane| format!("{screen} › {pane}"));
@@ -88,15 +93,17 @@ fn table_of(parts: impl IntoIterator<Item = Part>, keys: &Keys) -> Table {
 
 fn row(part: &str, chords: &[String], action: Action) -> Vec<Cell> {
     let entry = action.entry();
-    let keys = match chords.is_empty() {
-        true => Cell::words("palette").role(Role::Dim),
-        false => Cell::words(chords.join(", ")).role(Role::Key),
-    };
+    let chords = chords.join(", ");
+    let keys = if chords.is_empty() { ("palette", Role::Dim) } else { (chords.as_str(), Role::Key) };
+    row_of(part, keys, entry.title, entry.doc)
+}
+
+fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec<Cell> {
     vec![
         Cell::words(part).role(Role::Dim),
-        keys,
-        Cell::words(entry.title),
-        Cell::words(entry.doc).role(Role::Text),
+        Cell::words(keys).role(role),
+        Cell::words(title),
+        Cell::words(doc).role(Role::Text),
     ]
 }
 

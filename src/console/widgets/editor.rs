@@ -15,6 +15,14 @@ pub struct Editor {
     area: TextArea<'static>,
 }
 
+/// Keys that edit the text, and what they do.
+pub const EDITING: [(&str, &str, &str); 4] = [
+    ("ctrl-u", "line start", "Remove the text to the beginning of the line."),
+    ("ctrl-k", "line end", "Remove the text to the end of the line."),
+    ("ctrl-w", "word", "Remove the word before the cursor."),
+    ("ctrl-z", "undo typing", "Undo the last change of the text."),
+];
+
 /// Longest text, in bytes.
 const LONGEST: usize = 256 << 10;
 
@@ -71,7 +79,7 @@ impl Editor {
         self.area.scroll_offset()
     }
 
-    /// Takes a key; ctrl-u removes to the beginning of the line, as in a field.
+    /// Takes a key; ctrl-u removes to the beginning of the line, as in a field, and ctrl-z undoes.
     pub fn key(&mut self, key: &KeyEvent) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
@@ -79,6 +87,9 @@ impl Editor {
                 self.area.delete_line_by_head();
             }
             KeyCode::Char('u') if ctrl => {}
+            KeyCode::Char('z') if ctrl => {
+                self.area.undo();
+            }
             _ => {
                 self.area.input(*key);
             }

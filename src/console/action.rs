@@ -192,6 +192,7 @@ actions! {
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "what is this" "Explain the selected figure or field."
+        Why "why" "why" "Say how much of the change of the selected figure each cause brought: the week is simulated again without it. Not in an unfinished baseline run."
         Glossary "glossary" "glossary" "Look up any term."
         Tour "tour" "tour" "Resume the tour of a practice run; the start menu begins it."
         TourSkip "tour-skip" "skip" "Skip this step of the tour."

@@ -225,6 +225,8 @@ pub struct App {
     sql_question: u64,
     /// Number of the newest one about the rows behind a figure.
     rows_question: u64,
+    /// Number of the newest question why.
+    why_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
     /// The run that is being started shows the tour.
@@ -292,6 +294,7 @@ impl App {
             questions: 0,
             sql_question: 0,
             rows_question: 0,
+            why_question: 0,
             closing: None,
             tour_planned: false,
             visit: None,

@@ -11,7 +11,7 @@ use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
     Change, DueQuestion, Interrupt, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows, TimeLeft,
-    UnsentTexts, Week,
+    UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
 
@@ -105,6 +105,10 @@ pub enum News {
     DatabaseBehind(String),
     /// The database holds everything again; with a handle that stops the person's queries.
     DatabaseWhole(Option<Interrupt>),
+    /// How far a question why has come; the number says which.
+    WhyProgress(u64, WhyProgress),
+    /// It was answered.
+    Why(u64, Box<Result<Why, Refusal>>),
     /// The notes were kept.
     MemoKept(Result<(), Refusal>, Arc<Company>),
     /// A query was saved: a sentence and all queries, or what went wrong.

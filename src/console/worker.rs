@@ -4,6 +4,7 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod causes;
 mod desk;
 mod folder;
 mod limits;
@@ -37,6 +38,7 @@ use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
 
+pub use causes::WhyAsked;
 pub use queries::Question;
 
 /// Work for the session's thread.
@@ -53,6 +55,8 @@ pub enum Job {
     Check(u64, ToolId, Value),
     /// Pass a question on once everything confirmed is in the database.
     Ask(Question),
+    /// Find out why a figure changed.
+    FindCauses(WhyAsked),
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
@@ -106,6 +110,7 @@ impl Workers {
                 lists_everybody,
                 limits: None,
                 minutes_left: Vec::new(),
+                causes: causes::CausesKept::default(),
                 news,
                 runs,
                 queries: for_session,
@@ -178,6 +183,8 @@ struct SessionThread {
     limits: Option<Instant>,
     /// Minutes that are left to each limit, as they were told last.
     minutes_left: Vec<i64>,
+    /// What was simulated to answer the last question why.
+    causes: causes::CausesKept,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -244,6 +251,7 @@ impl SessionThread {
                 run.session.note_query(&sql, answer.as_ref(), took, via);
                 None
             }),
+            Job::FindCauses(asked) => self.find_causes(asked),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
             Job::NotePresence(event, idle_ms, window) => {

@@ -1,5 +1,8 @@
 //! Keys, clicks and pasted text.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Position;
 
@@ -13,6 +16,7 @@ use crate::console::dialogs::palette::Palette;
 use crate::console::dialogs::reader::Reader;
 use crate::console::dialogs::report::Report;
 use crate::console::dialogs::rows::RowsBehind;
+use crate::console::dialogs::why::WhyBox;
 use crate::console::dialogs::{Dialog, Outcome};
 use crate::console::effect::Effect;
 use crate::console::keys::{Chord, Meaning, written};
@@ -20,7 +24,7 @@ use crate::console::preferences::Preferences;
 use crate::console::request::Request;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
-use crate::console::worker::Job;
+use crate::console::worker::{Job, WhyAsked};
 
 impl App {
     pub(super) fn input(&mut self, event: Event) {
@@ -280,6 +284,7 @@ impl App {
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.back(),
             Action::Explain => self.explain(),
+            Action::Why => self.show_why(),
             Action::Glossary => self.show_glossary(),
             Action::Tour => self.show_tour(),
             Action::Forward => self.forward(),
@@ -334,6 +339,25 @@ impl App {
             Some(Figure { title, sql: None, .. }) => {
                 let explain = self.keys.label(Action::Explain).unwrap_or_default();
                 self.complain(format!("{title} has no source rows; {explain} explains it"));
+            }
+            None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
+        }
+    }
+
+    fn show_why(&mut self) {
+        match self.with_screen(|screen, look| screen.figure(look)).flatten() {
+            Some(Figure { title, why: Some((figure, week)), .. }) => {
+                let stop = Arc::new(AtomicBool::new(false));
+                self.why_question += 1;
+                self.note_opened("figure", title);
+                self.open(WhyBox::new(figure, week, stop.clone()));
+                let asked = WhyAsked { number: self.why_question, figure, week, stop };
+                self.orders.push(Order::Job(Job::FindCauses(asked)));
+            }
+            Some(Figure { title, why: None, .. }) => {
+                self.complain(format!(
+                    "{title}: causes are found for the figures of the week, on the Overview"
+                ));
             }
             None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
         }

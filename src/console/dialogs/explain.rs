@@ -278,7 +278,7 @@ mod tests {
     use crate::console::test_kit::{company, dialog_picture, in_dialog};
 
     fn figure(term: &'static str, sql: Option<&str>) -> Figure {
-        Figure { title: "cancellations of S1".to_owned(), term, sql: sql.map(str::to_owned) }
+        Figure { title: "cancellations of S1".to_owned(), term, sql: sql.map(str::to_owned), why: None }
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub mod restore;
 pub mod rows;
 pub mod seek;
 pub mod take_over;
+pub mod why;
 
 use std::sync::Arc;
 

@@ -14,7 +14,7 @@ use super::effect::Effect;
 use super::keys::Keys;
 use super::message::News;
 use super::readings::Reading;
-use crate::session::Rows;
+use crate::session::{Rows, WeekFigure};
 
 /// The list of screens, in the order of their keys: a screen, and the room it lives in.
 macro_rules! screens {
@@ -119,6 +119,8 @@ pub struct Figure {
     pub term: &'static str,
     /// The question whose answer are the rows behind it, where rows make it up.
     pub sql: Option<String>,
+    /// The figure of a week that it is, whose change can be explained.
+    pub why: Option<(WeekFigure, u32)>,
 }
 
 /// The keys of one pane, for the help.

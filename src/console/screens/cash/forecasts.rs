@@ -147,7 +147,7 @@ impl Outlook {
             filed.day, filed.forecast.horizon_days
         );
         let title = format!("forecast of day {} for day {}", filed.day, filed.due());
-        Some(Figure { title, term: "forecast", sql: Some(sql) })
+        Some(Figure { title, term: "forecast", sql: Some(sql), why: None })
     }
 
     /// How the horizon turned out, the longest words first.

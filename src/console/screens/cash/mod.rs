@@ -121,7 +121,7 @@ impl Cash {
             (from, to) => format!("weeks {from} to {to}"),
         };
         let title = format!("{} of {weeks}", subject.name());
-        Some(Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))) })
+        Some(Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None })
     }
 }
 

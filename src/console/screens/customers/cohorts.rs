@@ -179,7 +179,7 @@ impl CohortPlace {
         );
         let title =
             format!("{kept} of the {group} customers of week {week} were there at the end of week {until}");
-        Some(Figure { title, term: "cohort", sql: Some(sql) })
+        Some(Figure { title, term: "cohort", sql: Some(sql), why: None })
     }
 }
 

@@ -176,7 +176,7 @@ pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> 
         }
         _ => format!("{name} of {group}"),
     };
-    Some(Figure { title, term, sql: statement(what, group, week, company.seen.day) })
+    Some(Figure { title, term, sql: statement(what, group, week, company.seen.day), why: None })
 }
 
 /// Customers with their subscriptions, under a condition.

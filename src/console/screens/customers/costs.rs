@@ -36,7 +36,7 @@ impl Pane<Customers> for CostsPane {
         let pair = selected(customers, look.company)?;
         let (channel, group) = (pair.channel, pair.group);
         let title = format!("cost of leads of {group} through {}", channel.id());
-        Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)) })
+        Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)), why: None })
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -106,7 +106,7 @@ fn head(words: &str, figures: String) -> Fact {
 }
 
 fn fact(words: String, figures: String, title: String, term: &'static str, sql: Option<String>) -> Fact {
-    Fact { words, figures, role: Role::Text, figure: Some(Figure { title, term, sql }) }
+    Fact { words, figures, role: Role::Text, figure: Some(Figure { title, term, sql, why: None }) }
 }
 
 /// The lines of a group; bars have so many cells.

@@ -34,7 +34,7 @@ impl Pane<Customers> for FitPane {
              leads,\n    total(s.status IN ('subscribed', 'cancelled')) AS signed\nFROM customers c\nLEFT JOIN subscriptions s \
              ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
         );
-        Some(Figure { title: format!("fit of {group} and its leads by week"), term: "fit", sql: Some(sql) })
+        Some(Figure { title: format!("fit of {group} and its leads by week"), term: "fit", sql: Some(sql), why: None })
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {

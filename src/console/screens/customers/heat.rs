@@ -177,7 +177,7 @@ fn figure(company: &Company, place: HeatPlace) -> Option<Figure> {
         i64::from(company.seen.day) - 28
     );
     let title = format!("leads of {group} through {} per $1,000 in 28 days", channel.id());
-    Some(Figure { title, term: "cost-per-lead", sql: Some(sql) })
+    Some(Figure { title, term: "cost-per-lead", sql: Some(sql), why: None })
 }
 
 /// The selected pair in words.

@@ -23,7 +23,7 @@ impl Pane<Customers> for QualityByWeekPane {
 
     fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
         let title = format!("quality delivered to {} by week", customers.group(look.company)?);
-        Some(Figure { title, term: "delivered-quality", sql: None })
+        Some(Figure { title, term: "delivered-quality", sql: None, why: None })
     }
 
     fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {

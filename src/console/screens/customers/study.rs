@@ -23,7 +23,7 @@ impl Pane<Customers> for StudyPane {
 
     fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
         let title = format!("what the study of {} says", customers.group(look.company)?);
-        Some(Figure { title, term: "info-level", sql: None })
+        Some(Figure { title, term: "info-level", sql: None, why: None })
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -41,7 +41,7 @@ impl Pane<Customers> for WeeksPane {
         let flow = customers.opened.flow;
         let (name, term) = FLOWS[flow];
         let sql = Some(flow_statement(flow, group, week));
-        Some(Figure { title: format!("{name} of {group} in week {week}"), term, sql })
+        Some(Figure { title: format!("{name} of {group} in week {week}"), term, sql, why: None })
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {

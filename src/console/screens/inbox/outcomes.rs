@@ -178,7 +178,7 @@ impl Pane<Inbox> for OutcomesPane {
     fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
         let own = inbox.outcomes.as_ref()?.here()?;
         let title = format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
-        Some(Figure { title, term: "offer", sql: Some(statement(own)) })
+        Some(Figure { title, term: "offer", sql: Some(statement(own)), why: None })
     }
 
     fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -38,7 +38,7 @@ pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure 
         Effect::EditSql(sql) => Some(sql),
         _ => None,
     };
-    Figure { title: format!("{what} {}", thread.company()), term, sql }
+    Figure { title: format!("{what} {}", thread.company()), term, sql, why: None }
 }
 
 /// Usage behind the estimated compute of an offer: what the companies of the group used on the last day.
@@ -52,8 +52,7 @@ pub(super) fn usage_figure(thread: &Thread) -> Figure {
              FROM daily_usage u JOIN subscriptions s USING (customer_id) JOIN customers c USING (customer_id)\n\
              WHERE c.group_id = '{group}' AND s.status = 'subscribed'\n    \
              AND u.day = (SELECT max(day) FROM service_day) ORDER BY units DESC"
-        )),
-    }
+        )), why: None }
 }
 
 /// Dollars a month that a company would pay, at most.

@@ -101,7 +101,7 @@ impl ScreenState for Journal {
                 Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
                 Cell::words(line.text).role(line.role),
             ]);
-            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql });
+            self.figures.push(Figure { title: line.title.clone(), term: line.term, sql: line.sql, why: None });
             self.wholes.push((line.title, line.whole));
         }
         self.table.set_rows(rows);

@@ -33,8 +33,7 @@ pub fn figure(company: &Company, selected: usize) -> Option<Figure> {
              predicted_upper\nFROM predictions WHERE horizon_days = {horizon} AND submit_day + horizon_days <= {}\n\
              ORDER BY submit_day DESC",
             company.seen.day
-        )),
-    })
+        )), why: None })
 }
 
 fn weeks(days: u32) -> String {

@@ -37,7 +37,7 @@ impl Pane<Market> for AttemptsPane {
     fn figure(&self, _: &Market, _: &Look<'_>) -> Option<Figure> {
         let sql = "SELECT day, cost, success, discovered_group_id FROM segment_discovery ORDER BY id DESC";
         let title = "attempts at market research".to_owned();
-        Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()) })
+        Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()), why: None })
     }
 
     fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {

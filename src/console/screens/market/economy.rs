@@ -61,8 +61,7 @@ impl Pane<Market> for EconomyPane {
         Some(Figure {
             title: format!("PMI of day {day}"),
             term: "pmi",
-            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")),
-        })
+            sql: Some(format!("SELECT * FROM macroeconomic_conditions WHERE day = {day}")), why: None })
     }
 
     fn act(&self, market: &mut Market, action: Action, _: &Look<'_>) -> Vec<Effect> {

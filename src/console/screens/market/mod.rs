@@ -345,6 +345,5 @@ fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str)
     Some(Figure {
         title: format!("{what} {group}"),
         term,
-        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")),
-    })
+        sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")), why: None })
 }

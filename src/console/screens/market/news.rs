@@ -60,8 +60,7 @@ impl Pane<Market> for RivalNewsPane {
         Some(Figure {
             title: format!("news #{number}"),
             term: if item.rival.is_some() { "competitor" } else { "press" },
-            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")),
-        })
+            sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")), why: None })
     }
 
     fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -6,7 +6,7 @@ use crate::console::text::arrow;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, spark};
 use crate::notation::{dollars, grouped, percent};
-use crate::session::{WEEK_OF_ENTRY, WeekFigures, entries_of_weeks};
+use crate::session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, entries_of_weeks};
 
 /// A figure of the week.
 pub struct Metric {
@@ -260,8 +260,7 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, (from, to), now),
-    }
+        sql: statement(&metric.source, (from, to), now), why: WeekFigure::named(metric.name).map(|figure| (figure, to)) }
 }
 
 /// The rows of some weeks; those that hold only now are left out for other weeks.

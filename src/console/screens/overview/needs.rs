@@ -148,5 +148,5 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
             )),
         ),
     };
-    Figure { title: need.text.clone(), term, sql }
+    Figure { title: need.text.clone(), term, sql, why: None }
 }

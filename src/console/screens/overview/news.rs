@@ -114,7 +114,7 @@ impl NewsItem {
                 ),
             ),
         };
-        Figure { title: self.text.clone(), term, sql: Some(sql) }
+        Figure { title: self.text.clone(), term, sql: Some(sql), why: None }
     }
 }
 

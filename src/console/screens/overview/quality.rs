@@ -47,12 +47,12 @@ impl Pane<Overview> for QualityPane {
             None if (FLOOR..BONUS).contains(&column) => {
                 let title = format!("floor of {group}");
                 let sql = format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'");
-                return Some(Figure { title, term: "fit", sql: Some(sql) });
+                return Some(Figure { title, term: "fit", sql: Some(sql), why: None });
             }
             None => "from targeted development".to_owned(),
         };
         let title = format!("delivered quality of {group} {of}");
-        Some(Figure { title, term: "delivered-quality", sql: None })
+        Some(Figure { title, term: "delivered-quality", sql: None, why: None })
     }
 
     fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -82,7 +82,7 @@ impl ProductPart for Capacity {
         let sql = "SELECT day, total_usage_units, capacity_units, capacity_tier FROM service_day\n\
                    WHERE day > (SELECT max(day) FROM service_day) - 7 ORDER BY day DESC";
         let title = format!("use of tier {tier} in the last week");
-        Some(Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()) })
+        Some(Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()), why: None })
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {

@@ -69,7 +69,7 @@ impl ProductPart for Issues {
              WHERE i.group_id = '{group}' AND i.status = 'open' AND s.status = 'subscribed'\n    \
              AND i.open_day > (SELECT max(day) FROM service_day) - 112 ORDER BY i.days_open DESC"
         );
-        Some(Figure { title: format!("open issues of {group}"), term: "issue", sql: Some(sql) })
+        Some(Figure { title: format!("open issues of {group}"), term: "issue", sql: Some(sql), why: None })
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {

@@ -173,5 +173,5 @@ fn figure_of(row: usize, plan: Plan) -> screens::Figure {
         9 => ("gross margin", "gross-margin", subscribers()),
         _ => ("billed a month", "billed-seats", subscribers()),
     };
-    screens::Figure { title: format!("{name} of plan {plan}"), term, sql }
+    screens::Figure { title: format!("{name} of plan {plan}"), term, sql, why: None }
 }

@@ -49,7 +49,7 @@ impl ProductPart for Quality {
         let group = company.quality.get(product.place(self.name()))?.group;
         let sql = "SELECT day, amount, note FROM ledger WHERE category = 'development' ORDER BY day DESC";
         let title = format!("delivered quality in {group}");
-        Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()) })
+        Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()), why: None })
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {

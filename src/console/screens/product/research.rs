@@ -80,11 +80,11 @@ impl ProductPart for Research {
         let (place, term) = (product.place(self.name()), "research-project");
         if let Some(project) = product.projects.get(place) {
             let sql = format!("SELECT * FROM research_projects WHERE project_id = '{}'", project.id);
-            return Some(Figure { title: format!("project {}", project.id), term, sql: Some(sql) });
+            return Some(Figure { title: format!("project {}", project.id), term, sql: Some(sql), why: None });
         }
         let offer = product.offers.get(place - product.projects.len())?;
         let sql = "SELECT * FROM research_projects ORDER BY started_day DESC".to_owned();
-        Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql) })
+        Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql), why: None })
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {

@@ -41,7 +41,7 @@ impl ProductPart for Service {
         let sql = "SELECT day, p95_ms, error_rate, downtime_minutes, total_usage_units, capacity_units\n\
                    FROM service_day ORDER BY day DESC LIMIT 28";
         let title = "the service in 28 days".to_owned();
-        Some(Figure { title, term: "outage", sql: Some(sql.to_owned()) })
+        Some(Figure { title, term: "outage", sql: Some(sql.to_owned()), why: None })
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {

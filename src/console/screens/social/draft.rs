@@ -27,7 +27,7 @@ impl Pane<Social> for DraftPane {
     }
 
     fn figure(&self, _: &Social, _: &Look<'_>) -> Option<Figure> {
-        Some(Figure { title: "a post of ours".to_owned(), term: POST.name(), sql: None })
+        Some(Figure { title: "a post of ours".to_owned(), term: POST.name(), sql: None, why: None })
     }
 
     fn act(&self, social: &mut Social, action: Action, _: &Look<'_>) -> Vec<Effect> {

@@ -407,5 +407,5 @@ fn figure_of(post: &Post) -> Figure {
             format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
         ),
     };
-    Figure { title, term, sql: Some(sql) }
+    Figure { title, term, sql: Some(sql), why: None }
 }

@@ -41,7 +41,7 @@ impl Pane<Social> for OwnPane {
         let sql = format!(
             "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
         );
-        Some(Figure { title: format!("comments on our post {number}"), term: "comment", sql: Some(sql) })
+        Some(Figure { title: format!("comments on our post {number}"), term: "comment", sql: Some(sql), why: None })
     }
 
     fn act(&self, social: &mut Social, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -22,7 +22,7 @@ fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
 
 /// A tool as a whole.
 pub(super) fn of_tool(spec: &'static Spec) -> Figure {
-    Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None }
+    Figure { title: spec.summary.to_owned(), term: spec.name(), sql: None, why: None }
 }
 
 /// The value that is selected in a form.
@@ -33,8 +33,7 @@ pub(super) fn of_cell(form: &Form) -> Option<Figure> {
     Some(Figure {
         title: format!("{tool} {}", block.path(form.at.row, form.at.column).replace('.', " ")),
         term: term_of(tool, block.argument.name)?,
-        sql: history(form),
-    })
+        sql: history(form), why: None })
 }
 
 /// How the value was set over time, or what came of it.

@@ -1,0 +1,257 @@
+//! Why a figure of a week changed: the equation, and a line with a bar for each cause.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, Click, centered, fit, rows_of};
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::spark::bar;
+use crate::report::why::{CauseLine, equation, heading, lines};
+use crate::session::{Cause, Refusal, WeekFigure, Why, WhyProgress};
+
+/// Widest that reads well.
+const WIDEST: u16 = 110;
+
+/// Why a figure changed.
+pub struct WhyBox {
+    figure: WeekFigure,
+    week: u32,
+    /// Ends the work.
+    stop: Arc<AtomicBool>,
+    progress: Option<WhyProgress>,
+    answer: Option<Result<Why, Refusal>>,
+    selected: usize,
+}
+
+impl WhyBox {
+    /// Waits for the causes of a figure of a week; `stop` ends the work.
+    pub fn new(figure: WeekFigure, week: u32, stop: Arc<AtomicBool>) -> WhyBox {
+        WhyBox { figure, week, stop, progress: None, answer: None, selected: 0 }
+    }
+
+    fn why(&self) -> Option<&Why> {
+        self.answer.as_ref()?.as_ref().ok()
+    }
+
+    fn select(&mut self, to: usize) {
+        self.selected = to.min(self.why().map_or(0, |why| why.parts.len()));
+    }
+
+    /// To the form of what was decided; what nobody decided has the rows of the figure.
+    fn follow(&self) -> Outcome {
+        let Some(why) = self.why() else { return Outcome::stay() };
+        Outcome::close_with(vec![match why.parts.get(self.selected).map(|part| part.cause) {
+            Some(Cause::Calls(tool)) => Effect::ShowTool(tool),
+            _ => Effect::Do(Action::Rows),
+        }])
+    }
+
+    /// What is going on while there is no answer.
+    fn waiting(&self) -> String {
+        match self.progress {
+            None => "reading the record …".to_owned(),
+            Some(WhyProgress::Reaching(day, last)) => format!("simulating day {day} of {last} …"),
+            Some(WhyProgress::Simulated(done, all)) => {
+                format!("simulating the week without its causes: {done} of {all} …")
+            }
+        }
+    }
+
+    /// A cause, its share, a bar, and what differed as far as there is room.
+    fn line<'a>(
+        canvas: &Canvas<'_>,
+        cause: &CauseLine,
+        most: f64,
+        widths: [usize; 3],
+        width: u16,
+        here: bool,
+    ) -> Line<'a> {
+        let [name, amount, bars] = widths;
+        let role = |own| if here { Role::Selection } else { own };
+        let share = if most > 0.0 { cause.amount.abs() / most } else { 0.0 };
+        let left = (width as usize).saturating_sub(name + amount + bars + 5);
+        let mark = if here { "›" } else { " " };
+        Line::from(vec![
+            canvas
+                .span(format!("{mark} {:<name$} {:>amount$} ", cause.name, cause.written), role(Role::Text)),
+            canvas.span(bar(share, bars), role(Role::Series(0))),
+            canvas.span(format!(" {}", fit(&cause.details.join(" · "), left)), role(Role::Dim)),
+        ])
+    }
+}
+
+impl Dialog for WhyBox {
+    fn what(&self) -> String {
+        format!("why {}, week {}", self.figure.name(), self.week)
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::List, Scope::Dialog]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.why() {
+            Some(_) => vec![Action::Open, Action::Close],
+            None => vec![Action::Close],
+        }
+    }
+
+    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+        match action {
+            Action::Close | Action::Cancel => {
+                self.stop.store(true, Ordering::Relaxed);
+                return Outcome::close();
+            }
+            Action::Open | Action::Confirm => return self.follow(),
+            Action::Down => self.select(self.selected + 1),
+            Action::Up => self.select(self.selected.saturating_sub(1)),
+            Action::First => self.select(0),
+            Action::Last => self.select(usize::MAX),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
+        match news {
+            News::WhyProgress(_, progress) => self.progress = Some(*progress),
+            News::Why(_, answer) => self.answer = Some(answer.as_ref().clone()),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        let again = self.selected == row;
+        self.select(row);
+        if again { self.follow() } else { Outcome::stay() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let width = WIDEST.min(area.width.saturating_sub(2));
+        let inner = width.saturating_sub(4) as usize;
+        let (title, text, role) = match &self.answer {
+            None => (self.what(), self.waiting(), Role::Warning),
+            Some(Err(refusal)) => (self.what(), refusal.message.clone(), Role::Bad),
+            Some(Ok(why)) => (heading(why), equation(why), Role::Strong),
+        };
+        let text = wrapped(&text, inner);
+        let causes = self.why().map(lines).unwrap_or_default();
+        let gap = usize::from(!causes.is_empty());
+        let height = (text.len() + gap + causes.len() + 2) as u16;
+        let own = centered(area, width, height);
+        canvas.clear(own, Role::Text);
+        let note = match self.why() {
+            Some(why) => format!("simulated {} times", why.simulations),
+            None => String::new(),
+        };
+        let inside = canvas.pane(own, &title, &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        // Causes give way last: they say what the equation says.
+        let shown = text.len().min((inside.height as usize).saturating_sub(causes.len() + gap).max(1));
+        for (row, line) in rows_of(inside).zip(text.iter().take(shown)) {
+            canvas.text(row, line, role);
+        }
+        let used = ((shown + gap) as u16).min(inside.height);
+        let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
+        let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
+        let bars = if inner >= 90 { 16 } else { 8 };
+        let widths = [longest(|own| own.name.len()), longest(|own| own.written.len()), bars];
+        let most = causes.iter().map(|own| own.amount.abs()).fold(0.0, f64::max);
+        let first = self.selected.saturating_sub((list.height as usize).saturating_sub(1));
+        for (row, (at, cause)) in rows_of(list).zip(causes.iter().enumerate().skip(first)) {
+            let here = at == self.selected;
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let line = WhyBox::line(canvas, cause, most, widths, row.width, here);
+            canvas.line(row, &line);
+            canvas.click(row, Click::Row(0, at));
+        }
+        let keys = match self.why() {
+            Some(_) => look.hints(&[Action::Open, Action::Close]),
+            None => look.hints(&[Action::Close]),
+        };
+        canvas.pane_keys(own, &keys);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+    use crate::session::{Detail, InputDetail, ToolId, WhyPart};
+
+    fn told() -> Why {
+        let part = |cause, amount, details| WhyPart { cause, amount, details };
+        let overload =
+            Detail::Input(InputDetail { name: "peak overload", old: 0.0, new: 0.131, is_share: true });
+        Why {
+            week: 20,
+            figure: WeekFigure::Cancellations,
+            before: 195.0,
+            after: 1137.0,
+            parts: vec![
+                part(Cause::Calls(ToolId::SetPrices), 938.0, Vec::new()),
+                part(Cause::Rivals, 4.0, vec![Detail::Happened(2, "move")]),
+                part(Cause::Service, 0.0, vec![overload]),
+            ],
+            rest: 0.0,
+            simulations: 5,
+        }
+    }
+
+    fn answered(answer: Result<Why, Refusal>) -> WhyBox {
+        let mut dialog = WhyBox::new(WeekFigure::Cancellations, 20, Arc::default());
+        let company = company();
+        let keys = crate::console::keys::Keys::shipped();
+        let look = Look { company: &company, keys: &keys, page: 5 };
+        dialog.hear(&News::Why(1, Box::new(answer)), &look);
+        dialog
+    }
+
+    #[test]
+    fn causes_are_told_with_bars_and_lead_to_the_form_or_the_rows() {
+        let company = company();
+        let mut dialog = answered(Ok(told()));
+        for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
+            let picture = dialog_picture(&dialog, &company, width, height);
+            for words in
+                ["195 → 1,137", "price", "+938", "████████", "rivals", "+4", "composition and chance"]
+            {
+                assert!(picture.contains(words), "{words} in {picture}");
+            }
+        }
+        assert!(dialog_picture(&dialog, &company, 120, 40).contains("peak overload: 0.0% → 13.1%"));
+        let first = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(first.close && matches!(first.effects[..], [Effect::ShowTool(ToolId::SetPrices)]));
+        in_dialog(&mut dialog, Action::Down, &company);
+        let second = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(matches!(second.effects[..], [Effect::Do(Action::Rows)]));
+        in_dialog(&mut dialog, Action::Last, &company);
+        assert_eq!(dialog.selected, 3);
+    }
+
+    #[test]
+    fn the_work_is_told_and_esc_stops_it() {
+        let company = company();
+        let stop = Arc::new(AtomicBool::new(false));
+        let mut dialog = WhyBox::new(WeekFigure::Usage, 9, stop.clone());
+        assert!(dialog_picture(&dialog, &company, 60, 16).contains("reading the record"));
+        dialog.progress = Some(WhyProgress::Simulated(3, 16));
+        assert!(dialog_picture(&dialog, &company, 60, 16).contains("3 of 16"));
+        assert!(in_dialog(&mut dialog, Action::Open, &company).effects.is_empty());
+        assert!(in_dialog(&mut dialog, Action::Close, &company).close && stop.load(Ordering::Relaxed));
+        let refused = answered(Err(Refusal::new("not_in_this_mode", "not in an unfinished baseline run")));
+        assert!(dialog_picture(&refused, &company, 60, 16).contains("not in an unfinished baseline run"));
+    }
+}

@@ -1,0 +1,80 @@
+//! Causes of a change, found on a thread of their own: the run goes on meanwhile.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::{Open, SessionThread};
+use crate::console::message::{Message, News};
+use crate::session::{Causes, Refusal, WeekFigure, Why};
+
+/// A question why a figure changed in a week.
+pub struct WhyAsked {
+    /// Tells its answer from others.
+    pub number: u64,
+    /// The figure.
+    pub figure: WeekFigure,
+    /// The week.
+    pub week: u32,
+    /// Ends the work.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// What was read of a record: its folder, lines as far as a day, and whether the run is over.
+type ReadAs = (PathBuf, u32, bool);
+
+/// Causes that were asked for, so that the next question about the same record is answered at once.
+pub(super) type CausesKept = Arc<Mutex<Option<(ReadAs, Causes)>>>;
+
+impl SessionThread {
+    /// Finds causes, and reports how far that has come and what they are.
+    pub(super) fn find_causes(&mut self, asked: WhyAsked) {
+        let folder = match &self.open {
+            None => return,
+            Some(Open::Played(session)) => session.folder_of_causes(),
+            // What a record allows is read from it: it may be over though this moment of it is not.
+            Some(Open::Replayed(playback)) => {
+                playback.session().folder().map(Path::to_owned).ok_or_else(|| {
+                    Refusal::new(
+                        "not_possible",
+                        "this trajectory stands alone, without the folder of its run",
+                    )
+                })
+            }
+        };
+        let Some(open) = &mut self.open else { return };
+        let state = (open.session().day(), open.session().ended().is_some());
+        let (news, kept) = (self.news.clone(), self.causes.clone());
+        std::thread::spawn(move || {
+            let answer = folder.and_then(|folder| answer(&asked, (folder, state.0, state.1), &kept, &news));
+            // Nobody waits for what was stopped.
+            if let Some(answer) = answer.transpose() {
+                let _ = news.send(Message::News(News::Why(asked.number, Box::new(answer))));
+            }
+        });
+    }
+}
+
+fn answer(
+    asked: &WhyAsked,
+    read_as: ReadAs,
+    kept: &CausesKept,
+    news: &Sender<Message>,
+) -> Result<Option<Why>, Refusal> {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut causes = match kept.take().filter(|(known, _)| *known == read_as) {
+        Some((_, causes)) => causes,
+        None => Causes::read(&read_as.0)?,
+    };
+    let answer = causes.why(asked.figure, Some(asked.week), &|progress| {
+        let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
+        match asked.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    *kept = Some((read_as, causes));
+    answer
+}

@@ -84,6 +84,10 @@ const COMMANDS: &[(&str, &str)] = &[
         "xray",
         "xray leads GROUP [DAY]   debug runs and runs that are over: the equation of a group's leads; R=1 holds a factor",
     ),
+    (
+        "lens",
+        "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+    ),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
     ("resume", "resume                   start the clock again"),
@@ -314,6 +318,7 @@ impl Interpreter {
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "xray" => self.xray(arguments),
+            "lens" => self.lens(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

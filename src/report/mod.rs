@@ -41,6 +41,7 @@ mod turn;
 pub(crate) mod week;
 pub(crate) mod why;
 mod words;
+pub(crate) mod xray;
 
 pub use logbook::Logbook;
 pub use story::Story;

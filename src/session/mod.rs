@@ -109,12 +109,18 @@ pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
 
+pub use xray::company_lens::{CompanyDay, CompanyLens, JudgedPlan};
+pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
+pub use xray::customer_lens::CustomerLens;
 pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
+pub use xray::lens::Lens;
+pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
-pub use crate::world::events::Category;
+pub use crate::world::enterprise::Answer as CompanyAnswer;
+pub use crate::world::events::{Category, EndCause};
 pub use crate::world::settings::{CoreSettings, Settings};

@@ -117,10 +117,11 @@ pub fn step_day_watched(
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
     };
-    let decided = decide(customers, felt.calls, &judgement);
+    let decided = decide(customers, felt.calls, &judgement, watch);
     issues::record(decided.settled, facts);
     let renewals = renewal::conclude(decided.decisions, &mut market.reputation, params, facts);
     let talks = Negotiation { day: &today, product, drift: &market.drift };
+    watch.before_negotiations(enterprise, customers, &talks);
     let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
     let knowledge = market.knowledge;
     let moods = satisfaction::by_group(felt.moods);
@@ -204,10 +205,16 @@ struct Decided {
 }
 
 /// Issues are settled; those whose day it is decide, and get their bill if they stay.
-fn decide(customers: &mut Customers, calls: Vec<IssueBatch>, judgement: &RenewalContext<'_>) -> Decided {
+fn decide(
+    customers: &mut Customers,
+    calls: Vec<IssueBatch>,
+    judgement: &RenewalContext<'_>,
+    watch: &dyn DayWatch,
+) -> Decided {
     let day = judgement.day;
     let decided = customers.sweep_with(calls, |group, number, block, calls| {
         let settled = issues::settle(block, &calls, day);
+        watch.before_decisions(group, block, judgement);
         let decisions = renewal::decide(group, number, block, judgement);
         (settled, decisions, billing::bill_regulars(group, number, block, day))
     });

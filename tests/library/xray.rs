@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use novamind::session::{
-    Access, Activity, Configuration, LeadFactor, Mode, NewRun, Record, Session, Storage, Trajectory, Via,
-    lines_afterwards, verify,
+    Access, Activity, Cell, CompanyAnswer, Configuration, CustomerLens, DayOutcome, EndCause, LeadFactor,
+    Lens, Mode, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, lines_afterwards, verify,
 };
 use novamind::world::identifiers::Group;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use crate::support::company::{open_shop, week, weeks};
+use crate::support::company::{open_shop, rows, week, weeks};
 
 fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
     let new = NewRun {
@@ -144,6 +144,158 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
         }
     }
     assert!(compared > 26 * 40);
+}
+
+fn individual(session: &mut Session, customer: u32, day: Option<u32>) -> CustomerLens {
+    match session.lens(customer, day).expect("a look") {
+        Lens::Individual(lens) => *lens,
+        Lens::Company(_) => panic!("customer {customer} is a company"),
+    }
+}
+
+#[test]
+fn the_lens_says_what_the_tables_say_of_a_customer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 90);
+    open_shop(&mut session);
+    weeks(&mut session, 8);
+    session.call("set_prices", &json!({"A": 24, "B": 50}), Via::Script).expect("dearer");
+    weeks(&mut session, 4);
+    let sql = "SELECT customer_id, plan, start_day, end_day, status FROM subscriptions JOIN customers USING (customer_id) \
+               WHERE group_id IN ('S1', 'S2', 'S3') ORDER BY customer_id";
+    let known: Vec<Vec<Cell>> = rows(&mut session, sql);
+    let whole = |cell: &Cell| match cell {
+        Cell::Integer(number) => Some(u32::try_from(*number).expect("a number")),
+        _ => None,
+    };
+    let word = |cell: &Cell| match cell {
+        Cell::Text(text) => text.clone(),
+        other => panic!("{other:?}"),
+    };
+    let last_day = session.day();
+    let mut seen = BTreeMap::new();
+    for status in ["lost", "cancelled", "subscribed"] {
+        for row in known.iter().filter(|row| word(&row[4]) == status).step_by(41).take(6) {
+            let customer = whole(&row[0]).expect("a customer");
+            let lens = individual(&mut session, customer, None);
+            assert_eq!(lens.first.signed_up, status != "lost", "customer {customer}");
+            assert_eq!(Some(lens.first.day), whole(&row[2]), "customer {customer}");
+            let left = lens.days.iter().find(|own| matches!(own.outcome, DayOutcome::Leaves(_)));
+            assert_eq!(left.map(|own| own.day), whole(&row[3]).filter(|_| status == "cancelled"));
+            if status == "subscribed" {
+                assert_eq!(
+                    lens.shown().map(|own| own.day),
+                    Some(last_day).filter(|_| lens.first.day < last_day)
+                );
+            }
+            for own in lens.days.iter().filter(|own| own.is_due) {
+                let stays = !matches!(own.outcome, DayOutcome::Leaves(EndCause::Price | EndCause::Quality));
+                let failed = own.outcome == DayOutcome::Leaves(EndCause::Involuntary);
+                assert!(
+                    failed || own.weighed.choice.is_some() == stays,
+                    "customer {customer} on day {}",
+                    own.day
+                );
+            }
+            // An earlier day is a beginning of the same.
+            let shown = lens.first.day + 1;
+            if shown <= last_day {
+                let earlier = individual(&mut session, customer, Some(shown));
+                assert!(earlier.days.len() <= 1 && earlier.days.len() <= lens.days.len());
+            }
+            *seen.entry(status).or_insert(0) += 1;
+        }
+    }
+    assert!(["lost", "cancelled", "subscribed"].iter().all(|status| seen.get(status) > Some(&2)), "{seen:?}");
+    let refused = |session: &mut Session, customer, day| session.lens(customer, day).expect_err("no").code;
+    assert_eq!(refused(&mut session, 0, None), "customer_not_found");
+    assert_eq!(refused(&mut session, u32::MAX, None), "customer_not_found");
+    let late = whole(&known.last().expect("a customer")[0]).expect("a customer");
+    assert_eq!(refused(&mut session, late, Some(1)), "day_unknown");
+    let mut sandbox = run_in(folder.path(), Mode::Sandbox, 28);
+    assert_eq!(refused(&mut sandbox, 2, None), "not_in_this_mode");
+    assert_eq!(refused(&mut sandbox, u32::MAX, Some(3)), "not_in_this_mode");
+}
+
+/// A debug run that courts companies and offers each what it asked for, or a little less.
+fn courted(folder: &Path, count: u32) -> Session {
+    let new = NewRun {
+        seed: Some(11),
+        cash: Some(20_000_000.0),
+        mode: Mode::Debug,
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
+        ("set_targeted_dev_spend", json!({"E1": 9000, "E2": 9000, "E3": 9000})),
+        ("set_targeted_ad_spend", json!({"linkedin": {"E1": 9000, "E2": 9000, "E3": 9000}})),
+        ("set_capacity_tier", json!({"tier": 5})),
+    ] {
+        session.call(tool, &arguments, Via::Script).expect(tool);
+    }
+    for _ in 0..count {
+        let offer = |thread: &WaitingThread| {
+            let price =
+                thread.asked.unwrap_or(40.0) * if thread.thread.is_multiple_of(2) { 0.98 } else { 1.1 };
+            json!([thread.customer, [["C", price * 1.2], ["B", price]]])
+        };
+        let deals: Vec<Value> = session.observe().waiting.iter().map(offer).collect();
+        if !deals.is_empty() {
+            session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script).expect("offers");
+        }
+        week(&mut session);
+    }
+    session
+}
+
+#[test]
+fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = courted(folder.path(), 10);
+    // Answers: turns of companies after one of the player's.
+    let sql = "SELECT customer_id, thread_id, day, offer_json FROM enterprise_turns AS own \
+               WHERE sender = 'customer' AND EXISTS (SELECT 1 FROM enterprise_turns AS other \
+               WHERE other.thread_id = own.thread_id AND other.sender = 'agent' \
+               AND other.message_id < own.message_id) ORDER BY message_id";
+    let turns = rows(&mut session, sql);
+    assert!(turns.len() > 40, "{}", turns.len());
+    let whole = |cell: &Cell| match cell {
+        Cell::Integer(number) => u32::try_from(*number).expect("a number"),
+        other => panic!("{other:?}"),
+    };
+    let (mut accepted, mut named) = (0, 0);
+    for turn in turns.iter().step_by(turns.len() / 40) {
+        let [customer, thread, day] = [0, 1, 2].map(|at| whole(&turn[at]));
+        let Cell::Text(said) = &turn[3] else { panic!("{turn:?}") };
+        let said: Value = serde_json::from_str(said).expect("JSON");
+        let Lens::Company(lens) = session.lens(customer, Some(day)).expect("a look") else {
+            panic!("a company")
+        };
+        let own = lens.shown().find(|own| own.thread == thread).expect("its thread");
+        assert_eq!(own.reply_day, Some(day));
+        let price = match own.answer.expect("an answer") {
+            CompanyAnswer::Accept(at) => {
+                accepted += 1;
+                let offering = own.offerings[at];
+                let judged = own.plans[offering.plan];
+                assert!(judged.accepts_any_price || offering.price <= judged.accepts_below + 1e-9);
+                offering.price
+            }
+            CompanyAnswer::Counter(at, price) => {
+                named += 1;
+                assert_eq!(own.plans[own.offerings[at].plan].counter, price);
+                price
+            }
+            CompanyAnswer::Silence => panic!("customer {customer} answered on day {day}"),
+        };
+        assert_eq!(said["price"].as_f64(), Some(price), "customer {customer} on day {day}");
+        assert!(own.turns_left > 0);
+    }
+    assert!(accepted > 3 && named > 3, "{accepted} {named}");
 }
 
 /// Numbers of leads scatter around their expectations as a Poisson distribution does: Pearson's statistic over 1,000 days.

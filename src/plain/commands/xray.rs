@@ -6,8 +6,12 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::notation::nearest;
-use crate::session::{LeadEquation, LeadFactor, Refusal};
-use crate::world::identifiers::Group;
+use crate::report::xray::{company_in_words, customer_in_words, leads_in_words};
+use crate::session::{
+    CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, Lens, PlanTerms, Refusal,
+    Weighed,
+};
+use crate::world::identifiers::{Group, Plan};
 
 /// What can be shown.
 const VIEWS: [&str; 1] = ["leads"];
@@ -31,7 +35,34 @@ impl Interpreter {
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
         let plain: Vec<&Argument> = arguments.iter().filter(|own| own.key.is_none()).collect();
         let (group, day) = group_and_day(&plain)?;
-        Ok(self.session.lead_equations(group, day).map(|days| shown_leads(&days, &held)))
+        Ok(self.session.lead_equations(group, day).map(|days| {
+            let data = days.last().map_or(Value::Null, |own| leads_as_data(own, &held));
+            Answer::done("xray", leads_in_words(&days, &held).join("\n"), data)
+        }))
+    }
+
+    /// `lens CUSTOMER [DAY]`
+    pub(super) fn lens(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        if let Err(refusal) = self.session.refuse_to_look_inside() {
+            return Ok(Answer::refused("lens", refusal));
+        }
+        let numbers: Vec<u32> = arguments.iter().map(whole_number).collect::<Result<_, _>>()?;
+        let shown = match numbers[..] {
+            [customer] => self.session.lens(customer, None),
+            [customer, day] => self.session.lens(customer, Some(day)),
+            _ => return Err(problem(arguments, "name a customer, and a day or none: lens 4711 151")),
+        };
+        Ok(match shown {
+            Ok(Lens::Individual(lens)) => {
+                let lines = customer_in_words(&lens);
+                let data = customer_as_data(&lens, &lines[1]);
+                Answer::done("lens", lines.join("\n"), data)
+            }
+            Ok(Lens::Company(lens)) => {
+                Answer::done("lens", company_in_words(&lens).join("\n"), company_as_data(&lens))
+            }
+            Err(refusal) => Answer::refused("lens", refusal),
+        })
     }
 }
 
@@ -64,13 +95,14 @@ fn group_and_day(arguments: &[&Argument]) -> Result<(Group, Option<u32>), Proble
             if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(" or ")) };
         at(first, format!("there is no group {id}{help}"))
     })?;
-    let day = day.map(|day| day_of(day)).transpose()?;
+    let day = day.map(|day| whole_number(day)).transpose()?;
     Ok((group, day))
 }
 
-fn day_of(argument: &Argument) -> Result<u32, Problem> {
-    let day = argument.value.as_u64().and_then(|day| u32::try_from(day).ok());
-    day.ok_or_else(|| Problem { text: "a day is a whole number".to_owned(), column: argument.column })
+fn whole_number(argument: &Argument) -> Result<u32, Problem> {
+    let number = argument.value.as_u64().filter(|_| argument.key.is_none());
+    let number = number.and_then(|number| u32::try_from(number).ok());
+    number.ok_or_else(|| Problem { text: "a whole number is expected".to_owned(), column: argument.column })
 }
 
 /// `R=1`: a factor that is held.
@@ -85,58 +117,6 @@ fn held_factor(argument: &Argument) -> Result<(LeadFactor, f64), Problem> {
     value
         .map(|value| (factor, value))
         .ok_or_else(|| wrong(format!("{factor} is held at a number of at least 0")))
-}
-
-/// The equation of the last of some days, with the range of each factor over all of them.
-fn shown_leads(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Answer {
-    let Some(own) = days.last() else { return Answer::done("xray", String::new(), json!({})) };
-    let mut lines = vec![format!("leads of {} on day {}", own.group, own.day)];
-    if own.is_known {
-        lines.push(equation(own));
-        lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
-        let sources: Vec<String> =
-            own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.4}")).collect();
-        lines.push(format!("  word of mouth from {}", or_nobody(&sources)));
-    } else {
-        lines.push("not discovered on that day: no leads".to_owned());
-    }
-    if !held.is_empty() && own.is_known {
-        let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
-        let with = own.holding(held);
-        lines.push(format!("with {}: λ {with:.2} instead of {:.2}", held_at.join(", "), own.expected()));
-    }
-    Answer::done("xray", lines.join("\n"), leads_as_data(own, held))
-}
-
-/// `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, came 104 (p 0.56)`
-fn equation(own: &LeadEquation) -> String {
-    let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", own.factor(factor)));
-    let mut sources: Vec<String> =
-        own.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
-    sources.push(format!("word of mouth {:.2}", own.by_word_of_mouth()));
-    format!(
-        "  {} × ({}) = λ {:.2}, came {} (p {:.2})",
-        factors.join(" × "),
-        sources.join(" + "),
-        own.expected(),
-        own.came,
-        own.p_value()
-    )
-}
-
-fn over_days(days: &[LeadEquation], factor: LeadFactor) -> String {
-    let values = || days.iter().filter(|day| day.is_known).map(|day| day.factor(factor));
-    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    let now = days.last().map_or(0.0, |day| day.factor(factor));
-    format!(
-        "  {factor} {:<18} {now:>8.4}   last {} days {least:.4} to {most:.4}",
-        factor.in_words(),
-        values().count()
-    )
-}
-
-fn or_nobody(sources: &[String]) -> String {
-    if sources.is_empty() { "nobody: there are no subscribers".to_owned() } else { sources.join(" + ") }
 }
 
 fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
@@ -154,5 +134,68 @@ fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
         "came": own.came,
         "p": own.p_value(),
         "held": (!held.is_empty()).then(|| own.holding(held)),
+    })
+}
+
+fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
+    let plan = |weighed: &Weighed, plan: Plan| {
+        let PlanTerms { price, experience, quality, required, surplus, within_budget } = weighed.plans[plan];
+        json!({
+            "plan": plan.id(), "price": price, "delivered": experience.delivered,
+            "relationship": experience.relationship, "tenure": experience.tenure, "quota": experience.quota,
+            "issues": experience.issues, "ads": experience.ads, "quality": quality, "required": required,
+            "surplus": surplus, "within_budget": within_budget,
+        })
+    };
+    let day = |own: &CustomerDay| {
+        json!({
+            "day": own.day,
+            "plan": own.plan.id(),
+            "price": own.price,
+            "billing_day": own.is_due,
+            "satisfaction": own.satisfaction,
+            "relationship": own.relationship,
+            "open_issue_days": own.open_issue_days,
+            "choice": own.weighed.choice.map(Plan::id),
+            "plans": Plan::ALL.map(|own_plan| plan(&own.weighed, own_plan)),
+        })
+    };
+    json!({
+        "customer_id": lens.customer,
+        "group": lens.group.id(),
+        "headline": headline,
+        "came": lens.first.day,
+        "signed_up": lens.first.signed_up,
+        "shown": lens.shown().map(day),
+        "last_bill": lens.last_bill().map(day),
+    })
+}
+
+fn company_as_data(lens: &CompanyLens) -> Value {
+    let thread = |own: &CompanyDay| {
+        let plan = |plan: Plan| {
+            let judged = own.plans[plan];
+            json!({
+                "plan": plan.id(), "quality": judged.quality, "quality_if_answered": judged.quality_if_answered,
+                "accepts_below": judged.accepts_below, "accepts_any_price": judged.accepts_any_price,
+                "would_name": judged.counter,
+            })
+        };
+        json!({
+            "thread": own.thread,
+            "kind": own.kind.id(),
+            "budget": own.budget,
+            "turns_left": own.turns_left,
+            "relationship": own.relationship,
+            "late_penalty": own.late_penalty,
+            "reply_day": own.reply_day,
+            "plans": Plan::ALL.map(plan),
+        })
+    };
+    json!({
+        "customer_id": lens.customer,
+        "group": lens.group.id(),
+        "day": lens.day,
+        "threads": lens.shown().map(thread).collect::<Vec<Value>>(),
     })
 }

@@ -26,9 +26,18 @@ impl Session {
             }
         };
         // A shadow that went wrong is not kept: the next look begins anew.
-        self.lead_here(&mut shadow)?;
+        self.lead(&mut shadow, |_| true)?;
         self.shadow = Some(shadow);
         Ok(days.into_iter().filter_map(|day| self.diary.day(day)).collect())
+    }
+
+    /// Shows somebody the days of the run up to one of them, and at most to the end of its week.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn watch_up_to(&self, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
+        let mut shadow = self.new_shadow(watch)?;
+        self.lead(&mut shadow, |shadow| shadow.day() < day)
     }
 
     /// This run again, before its first line and watched.
@@ -46,12 +55,12 @@ impl Session {
         Ok(Box::new(shadow))
     }
 
-    /// Applies the lines to a shadow that it lacks, up to the one at which the run stands; each has to lead to what it
-    /// records.
+    /// Applies the lines to a shadow that it lacks, at most up to the one at which the run stands, while it is to go on;
+    /// each has to lead to what it records.
     ///
     /// # Errors
     /// `not_readable`.
-    fn lead_here(&self, shadow: &mut Session) -> Result<(), Refusal> {
+    fn lead(&self, shadow: &mut Session, goes_on: impl Fn(&Session) -> bool) -> Result<(), Refusal> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let has_begun = !shadow.position.line_hash.is_empty();
         if has_begun && shadow.position == self.position {
@@ -61,7 +70,13 @@ impl Session {
         let trajectory = Trajectory::read(&path).map_err(not_readable)?;
         let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position.seq);
         let lacking: Vec<_> = lines.take_while(|line| line.seq <= self.position.seq).collect();
-        lacking.into_iter().try_for_each(|line| shadow.apply_line(&path, line)).map_err(not_readable)
+        for line in lacking {
+            if !goes_on(shadow) {
+                break;
+            }
+            shadow.apply_line(&path, line).map_err(not_readable)?;
+        }
+        Ok(())
     }
 }
 

@@ -28,6 +28,12 @@ pub struct Choice {
     pub quality: f64,
 }
 
+/// A plan as a lead sees it: its price after the discount, its quality with the quota.
+pub fn offered(offer: &Offer, plan: Plan, discount: f64, demand: f64, params: &Params) -> Choice {
+    let price = (offer.price - discount).max(params.billing.effective_price_min);
+    Choice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
+}
+
 /// Picks the plan with the largest surplus above 0 (ties: the earlier plan); A if there is none.
 ///
 /// `demand` is what quotas are compared with; the curve already contains the market's drift once.
@@ -38,12 +44,7 @@ pub fn choose_plan(
     curve: &Curve,
     params: &Params,
 ) -> Choice {
-    let floor = params.billing.effective_price_min;
-    let candidate = |plan: Plan| {
-        let offer = &offers[plan];
-        let price = (offer.price - discount).max(floor);
-        Choice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
-    };
+    let candidate = |plan| offered(&offers[plan], plan, discount, demand, params);
     let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
     for plan in Plan::ALL {
         let choice = candidate(plan);

@@ -190,6 +190,13 @@ impl Customers {
         (offset < run.count).then_some((run.group, run.first_n + offset))
     }
 
+    /// Day on which a customer came, if that number was ever given to one.
+    pub fn arrival_day(&self, customer: u32) -> Option<u32> {
+        self.find(customer)?;
+        let after = self.arrivals.partition_point(|run| run.first_customer <= customer);
+        self.arrivals[..after].last().map(|run| run.day)
+    }
+
     /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
     /// in group and block order whatever the number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {

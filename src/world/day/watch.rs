@@ -1,14 +1,30 @@
 //! Seeing a day from within: what it sees it cannot change, so a day that is watched ends as one that is not.
 
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::enterprise::{Enterprise, Negotiation};
 use crate::events::Facts;
-use crate::identifiers::ByGroup;
+use crate::identifiers::{ByGroup, Group};
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
 use crate::params::Params;
+use crate::retention::renewal::RenewalContext;
 use crate::state::World;
 
 /// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.
 pub trait DayWatch: Send + Sync {
+    /// The subscribers of a block are about to decide: issues are settled, satisfaction has moved, nobody has left yet.
+    fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
+
+    /// Companies are about to be lost, to answer, and to begin threads by themselves.
+    fn before_negotiations(
+        &self,
+        _enterprise: &Enterprise,
+        _customers: &Customers,
+        _talks: &Negotiation<'_>,
+    ) {
+    }
+
     /// The leads of the day are about to come: the market, the active subscriptions, the factors of each group.
     fn leads_expected(
         &self,

@@ -151,7 +151,7 @@ impl Enterprise {
 
 /// Days since the customer's newest turn; none where lateness does not count: the player wrote last, or the
 /// customer has not written yet.
-fn late_days(thread: &Thread, day: u32) -> Option<u32> {
+pub fn late_days(thread: &Thread, day: u32) -> Option<u32> {
     if thread.last().sender == Sender::Agent {
         return None;
     }

@@ -23,7 +23,8 @@ pub(crate) mod test_kit;
 use std::collections::BTreeSet;
 
 pub use churn::CompanyLost;
-pub use company::{Company, Standing};
+pub use company::{Company, Standing, moved_relationship};
+pub use evaluation::{Answer, Judge, counter_price, highest_price};
 pub use open_threads::OpenThreads;
 pub use thread::{Thread, Turn};
 

@@ -1,7 +1,9 @@
 //! Answers that are due today.
 
 use super::evaluation::{Answer, Judge};
-use super::{Live, Step};
+use super::{Enterprise, Live, Negotiation, Step, Thread};
+use crate::customers::Customers;
+use crate::customers::columns::Subscriber;
 use crate::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
 
 /// An answer that was decided and is still to be given.
@@ -9,6 +11,30 @@ struct Due {
     thread: usize,
     answer: Answer,
     offerings: Vec<Offering>,
+}
+
+impl Enterprise {
+    /// Who would judge what is offered in a thread if the answer were due today; none once the company is forgotten.
+    pub fn judge(&self, thread: &Thread, customers: &Customers, talks: &Negotiation<'_>) -> Option<Judge> {
+        let row = self.company(thread.customer)?.row(customers)?;
+        self.judge_of(thread, &row, talks)
+    }
+
+    /// The same, if the row of the company were this one.
+    pub fn judge_of(&self, thread: &Thread, row: &Subscriber, talks: &Negotiation<'_>) -> Option<Judge> {
+        let company = self.company(thread.customer)?;
+        let mut quality = talks.offered_quality(thread.group, row, company.is_subscriber());
+        if thread.kind == ThreadKind::NewLead {
+            let impression = company.first_impression(talks.day.params, talks.day.streams);
+            quality.0.iter_mut().for_each(|quality| *quality *= impression);
+        }
+        Some(Judge {
+            curve: talks.offered_curve(thread.group, row),
+            quality,
+            initial_offer_factor: company.negotiator.initial_offer_factor,
+            max_turns: company.negotiator.max_negotiation_turns,
+        })
+    }
 }
 
 impl Step<'_> {
@@ -28,19 +54,7 @@ impl Step<'_> {
 
     fn decide(&self, thread: usize) -> Option<Due> {
         let own = &self.enterprise.threads[thread];
-        let company = self.enterprise.company(own.customer)?;
-        let row = company.row(self.customers)?;
-        let mut quality = self.talks.offered_quality(own.group, &row, company.is_subscriber());
-        if own.kind == ThreadKind::NewLead {
-            let impression = company.first_impression(self.day.params, self.day.streams);
-            quality.0.iter_mut().for_each(|quality| *quality *= impression);
-        }
-        let judge = Judge {
-            curve: self.talks.offered_curve(own.group, &row),
-            quality,
-            initial_offer_factor: company.negotiator.initial_offer_factor,
-            max_turns: company.negotiator.max_negotiation_turns,
-        };
+        let judge = self.enterprise.judge(own, self.customers, self.talks)?;
         let offerings = own.offerings().to_vec();
         let answer = judge.answer(&offerings, own.last().number, self.day.params);
         Some(Due { thread, answer, offerings })

@@ -157,6 +157,86 @@ fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
     })
 }
 
+/// How an individual lead looks at what is on offer.
+#[derive(Debug, Clone, Copy)]
+pub struct FirstLook {
+    /// What is on offer.
+    pub offers: ByPlan<Offer>,
+    /// Discount for its group and channel, dollars a month.
+    pub discount: f64,
+    /// What quotas are compared with.
+    pub demand: f64,
+    /// Its curve with today's expectations.
+    pub curve: Curve,
+    /// The plan that it would take.
+    pub choice: Choice,
+    /// Factor of the quality as it sees it.
+    pub noise: f64,
+}
+
+impl FirstLook {
+    /// Whether it signs up.
+    pub fn accepts(&self, params: &Params) -> bool {
+        accepts(&self.choice, self.noise, &self.curve, params)
+    }
+}
+
+/// How the n-th customer of a group of individuals looks at the company on the day on which it comes.
+pub fn first_look(
+    arrivals: &Arrivals<'_>,
+    factors: &ByGroup<LeadFactors>,
+    group: Group,
+    n: u32,
+) -> FirstLook {
+    let &DayContext { params, streams, .. } = arrivals.day;
+    let velocity = arrivals.market.economy.multiplier(group, Dimension::DealVelocity, params);
+    let keys = [group.index() as u64, u64::from(n)];
+    let traits = traits_from(streams.open(Part::Traits, keys), group, velocity, params);
+    let first_word = |part| streams.first_words(part, &[keys])[0];
+    let source = factors[group].source(first_word(Part::LeadSource).uniform());
+    let (curve, demand) = curve_and_demand(arrivals, group, &traits);
+    look_first(
+        arrivals,
+        &offers(arrivals, group),
+        group,
+        source,
+        (curve, demand),
+        first_word(Part::LeadNoise),
+    )
+}
+
+fn look_first(
+    arrivals: &Arrivals<'_>,
+    offers: &ByPlan<Offer>,
+    group: Group,
+    source: Source,
+    (curve, demand): (Curve, f64),
+    noise: Word,
+) -> FirstLook {
+    let &DayContext { settings, params, .. } = arrivals.day;
+    let quality = &params.quality;
+    let discount =
+        settings.lead_promotion.sum(group, source.channel()).max(params.promotions.lead_promotion_min);
+    FirstLook {
+        offers: *offers,
+        discount,
+        demand,
+        curve,
+        choice: choose_plan(offers, discount, demand, &curve, params),
+        noise: noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max),
+    }
+}
+
+/// The curve of a lead with today's expectations, and what quotas are compared with.
+fn curve_and_demand(arrivals: &Arrivals<'_>, group: Group, traits: &Traits) -> (Curve, f64) {
+    let &DayContext { morning, params, .. } = arrivals.day;
+    let expectation = morning.expectations[group];
+    let floor = params.customer_generation.c_max_min;
+    let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
+    let rate = traits.usage_demand * traits.seats;
+    (curve, quota_demand(rate, rate, params))
+}
+
 fn evaluate_lead(
     arrivals: &Arrivals<'_>,
     offers: &ByPlan<Offer>,
@@ -165,24 +245,18 @@ fn evaluate_lead(
     source: Source,
     noise: Word,
 ) -> Lead {
-    let &DayContext { morning, settings, params, .. } = arrivals.day;
-    let expectation = morning.expectations[group];
-    let floor = params.customer_generation.c_max_min;
-    let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
-    let rate = traits.usage_demand * traits.seats;
-    let demand = quota_demand(rate, rate, params);
+    let &DayContext { morning, params, .. } = arrivals.day;
+    let (curve, demand) = curve_and_demand(arrivals, group, &traits);
     let outcome = if group.is_enterprise() {
         if passes_gate(offers, demand, &curve, params) { Outcome::Prospect } else { Outcome::GatedOut }
     } else {
-        let discount =
-            settings.lead_promotion.sum(group, source.channel()).max(params.promotions.lead_promotion_min);
-        let choice = choose_plan(offers, discount, demand, &curve, params);
-        let quality = &params.quality;
-        let noise = noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max);
-        if accepts(&choice, noise, &curve, params) {
+        let look = look_first(arrivals, offers, group, source, (curve, demand), noise);
+        let FirstLook { choice, discount, .. } = look;
+        if look.accepts(params) {
             let terms = first_terms(arrivals, group, customer, choice, discount);
             let own = stored_curve(&traits, &curve, params);
-            let required = required_of(&own, own.c_max, terms.effective_price, expectation.c_max, params);
+            let c_drift = morning.expectations[group].c_max;
+            let required = required_of(&own, own.c_max, terms.effective_price, c_drift, params);
             Outcome::Subscribes { choice, terms, required }
         } else {
             Outcome::Lost { choice, discount }

@@ -5,6 +5,7 @@ pub mod issues;
 pub mod renewal;
 pub mod satisfaction;
 mod support_budget;
+pub mod weighing;
 
 use super::customers::columns::Block;
 use super::customers::curve::{Curve, required_quality};
@@ -32,7 +33,7 @@ pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, par
 }
 
 /// Positions of those in a block whose billing day it is.
-fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
+pub fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
     block.due((day % params.billing.billing_period_days) as u8)
 }
 

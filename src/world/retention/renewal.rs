@@ -2,18 +2,14 @@
 
 use crate::context::DayContext;
 use crate::customers::columns::{BLOCK, Block};
-use crate::customers::curve::{Curve, required_quality};
 use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
-use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
+use crate::identifiers::{ByGroup, Group, Plan};
 use crate::market::reputation::{ReputationBook, cancel_damage};
 use crate::market::social::crowd::GaveUp;
-use crate::morning::Morning;
-use crate::params::{DriftCounted, InvoluntaryChurn, Params, ServicePenalty};
-use crate::product::quality::{
-    Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
-};
+use crate::params::{DriftCounted, InvoluntaryChurn, Params};
 use crate::random::{Part, Streams, Word, word_below};
 use crate::retention::due_today;
+use crate::retention::weighing::{drifted_curve, weigh};
 use crate::settings::Settings;
 
 /// Monthly rate of involuntary churn from a standard normal draw; 0 where a group has none.
@@ -42,30 +38,6 @@ pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &St
     let z = streams.open(Part::InvoluntaryMu, [group.index() as u64, u64::from(month)]).standard_normal();
     let own = params.group(group);
     involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
-}
-
-/// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.
-///
-/// Acceptable is a price within the budget of the curve with quality at least as required (not strict).
-pub fn best_plan(
-    prices: &ByPlan<f64>,
-    qualities: &ByPlan<f64>,
-    curve: &Curve,
-    params: &Params,
-) -> Option<Plan> {
-    let mut best: Option<(f64, Plan)> = None;
-    for plan in Plan::ALL {
-        // No price requires less than the floor of the curve: most plans need no closer look.
-        let most = qualities[plan] - curve.q_min.min(curve.q_max);
-        if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
-            continue;
-        }
-        let surplus = qualities[plan] - required_quality(prices[plan], curve, params);
-        if surplus >= 0.0 && best.is_none_or(|(most, _)| surplus > most) {
-            best = Some((surplus, plan));
-        }
-    }
-    best.map(|(_, plan)| plan)
 }
 
 /// What happened at the billing decisions of a day.
@@ -162,7 +134,7 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
         let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
             Some(EndCause::Involuntary)
         } else {
-            match chosen_plan(group, block, at, judgement) {
+            match weigh(group, block, at, judgement).choice(judgement.day.params) {
                 None if block.satisfaction[at] < 0.0 => Some(EndCause::Quality),
                 None => Some(EndCause::Price),
                 Some(plan) if plan != block.plan[at] => {
@@ -208,48 +180,6 @@ fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
         plan: block.plan[at],
         price: block.effective_price[at],
     }
-}
-
-fn chosen_plan(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> Option<Plan> {
-    let &DayContext { morning, settings, params, .. } = judgement.day;
-    let prices = ByPlan::from_fn(|plan| {
-        let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
-        (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
-    });
-    let qualities = renewal_quality(group, block, at, judgement);
-    let curve = drifted_curve(group, block, at, morning, params);
-    let budget = curve.c_max * judgement.willingness_to_pay[group];
-    best_plan(&prices, &qualities, &curve.with_budget(budget), params)
-}
-
-/// Perceived quality of each plan at a billing decision (`docs/mechanics/product/quality.md#who-feels-what`).
-fn renewal_quality(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> ByPlan<f64> {
-    let &DayContext { morning, params, .. } = judgement.day;
-    let quality = &params.quality;
-    let rate = block.usage_rate[at];
-    let demand = quota_demand(rate * morning.weekday, rate, params);
-    let penalty = match params.fidelity.service_penalty {
-        ServicePenalty::Satisfaction => 0.0,
-        ServicePenalty::Everywhere => judgement.day.service_penalty,
-    };
-    ByPlan::from_fn(|plan| {
-        perceived_quality(
-            Experience {
-                delivered: morning.delivered(group, plan) - penalty,
-                relationship: relationship_bonus(block.relationship[at], quality),
-                tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),
-                quota: quota_factor(morning.quotas[plan], demand, quality),
-                issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
-                ads: block.ads_quality_sensitivity[at] * judgement.day.ads.for_group(group),
-            },
-            params.fidelity.perceived_quality,
-        )
-    })
-}
-
-fn drifted_curve(group: Group, block: &Block, at: usize, morning: &Morning, params: &Params) -> Curve {
-    let expectation = morning.expectations[group];
-    block.curve(at).drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
 /// Ongoing discount of a customer on a plan, floored at 0: P(i, g, p).
@@ -307,6 +237,7 @@ mod tests {
     use crate::customers::Customers;
     use crate::customers::columns::Subscriber;
     use crate::events::ServiceDay;
+    use crate::identifiers::ByPlan;
     use crate::morning::Morning;
     use crate::morning::tests::morning;
     use crate::params::Params;
@@ -363,11 +294,11 @@ mod tests {
         let mut block = Block::default();
         block.push(Subscriber { plan: Plan::B, relationship: 0.7, open_issue_days: 3, ..subscriber(1) });
         with_judgement(&day, &settings, 1.0, |judgement| {
-            let qualities = renewal_quality(group(), &block, 0, judgement);
+            let qualities = weigh(group(), &block, 0, judgement).qualities(judgement.day.params);
             for (plan, expected) in Plan::ALL.into_iter().zip([0.151809447, 0.298929601, 0.496473152]) {
                 assert!((qualities[plan] - expected).abs() < 1e-9, "{plan}: {}", qualities[plan]);
             }
-            assert_eq!(chosen_plan(group(), &block, 0, judgement), None);
+            assert_eq!(weigh(group(), &block, 0, judgement).choice(judgement.day.params), None);
         });
     }
 
@@ -392,9 +323,11 @@ mod tests {
             let mut block = Block::default();
             block.push(Subscriber { plan: Plan::B, start_day: 1, ..subscriber(1) });
             with_judgement(&day, &settings, willingness, |judgement| {
-                let quality = renewal_quality(group(), &block, 0, judgement)[Plan::B];
+                let weighing = weigh(group(), &block, 0, judgement);
+                let quality = weighing.qualities(judgement.day.params)[Plan::B];
                 assert!((quality - 0.484657359).abs() < 1e-9);
-                assert_eq!(chosen_plan(group(), &block, 0, judgement).is_some(), stays, "list price {list}");
+                let choice = weighing.choice(judgement.day.params);
+                assert_eq!(choice.is_some(), stays, "list price {list}");
             });
         }
     }

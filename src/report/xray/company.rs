@@ -1,0 +1,73 @@
+//! A company from within, in words.
+
+use super::table;
+use crate::session::{CompanyAnswer, CompanyDay, CompanyLens};
+use crate::world::identifiers::Plan;
+
+/// Its open threads on the day that is shown: what it perceives, what it accepts, what it would answer.
+pub fn company_in_words(lens: &CompanyLens) -> Vec<String> {
+    let CompanyLens { customer, group, day, days } = lens;
+    let mut lines = vec![format!("company {customer} · {group} · day {day}")];
+    let before = lines.len();
+    lens.shown().for_each(|own| lines.extend(thread_in_words(own)));
+    if lines.len() == before {
+        lines.push(match days.last() {
+            Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),
+            None => format!("no thread was open up to day {day}"),
+        });
+    }
+    lines
+}
+
+fn thread_in_words(own: &CompanyDay) -> Vec<String> {
+    let mut lines = vec![format!(
+        "thread {} ({}): budget {:.2}, {} turns left, relationship {:.4}{}",
+        own.thread,
+        own.kind.id(),
+        own.budget,
+        own.turns_left,
+        own.relationship,
+        match own.late_penalty {
+            0.0 => String::new(),
+            penalty => format!(", {penalty:+.4} if the late answer came today"),
+        }
+    )];
+    let head = ["plan", "quality", "if answered today", "accepts", "would name"];
+    let row = |plan: Plan| {
+        let judged = own.plans[plan];
+        vec![
+            plan.to_string(),
+            format!("{:.4}", judged.quality),
+            format!("{:.4}", judged.quality_if_answered),
+            match judged.accepts_any_price {
+                true => "any price".to_owned(),
+                false => format!("below {:.2}", judged.accepts_below),
+            },
+            if judged.counter > 0.0 { format!("{:.2}", judged.counter) } else { "nothing".to_owned() },
+        ]
+    };
+    lines.extend(table(&head, &Plan::ALL.map(row)));
+    if let Some(answer) = &own.answer {
+        let offered: Vec<String> = own
+            .offerings
+            .iter()
+            .map(|offering| format!("{} at {:.2}", offering.plan, offering.price))
+            .collect();
+        let when = own.reply_day.map_or(String::new(), |day| format!(", due on day {day}"));
+        lines.push(format!(
+            "  offered {}; today's answer{when}: {}",
+            offered.join(", "),
+            in_words(answer, own)
+        ));
+    }
+    lines
+}
+
+fn in_words(answer: &CompanyAnswer, own: &CompanyDay) -> String {
+    let plan = |at: usize| own.offerings.get(at).map_or("", |offering| offering.plan.id());
+    match answer {
+        CompanyAnswer::Accept(at) => format!("accepts plan {}", plan(*at)),
+        CompanyAnswer::Counter(at, price) => format!("names {price:.2} for plan {}", plan(*at)),
+        CompanyAnswer::Silence => "silence".to_owned(),
+    }
+}

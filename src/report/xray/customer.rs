@@ -1,0 +1,213 @@
+//! An individual from within, in words: what it decided and why, term by term.
+
+use super::table;
+use crate::session::{
+    CustomerDay, CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed,
+};
+use crate::world::identifiers::Plan;
+
+/// Days between two values of the satisfaction that is listed.
+const LISTED_DAYS: usize = 7;
+
+/// The headline, the curve, the plans today and at the last bill, satisfaction, events.
+pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
+    let first = &lens.first;
+    let came = format!("came on day {} by {}", first.day, first.source.id());
+    let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
+    let Some(shown) = lens.shown() else {
+        lines.extend(first_in_words(first));
+        return lines;
+    };
+    let curve = shown.weighed.curve;
+    lines.push(format!(
+        "curve on day {}: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
+        shown.day, curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
+    ));
+    lines.push(format!("plans on day {}, * its own:", shown.day));
+    lines.extend(plans(&shown.weighed, shown.plan));
+    if let Some(bill) = lens.last_bill() {
+        lines.push(format!("plans at the last bill, day {}:", bill.day));
+        lines.extend(plans(&bill.weighed, bill.plan));
+    }
+    lines.push(satisfaction(lens));
+    lines.extend(events(lens));
+    lines
+}
+
+/// What became of it on the day that is shown, and what would have turned it.
+fn headline(lens: &CustomerLens) -> String {
+    let Some(shown) = lens.shown() else { return first_headline(lens) };
+    let Weighed { choice, plans, turning, .. } = &shown.weighed;
+    let day = shown.day;
+    match (shown.outcome, choice) {
+        (DayOutcome::Leaves(EndCause::Involuntary), _) => format!(
+            "left on day {day}: the payment failed, with a chance of {:.2} % on that day",
+            shown.payment_failure * 100.0
+        ),
+        (DayOutcome::Leaves(_), _) => {
+            format!("left on day {day}: no plan clears; {}", would_have_stayed(turning, shown))
+        }
+        (_, None) => {
+            format!("day {day} is no billing day; no plan would clear: {}", would_have_stayed(turning, shown))
+        }
+        (outcome, Some(best)) => {
+            let what = match outcome {
+                DayOutcome::Switches(plan) => format!("switched to plan {plan} on day {day}"),
+                _ if shown.is_due => format!("stayed on plan {} on day {day}", shown.plan),
+                _ => format!("is on plan {} on day {day}, no billing day", shown.plan),
+            };
+            format!(
+                "{what}: plan {best} clears best, by {:.4}; {}",
+                plans[*best].surplus,
+                would_leave(turning, shown)
+            )
+        }
+    }
+}
+
+fn would_have_stayed(turning: &[TurningTerm], shown: &CustomerDay) -> String {
+    let turned = |without: &TurningTerm| {
+        let (plan, surplus) = without.plan?;
+        Some(format!("without {} plan {plan} would, by {surplus:.4}", term_in_words(without.term, shown)))
+    };
+    match turning.iter().find_map(turned) {
+        Some(text) => text,
+        None => "no single term makes the difference".to_owned(),
+    }
+}
+
+fn would_leave(turning: &[TurningTerm], shown: &CustomerDay) -> String {
+    let terms: Vec<String> = turning.iter().map(|without| term_in_words(without.term, shown)).collect();
+    match terms.is_empty() {
+        true => "no single term makes the difference".to_owned(),
+        false => format!("no plan would without {}", terms.join(", or without ")),
+    }
+}
+
+fn term_in_words(term: Term, shown: &CustomerDay) -> String {
+    match term {
+        Term::Issue => match shown.day.checked_sub(shown.open_issue_days) {
+            Some(since) if shown.open_issue_days > 0 => format!("the issue open since day {since}"),
+            _ => "the open issue".to_owned(),
+        },
+        Term::Ads => "ads".to_owned(),
+        Term::Quota => "the limit of the quota".to_owned(),
+        Term::Relationship => "the relationship".to_owned(),
+        Term::Tenure => "tenure".to_owned(),
+        Term::Service => "today's service".to_owned(),
+        Term::Expectations => "the market's expectations".to_owned(),
+        Term::Economy => "the economy".to_owned(),
+        Term::Prices => "the change of prices since the last bill".to_owned(),
+    }
+}
+
+/// A row for each plan.
+fn plans(weighed: &Weighed, own: Plan) -> Vec<String> {
+    let head = [
+        "plan",
+        "price",
+        "delivered",
+        "relationship",
+        "tenure",
+        "quota",
+        "issues",
+        "ads",
+        "quality",
+        "required",
+        "surplus",
+        "",
+    ];
+    let row = |plan: Plan| {
+        let terms = &weighed.plans[plan];
+        let seen = terms.experience;
+        let number = |value: f64| format!("{value:.4}");
+        vec![
+            format!("{plan}{}", if plan == own { "*" } else { "" }),
+            format!("{:.2}", terms.price),
+            number(seen.delivered),
+            number(seen.relationship),
+            number(seen.tenure),
+            number(seen.quota),
+            number(-seen.issues),
+            number(-seen.ads),
+            number(terms.quality),
+            number(terms.required),
+            number(terms.surplus),
+            if terms.within_budget { String::new() } else { "above the budget".to_owned() },
+        ]
+    };
+    table(&head, &Plan::ALL.map(row))
+}
+
+fn first_headline(lens: &CustomerLens) -> String {
+    let FirstDecision { day, plan, plans, noise, signed_up, curve, .. } = &lens.first;
+    let own = &plans[*plan];
+    let seen = own.offered.quality * noise;
+    if *signed_up {
+        return format!(
+            "signed up for plan {plan} on day {day}: quality {seen:.4} with noise {noise:.4}, required {:.4}",
+            own.required
+        );
+    }
+    let missing = match own.offered.price <= curve.c_max {
+        true => format!("misses by {:.4} with noise {noise:.4}", own.required - seen),
+        false => format!("costs {:.2}, and the budget is {:.2}", own.offered.price, curve.c_max),
+    };
+    format!("did not sign up on day {day}: plan {plan}, the one it looked at, {missing}")
+}
+
+fn first_in_words(first: &FirstDecision) -> Vec<String> {
+    let curve = first.curve;
+    let row = |plan: Plan| {
+        let own = &first.plans[plan];
+        vec![
+            plan.to_string(),
+            format!("{:.2}", own.offered.price),
+            format!("{:.4}", own.offered.quality),
+            format!("{:.4}", own.offered.quality * first.noise),
+            format!("{:.4}", own.required),
+            if own.offered.price <= curve.c_max { String::new() } else { "above the budget".to_owned() },
+        ]
+    };
+    let mut lines = vec![format!(
+        "curve: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
+        curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
+    )];
+    lines.extend(table(&["plan", "price", "quality", "with noise", "required", ""], &Plan::ALL.map(row)));
+    lines
+}
+
+/// Satisfaction of every seventh day back from the one that is shown.
+fn satisfaction(lens: &CustomerLens) -> String {
+    let listed = lens.days.iter().rev().step_by(LISTED_DAYS).take(12);
+    let mut listed: Vec<String> =
+        listed.map(|own| format!("day {} {:.3}", own.day, own.satisfaction)).collect();
+    listed.reverse();
+    format!("satisfaction: {}", listed.join(", "))
+}
+
+/// What happened to it, day by day.
+fn events(lens: &CustomerLens) -> Vec<String> {
+    let first = &lens.first;
+    let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
+    let mut waited = 0;
+    for own in &lens.days {
+        if waited == 0 && own.open_issue_days > 0 {
+            lines.push(format!("day {}: an issue is open", own.day));
+        }
+        if waited > 0 && own.open_issue_days == 0 {
+            lines.push(format!("day {}: the issue is solved after {waited} days", own.day));
+        }
+        waited = own.open_issue_days;
+        match own.outcome {
+            DayOutcome::Leaves(EndCause::Involuntary) => {
+                lines.push(format!("day {}: the payment failed", own.day))
+            }
+            DayOutcome::Leaves(_) => lines.push(format!("day {}: left", own.day)),
+            DayOutcome::Switches(plan) => lines.push(format!("day {}: switched to plan {plan}", own.day)),
+            DayOutcome::Stays if own.is_due => lines.push(format!("day {}: stayed", own.day)),
+            DayOutcome::Stays => {}
+        }
+    }
+    lines
+}

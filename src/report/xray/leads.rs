@@ -1,0 +1,51 @@
+//! The equation of a group's leads, in words.
+
+use crate::session::{LeadEquation, LeadFactor};
+
+/// The equation of the last of some days, each factor with its range over all of them, and λ where factors are held.
+pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
+    let Some(own) = days.last() else { return Vec::new() };
+    let mut lines = vec![format!("leads of {} on day {}", own.group, own.day)];
+    if !own.is_known {
+        lines.push("not discovered on that day: no leads".to_owned());
+        return lines;
+    }
+    lines.push(equation(own));
+    lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
+    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.4}"));
+    let by_group: Vec<String> = by_group.collect();
+    lines.push(match by_group.is_empty() {
+        true => "  word of mouth from nobody: there are no subscribers".to_owned(),
+        false => format!("  word of mouth from {}", by_group.join(" + ")),
+    });
+    if !held.is_empty() {
+        let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
+        let with = own.holding(held);
+        lines.push(format!("with {}: λ {with:.2} instead of {:.2}", held_at.join(", "), own.expected()));
+    }
+    lines
+}
+
+/// `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, came 104 (p 0.56)`
+fn equation(own: &LeadEquation) -> String {
+    let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", own.factor(factor)));
+    let mut sources: Vec<String> =
+        own.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
+    sources.push(format!("word of mouth {:.2}", own.by_word_of_mouth()));
+    format!(
+        "  {} × ({}) = λ {:.2}, came {} (p {:.2})",
+        factors.join(" × "),
+        sources.join(" + "),
+        own.expected(),
+        own.came,
+        own.p_value()
+    )
+}
+
+fn over_days(days: &[LeadEquation], factor: LeadFactor) -> String {
+    let values = || days.iter().filter(|day| day.is_known).map(|day| day.factor(factor));
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let now = days.last().map_or(0.0, |day| day.factor(factor));
+    let (name, count) = (factor.in_words(), values().count());
+    format!("  {factor} {name:<18} {now:>8.4}   last {count} days {least:.4} to {most:.4}")
+}

@@ -1,0 +1,22 @@
+//! What the x-ray shows, in words: the same lines for plain mode and for the console.
+
+mod company;
+mod customer;
+mod leads;
+
+pub use company::company_in_words;
+pub use customer::customer_in_words;
+pub use leads::leads_in_words;
+
+/// A table, indented.
+fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {
+    let wide = |at: usize| rows.iter().filter_map(move |row| row.get(at)).map(|cell| cell.chars().count());
+    let width = |at: usize| wide(at).chain([head[at].chars().count()]).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let line = |cells: &mut dyn Iterator<Item = &str>| {
+        let padded = cells.zip(&widths).map(|(cell, &width)| format!("  {cell:<width$}"));
+        padded.collect::<String>().trim_end().to_owned()
+    };
+    let head = line(&mut head.iter().copied());
+    std::iter::once(head).chain(rows.iter().map(|row| line(&mut row.iter().map(String::as_str)))).collect()
+}

@@ -1,0 +1,155 @@
+//! A company from within: who judges what is offered to it, day by day while a thread is open.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::session::state::Session;
+use crate::tools::Refusal;
+use crate::world::customers::Customers;
+use crate::world::customers::columns::Subscriber;
+use crate::world::day::watch::DayWatch;
+use crate::world::enterprise::letters::{late_days, late_penalty};
+use crate::world::enterprise::{
+    Answer, Enterprise, Judge, Negotiation, Thread, counter_price, highest_price, moved_relationship,
+};
+use crate::world::events::{Offering, ThreadKind};
+use crate::world::identifiers::{ByPlan, Group};
+
+/// A plan, as a company judges it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JudgedPlan {
+    /// Quality as it perceives it today.
+    pub quality: f64,
+    /// The same after what a late answer costs, if the player answered today.
+    pub quality_if_answered: f64,
+    /// The highest price that this is enough for, dollars a month and seat: it accepts prices below.
+    pub accepts_below: f64,
+    /// Whether it accepts every price, as the quality is beyond all that it can require.
+    pub accepts_any_price: bool,
+    /// The price that it would name in its next turn, dollars a month and seat; 0: it would fall silent.
+    pub counter: f64,
+}
+
+/// An open thread on a day, before anybody answers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompanyDay {
+    /// The day.
+    pub day: u32,
+    /// Number of the thread.
+    pub thread: u32,
+    /// How it began.
+    pub kind: ThreadKind,
+    /// Budget with what the market has added, dollars a month and seat.
+    pub budget: f64,
+    /// The plans.
+    pub plans: ByPlan<JudgedPlan>,
+    /// Turns in which it still takes part; at 0 it falls silent.
+    pub turns_left: u32,
+    /// Relationship, 0..=1.
+    pub relationship: f64,
+    /// What an answer today would add to the relationship, as it is late; not positive.
+    pub late_penalty: f64,
+    /// Day on which it answers, if it is its turn.
+    pub reply_day: Option<u32>,
+    /// The newest offerings.
+    pub offerings: Vec<Offering>,
+    /// What it would answer to them today; none without offerings.
+    pub answer: Option<Answer>,
+}
+
+/// A company, up to the day that is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompanyLens {
+    /// Customer number.
+    pub customer: u32,
+    /// Its group.
+    pub group: Group,
+    /// The day that is shown.
+    pub day: u32,
+    /// Its threads day by day.
+    pub days: Vec<CompanyDay>,
+}
+
+impl CompanyLens {
+    /// The threads that were open on the day that is shown.
+    pub fn shown(&self) -> impl Iterator<Item = &CompanyDay> {
+        self.days.iter().filter(|own| own.day == self.day)
+    }
+}
+
+impl Session {
+    /// A company on a day that it has reached.
+    pub(in crate::session) fn company_lens(
+        &self,
+        customer: u32,
+        group: Group,
+        day: u32,
+    ) -> Result<CompanyLens, Refusal> {
+        let diary = Arc::new(CompanyDiary { customer, days: Mutex::default() });
+        self.watch_up_to(day, diary.clone())?;
+        let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));
+        let days = days.into_iter().filter(|own| own.day <= day).collect();
+        Ok(CompanyLens { customer, group, day, days })
+    }
+}
+
+/// Keeps the open threads of one company.
+struct CompanyDiary {
+    customer: u32,
+    days: Mutex<Vec<CompanyDay>>,
+}
+
+impl DayWatch for CompanyDiary {
+    fn before_negotiations(&self, enterprise: &Enterprise, customers: &Customers, talks: &Negotiation<'_>) {
+        let threads = enterprise.threads.iter().filter(|thread| thread.customer == self.customer);
+        let seen = threads.filter_map(|thread| company_day(thread, enterprise, customers, talks));
+        self.days.lock().unwrap_or_else(PoisonError::into_inner).extend(seen);
+    }
+}
+
+/// A thread this morning; none if it is over.
+fn company_day(
+    thread: &Thread,
+    enterprise: &Enterprise,
+    customers: &Customers,
+    talks: &Negotiation<'_>,
+) -> Option<CompanyDay> {
+    let (day, params) = (talks.day.day(), talks.day.params);
+    let turn = thread.live(params.fidelity.reappearing_threads)?;
+    let row = enterprise.company(thread.customer)?.row(customers)?;
+    let judge = enterprise.judge(thread, customers, talks)?;
+    let late_penalty = late_days(thread, day).map_or(0.0, |days| late_penalty(days, &params.enterprise));
+    let offended = match late_penalty {
+        0.0 => judge,
+        change => {
+            let relationship = moved_relationship(row.relationship, change, &params.enterprise);
+            enterprise.judge_of(thread, &Subscriber { relationship, ..row }, talks)?
+        }
+    };
+    let number = thread.last().number;
+    let plans = ByPlan::from_fn(|plan| {
+        let Judge { curve, quality, initial_offer_factor, .. } = offended;
+        let highest = highest_price(quality[plan], &curve, params);
+        let beyond = quality[plan] - curve.q_max > params.enterprise.accept_min_satisfaction_exclusive;
+        JudgedPlan {
+            quality: judge.quality[plan],
+            quality_if_answered: quality[plan],
+            accepts_below: highest,
+            accepts_any_price: beyond && !params.fidelity.deal_price_ceiling,
+            counter: counter_price(highest, initial_offer_factor, number, params),
+        }
+    });
+    let offerings = thread.offerings().to_vec();
+    Some(CompanyDay {
+        day,
+        thread: thread.number,
+        kind: thread.kind,
+        budget: judge.curve.c_max,
+        plans,
+        turns_left: judge.max_turns.saturating_sub(number),
+        relationship: row.relationship,
+        late_penalty,
+        reply_day: turn.reply_day,
+        answer: (!offerings.is_empty()).then(|| judge.answer(&offerings, number, params)),
+        offerings,
+    })
+}

@@ -1,0 +1,183 @@
+//! What is kept of the days of one individual that is watched.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::weighed::Weighed;
+use crate::world::customers::choice::{Choice, offered};
+use crate::world::customers::columns::Block;
+use crate::world::customers::curve::{Curve, required_quality};
+use crate::world::day::watch::DayWatch;
+use crate::world::events::{EndCause, Facts, Source};
+use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use crate::world::market::arrivals::{Arrivals, first_look};
+use crate::world::market::leads::LeadFactors;
+use crate::world::params::Params;
+use crate::world::retention::due_today;
+use crate::world::retention::renewal::RenewalContext;
+use crate::world::retention::weighing::weigh;
+use crate::world::state::World;
+
+/// A plan, as a lead sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct FirstTerms {
+    /// Price after the discount, and quality with the quota, before noise.
+    pub offered: Choice,
+    /// Quality required at the price.
+    pub required: f64,
+}
+
+/// The first decision of an individual.
+#[derive(Debug, Clone)]
+pub struct FirstDecision {
+    /// The day.
+    pub day: u32,
+    /// How it came.
+    pub source: Source,
+    /// The plans.
+    pub plans: ByPlan<FirstTerms>,
+    /// The plan it looked at: the one with the largest surplus before noise, A if there is none.
+    pub plan: Plan,
+    /// Factor of the quality as it saw it.
+    pub noise: f64,
+    /// Its curve, with the market's expectations.
+    pub curve: Curve,
+    /// Whether it signed up.
+    pub signed_up: bool,
+}
+
+/// What came of a day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DayOutcome {
+    /// It is there.
+    Stays,
+    /// It is on another plan.
+    Switches(Plan),
+    /// It left.
+    Leaves(EndCause),
+}
+
+/// A day of a subscriber, at the moment of the decisions.
+#[derive(Debug, Clone)]
+pub struct CustomerDay {
+    /// The day.
+    pub day: u32,
+    /// Plan of the morning.
+    pub plan: Plan,
+    /// Price in force, dollars a month.
+    pub price: f64,
+    /// Satisfaction after today.
+    pub satisfaction: f64,
+    /// Relationship, 0..=1.
+    pub relationship: f64,
+    /// Days an issue has been open.
+    pub open_issue_days: u32,
+    /// Whether it is a billing day.
+    pub is_due: bool,
+    /// Chance that the payment fails for good, on a billing day.
+    pub payment_failure: f64,
+    /// What it weighs, or would weigh if it were a billing day.
+    pub weighed: Weighed,
+    /// What came of it.
+    pub outcome: DayOutcome,
+}
+
+/// Keeps the days of one individual.
+pub(in crate::session) struct CustomerDiary {
+    customer: u32,
+    group: Group,
+    n: u32,
+    arrival_day: u32,
+    pages: Mutex<CustomerPages>,
+}
+
+#[derive(Default)]
+pub(in crate::session) struct CustomerPages {
+    pub(in crate::session) first: Option<FirstDecision>,
+    pub(in crate::session) days: Vec<CustomerDay>,
+    today: Option<CustomerDay>,
+    last_bill: Option<ByPlan<f64>>,
+}
+
+impl CustomerDiary {
+    /// An empty one of the n-th customer of a group.
+    pub(in crate::session) fn of(customer: u32, (group, n): (Group, u32), arrival_day: u32) -> CustomerDiary {
+        CustomerDiary { customer, group, n, arrival_day, pages: Mutex::default() }
+    }
+
+    /// What it holds.
+    pub(in crate::session) fn take(&self) -> CustomerPages {
+        std::mem::take(&mut *self.pages())
+    }
+
+    fn pages(&self) -> MutexGuard<'_, CustomerPages> {
+        self.pages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl DayWatch for CustomerDiary {
+    fn before_decisions(&self, group: Group, block: &Block, judgement: &RenewalContext<'_>) {
+        if group != self.group {
+            return;
+        }
+        let Some(at) = block.position(self.n) else { return };
+        let (day, params) = (judgement.day.day(), judgement.day.params);
+        let mut pages = self.pages();
+        let weighing = weigh(group, block, at, judgement);
+        let is_due = due_today(block, day, params).contains(&at);
+        pages.today = Some(CustomerDay {
+            day,
+            plan: block.plan[at],
+            price: block.effective_price[at],
+            satisfaction: block.satisfaction[at],
+            relationship: block.relationship[at],
+            open_issue_days: block.open_issue_days[at],
+            is_due,
+            payment_failure: if is_due { judgement.involuntary[group] } else { 0.0 },
+            weighed: Weighed::of(&weighing, pages.last_bill.as_ref(), params),
+            outcome: DayOutcome::Stays,
+        });
+        if is_due {
+            pages.last_bill = Some(weighing.prices);
+        }
+    }
+
+    fn leads_expected(&self, arrivals: &Arrivals<'_>, _: &ByGroup<u32>, factors: &ByGroup<LeadFactors>) {
+        if arrivals.day.day() != self.arrival_day {
+            return;
+        }
+        let params = arrivals.day.params;
+        let look = first_look(arrivals, factors, self.group, self.n);
+        let plans = ByPlan::from_fn(|plan| {
+            let offered = offered(&look.offers[plan], plan, look.discount, look.demand, params);
+            FirstTerms { offered, required: required_quality(offered.price, &look.curve, params) }
+        });
+        let mut pages = self.pages();
+        pages.last_bill = Some(ByPlan::from_fn(|plan| plans[plan].offered.price));
+        pages.first = Some(FirstDecision {
+            day: self.arrival_day,
+            source: Source::Organic,
+            plans,
+            plan: look.choice.plan,
+            noise: look.noise,
+            curve: look.curve,
+            signed_up: look.accepts(params),
+        });
+    }
+
+    fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
+        let mut pages = self.pages();
+        if let Some(first) = pages.first.as_mut().filter(|first| first.day == world.day) {
+            let own = facts.arrivals.iter().find(|arrival| arrival.customer == self.customer);
+            first.source = own.map_or(Source::Organic, |arrival| arrival.source);
+        }
+        let Some(mut today) = pages.today.take() else { return };
+        let ended = facts.endings.iter().find(|ending| ending.customer == self.customer);
+        let changed = facts.changes.iter().find(|change| change.customer == self.customer);
+        today.outcome = match (ended, changed) {
+            (Some(ending), _) => DayOutcome::Leaves(ending.cause),
+            (None, Some(change)) if change.plan != today.plan => DayOutcome::Switches(change.plan),
+            _ => DayOutcome::Stays,
+        };
+        pages.days.push(today);
+    }
+}

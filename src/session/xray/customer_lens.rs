@@ -1,0 +1,58 @@
+//! An individual from within: how it came, and each day what it weighed.
+
+use std::sync::Arc;
+
+use super::customer_diary::{CustomerDay, CustomerDiary, FirstDecision};
+use crate::session::state::Session;
+use crate::tools::Refusal;
+use crate::world::identifiers::Group;
+
+/// An individual, up to the day that is shown.
+#[derive(Debug, Clone)]
+pub struct CustomerLens {
+    /// Customer number.
+    pub customer: u32,
+    /// Its group.
+    pub group: Group,
+    /// The day that is shown.
+    pub day: u32,
+    /// How it decided when it came.
+    pub first: FirstDecision,
+    /// Its days as a subscriber, from the one after it signed up.
+    pub days: Vec<CustomerDay>,
+}
+
+impl CustomerLens {
+    /// The day that is shown, or the last one before it on which it was a subscriber.
+    pub fn shown(&self) -> Option<&CustomerDay> {
+        self.days.last()
+    }
+
+    /// The last bill before that day.
+    pub fn last_bill(&self) -> Option<&CustomerDay> {
+        let shown = self.shown()?.day;
+        self.days.iter().rev().find(|own| own.is_due && own.day < shown)
+    }
+}
+
+impl Session {
+    /// An individual on a day that it has reached.
+    pub(in crate::session) fn customer_lens(
+        &self,
+        customer: u32,
+        found: (Group, u32),
+        day: u32,
+    ) -> Result<CustomerLens, Refusal> {
+        let diary = Arc::new(CustomerDiary::of(customer, found, self.arrival_of(customer)));
+        self.watch_up_to(day, diary.clone())?;
+        let pages = diary.take();
+        let Some(first) = pages.first else {
+            return Err(Refusal::new(
+                "not_readable",
+                format!("customer {customer} could not be seen coming"),
+            ));
+        };
+        let days = pages.days.into_iter().filter(|own| own.day <= day).collect();
+        Ok(CustomerLens { customer, group: found.0, day, first, days })
+    }
+}

@@ -1,0 +1,255 @@
+//! A decision of an individual, term by term, and the terms without which it would have come out otherwise.
+
+use crate::world::customers::curve::{Curve, required_quality};
+use crate::world::identifiers::{ByPlan, Plan};
+use crate::world::market::drift::Expectation;
+use crate::world::params::Params;
+use crate::world::product::quality::Experience;
+use crate::world::retention::weighing::Weighing;
+
+/// A plan, as an individual sees it on a billing day.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanTerms {
+    /// Price after the ongoing discount, dollars a month.
+    pub price: f64,
+    /// The terms of its perceived quality.
+    pub experience: Experience,
+    /// Perceived quality.
+    pub quality: f64,
+    /// Quality required at the price.
+    pub required: f64,
+    /// Quality beyond what is required.
+    pub surplus: f64,
+    /// Whether the price is within the budget; acceptable is a surplus of at least 0 within it.
+    pub within_budget: bool,
+}
+
+/// Something that goes into a decision and could have been otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Term {
+    /// The open issue.
+    Issue,
+    /// In-app ads.
+    Ads,
+    /// A quota below the demand.
+    Quota,
+    /// The relationship, good or bad.
+    Relationship,
+    /// Time subscribed.
+    Tenure,
+    /// Today's service.
+    Service,
+    /// What the market expects beyond the own curve.
+    Expectations,
+    /// The economy's effect on the budget.
+    Economy,
+    /// List prices and discounts beside those of the last bill.
+    Prices,
+}
+
+impl Term {
+    /// All terms.
+    pub const ALL: [Term; 9] = [
+        Term::Issue,
+        Term::Ads,
+        Term::Quota,
+        Term::Relationship,
+        Term::Tenure,
+        Term::Service,
+        Term::Expectations,
+        Term::Economy,
+        Term::Prices,
+    ];
+
+    /// The weighing without the term; none where it weighs nothing. `last_bill` are the prices of the last bill.
+    fn removed(self, weighing: &Weighing, last_bill: Option<&ByPlan<f64>>) -> Option<Weighing> {
+        let mut other = *weighing;
+        let mut each = |change: &dyn Fn(&mut Experience)| other.experiences.0.iter_mut().for_each(change);
+        match self {
+            Term::Issue => each(&|own| own.issues = 0.0),
+            Term::Ads => each(&|own| own.ads = 0.0),
+            Term::Quota => each(&|own| own.quota = 1.0),
+            Term::Relationship => each(&|own| own.relationship = 0.0),
+            Term::Tenure => each(&|own| own.tenure = 0.0),
+            Term::Service => each(&|own| own.delivered += weighing.service_penalty),
+            Term::Expectations => other.expectation = Expectation { quality: 0.0, c_max: 0.0 },
+            Term::Economy => other.willingness_to_pay = 1.0,
+            Term::Prices => other.prices = *last_bill?,
+        }
+        Some(other)
+    }
+}
+
+/// What a decision would have been without a term.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningTerm {
+    /// The term.
+    pub term: Term,
+    /// The plan that would have been best, with its surplus; none if no plan would have been acceptable.
+    pub plan: Option<(Plan, f64)>,
+}
+
+/// A decision as it was weighed.
+#[derive(Debug, Clone)]
+pub struct Weighed {
+    /// The plans.
+    pub plans: ByPlan<PlanTerms>,
+    /// The curve, with the market's expectations and the economy.
+    pub curve: Curve,
+    /// The best acceptable plan.
+    pub choice: Option<Plan>,
+    /// The terms that turn the decision, each alone: from leaving to staying, the largest surplus first; or from staying
+    /// to leaving.
+    pub turning: Vec<TurningTerm>,
+}
+
+impl Weighed {
+    /// Takes apart what was weighed.
+    pub(in crate::session) fn of(
+        weighing: &Weighing,
+        last_bill: Option<&ByPlan<f64>>,
+        params: &Params,
+    ) -> Weighed {
+        let curve = weighing.curve(params);
+        let qualities = weighing.qualities(params);
+        let plans = ByPlan::from_fn(|plan| {
+            let price = weighing.prices[plan];
+            PlanTerms {
+                price,
+                experience: weighing.experiences[plan],
+                quality: qualities[plan],
+                required: required_quality(price, &curve, params),
+                surplus: weighing.surplus(plan, params),
+                within_budget: price <= curve.c_max,
+            }
+        });
+        let choice = weighing.choice(params);
+        let without = |term: Term| {
+            let other = term.removed(weighing, last_bill)?;
+            let plan = other.choice(params).map(|plan| (plan, other.surplus(plan, params)));
+            (plan.is_some() != choice.is_some()).then_some(TurningTerm { term, plan })
+        };
+        let mut turning: Vec<TurningTerm> = Term::ALL.into_iter().filter_map(without).collect();
+        let surplus = |without: &TurningTerm| without.plan.map_or(0.0, |(_, surplus)| surplus);
+        turning.sort_by(|one, other| surplus(other).total_cmp(&surplus(one)));
+        Weighed { plans, curve, choice, turning }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::world::customers::columns::Block;
+    use crate::world::day::step_day_watched;
+    use crate::world::day::watch::DayWatch;
+    use crate::world::events::{EndCause, Facts};
+    use crate::world::held::Held;
+    use crate::world::identifiers::{Channel, Group};
+    use crate::world::random::Streams;
+    use crate::world::retention::due_today;
+    use crate::world::retention::renewal::RenewalContext;
+    use crate::world::retention::weighing::weigh;
+    use crate::world::settings::PerGroup;
+    use crate::world::state::World;
+
+    /// A decision as the lens sees it: plan of the morning, whether satisfaction was negative, what was weighed.
+    struct Seen {
+        plan: Plan,
+        is_unhappy: bool,
+        weighed: Weighed,
+        has_late_issue: bool,
+    }
+
+    /// Takes apart the decisions of everybody.
+    #[derive(Default)]
+    struct Everybody(Mutex<BTreeMap<u32, Seen>>);
+
+    impl DayWatch for Everybody {
+        fn before_decisions(&self, group: Group, block: &Block, judgement: &RenewalContext<'_>) {
+            if group.is_enterprise() {
+                return;
+            }
+            let params = judgement.day.params;
+            for at in due_today(block, judgement.day.day(), params) {
+                let weighed = Weighed::of(&weigh(group, block, at, judgement), None, params);
+                let is_unhappy = block.satisfaction[at] < 0.0;
+                let has_late_issue = block.open_issue_days[at] > 3;
+                let seen = Seen { plan: block.plan[at], is_unhappy, weighed, has_late_issue };
+                self.0.lock().expect("a lock").insert(block.customer[at], seen);
+            }
+        }
+    }
+
+    /// A company with many subscribers whose prices, quotas and ads change all the time.
+    fn change_settings(world: &mut World, day: u32) {
+        let step = f64::from(day % 11);
+        let core = &mut world.settings.core;
+        core.prices.0 = [8.0 + step, 16.0 + 2.0 * step, 40.0 + 3.0 * step];
+        core.tiers.0 = [2, 4, 5];
+        core.capacity_tier = 7;
+        world.settings.ads_strength.global = f64::from(day % 3) * 0.1;
+        world.settings.promotion.global = f64::from(day % 4);
+        let groups = ["S1", "S2", "S3"].map(|id| (Group::parse(id).expect("a group"), 8000.0));
+        world.settings.targeted_ads.targeted_spend.insert(Channel::ContentMarketing, PerGroup::from(groups));
+    }
+
+    #[test]
+    fn verdicts_agree_with_a_hundred_thousand_decisions_and_terms_add_up() {
+        let (params, streams) = (Params::shipped(), Streams::new(11));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1e12, &params, &mut facts);
+        crate::world::test_kit::policy_p(&mut world);
+        let everybody = Everybody::default();
+        let (mut judged, mut left, mut switched, mut turned_by_issue) = (0, 0, 0, 0);
+        while judged < 100_000 {
+            let tomorrow = world.day + 1;
+            change_settings(&mut world, tomorrow);
+            step_day_watched(&mut world, &params, &streams, &Held::default(), &mut facts, &everybody);
+            let seen = std::mem::take(&mut *everybody.0.lock().expect("a lock"));
+            let ended: BTreeMap<u32, EndCause> =
+                facts.endings.iter().map(|ending| (ending.customer, ending.cause)).collect();
+            let plans: BTreeMap<u32, Plan> =
+                facts.changes.iter().map(|change| (change.customer, change.plan)).collect();
+            for (customer, Seen { plan, is_unhappy, weighed, has_late_issue }) in seen {
+                add_up(&weighed);
+                let outcome = ended.get(&customer);
+                if outcome == Some(&EndCause::Involuntary) {
+                    continue;
+                }
+                judged += 1;
+                let expected = match (weighed.choice, is_unhappy) {
+                    (Some(_), _) => None,
+                    (None, true) => Some(&EndCause::Quality),
+                    (None, false) => Some(&EndCause::Price),
+                };
+                assert_eq!(outcome, expected, "customer {customer} on day {}", world.day);
+                left += u32::from(expected.is_some());
+                if let Some(chosen) = weighed.choice {
+                    assert_eq!(*plans.get(&customer).unwrap_or(&plan), chosen, "customer {customer}");
+                    switched += u32::from(chosen != plan);
+                }
+                let issue = weighed.turning.iter().any(|without| without.term == Term::Issue);
+                turned_by_issue += u32::from(issue && weighed.choice.is_none());
+                assert!(!issue || has_late_issue || weighed.plans[Plan::A].experience.issues > 0.0);
+            }
+        }
+        assert!(left > 2000 && switched > 2000 && turned_by_issue > 0, "{left} {switched} {turned_by_issue}");
+    }
+
+    /// What is shown of a plan adds up to what was compared, bit for bit.
+    fn add_up(weighed: &Weighed) {
+        for own in weighed.plans.iter() {
+            let Experience { delivered, relationship, tenure, quota, issues, ads } = own.experience;
+            let quality = (delivered + relationship + tenure) * quota - issues - ads;
+            assert_eq!(quality.to_bits(), own.quality.to_bits());
+            assert_eq!((own.quality - own.required).to_bits(), own.surplus.to_bits());
+        }
+        let acceptable = |plan: Plan| weighed.plans[plan].within_budget && weighed.plans[plan].surplus >= 0.0;
+        assert_eq!(Plan::ALL.into_iter().any(acceptable), weighed.choice.is_some());
+        assert!(weighed.choice.is_none_or(acceptable));
+        assert!(weighed.turning.iter().all(|without| without.plan.is_some() == weighed.choice.is_none()));
+    }
+}

@@ -1,0 +1,119 @@
+//! What an individual weighs when it decides whether to stay (`docs/mechanics/retention/renewal.md`).
+
+use super::renewal::{RenewalContext, ongoing_discount};
+use crate::context::DayContext;
+use crate::customers::columns::Block;
+use crate::customers::curve::{Curve, required_quality};
+use crate::identifiers::{ByPlan, Group, Plan};
+use crate::market::drift::Expectation;
+use crate::morning::Morning;
+use crate::params::{Params, ServicePenalty};
+use crate::product::quality::{
+    Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
+};
+
+/// The plans as an individual sees them, and what it asks of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Weighing {
+    /// Today's list prices after the ongoing discounts, dollars a month.
+    pub prices: ByPlan<f64>,
+    /// What each plan would be like.
+    pub experiences: ByPlan<Experience>,
+    /// Quality lost to today's service, contained in what is delivered.
+    pub service_penalty: f64,
+    /// Its own curve.
+    pub own_curve: Curve,
+    /// What the market adds to the curve.
+    pub expectation: Expectation,
+    /// Macro multiplier of the budget.
+    pub willingness_to_pay: f64,
+}
+
+/// What an individual at a position of a block weighs today.
+pub fn weigh(group: Group, block: &Block, at: usize, judgement: &RenewalContext<'_>) -> Weighing {
+    let &DayContext { morning, settings, params, .. } = judgement.day;
+    let service_penalty = match params.fidelity.service_penalty {
+        ServicePenalty::Satisfaction => 0.0,
+        ServicePenalty::Everywhere => judgement.day.service_penalty,
+    };
+    let prices = ByPlan::from_fn(|plan| {
+        let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
+        (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
+    });
+    let quality = &params.quality;
+    let rate = block.usage_rate[at];
+    let demand = quota_demand(rate * morning.weekday, rate, params);
+    // (`docs/mechanics/product/quality.md#who-feels-what`)
+    let experiences = ByPlan::from_fn(|plan| Experience {
+        delivered: morning.delivered(group, plan) - service_penalty,
+        relationship: relationship_bonus(block.relationship[at], quality),
+        tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),
+        quota: quota_factor(morning.quotas[plan], demand, quality),
+        issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
+        ads: block.ads_quality_sensitivity[at] * judgement.day.ads.for_group(group),
+    });
+    Weighing {
+        prices,
+        experiences,
+        service_penalty,
+        own_curve: block.curve(at),
+        expectation: morning.expectations[group],
+        willingness_to_pay: judgement.willingness_to_pay[group],
+    }
+}
+
+impl Weighing {
+    /// Perceived quality of each plan.
+    pub fn qualities(&self, params: &Params) -> ByPlan<f64> {
+        ByPlan::from_fn(|plan| perceived_quality(self.experiences[plan], params.fidelity.perceived_quality))
+    }
+
+    /// The curve with what the market adds, and the budget with the economy.
+    pub fn curve(&self, params: &Params) -> Curve {
+        let Weighing { own_curve, expectation, willingness_to_pay, .. } = self;
+        let curve =
+            own_curve.drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min);
+        curve.with_budget(curve.c_max * willingness_to_pay)
+    }
+
+    /// The plan that is best, if one is acceptable.
+    pub fn choice(&self, params: &Params) -> Option<Plan> {
+        best_plan(&self.prices, &self.qualities(params), &self.curve(params), params)
+    }
+
+    /// Quality of a plan beyond what its price requires; acceptable is 0 or more, within the budget.
+    pub fn surplus(&self, plan: Plan, params: &Params) -> f64 {
+        let quality = perceived_quality(self.experiences[plan], params.fidelity.perceived_quality);
+        quality - required_quality(self.prices[plan], &self.curve(params), params)
+    }
+}
+
+/// The curve of an individual with what the market adds.
+pub fn drifted_curve(group: Group, block: &Block, at: usize, morning: &Morning, params: &Params) -> Curve {
+    let expectation = morning.expectations[group];
+    block.curve(at).drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
+}
+
+/// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.
+///
+/// Acceptable is a price within the budget of the curve with quality at least as required (not strict).
+pub fn best_plan(
+    prices: &ByPlan<f64>,
+    qualities: &ByPlan<f64>,
+    curve: &Curve,
+    params: &Params,
+) -> Option<Plan> {
+    let mut best: Option<(f64, Plan)> = None;
+    for plan in Plan::ALL {
+        // No price requires less than the floor of the curve: most plans need no closer look.
+        let most = qualities[plan] - curve.q_min.min(curve.q_max);
+        if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
+            continue;
+        }
+        let surplus = qualities[plan] - required_quality(prices[plan], curve, params);
+        if surplus >= 0.0 && best.is_none_or(|(most, _)| surplus > most) {
+            best = Some((surplus, plan));
+        }
+    }
+    best.map(|(_, plan)| plan)
+}

@@ -231,7 +231,8 @@ const WALKS: [&str; 16] =
 
 /// Writes a draft somewhere, walks away in random ways, and finds the draft again.
 fn drafts_stay(console: &mut Console, dice: &mut Dice) {
-    if console.app.run().is_none_or(|run| !run.company.is_running()) {
+    // In a replay nothing is written.
+    if console.app.run().is_none_or(|run| !run.company.is_running() || run.viewer.is_some()) {
         return;
     }
     let size = std::mem::replace(&mut console.size, (120, 40));

@@ -10,7 +10,7 @@ use novamind::session::{
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{open_shop, rows, week, weeks};
+use crate::support::company::{column, open_shop, rows, week, weeks};
 
 fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
     let new = NewRun {
@@ -175,7 +175,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
     let last_day = session.day();
     let mut seen = BTreeMap::new();
     for status in ["lost", "cancelled", "subscribed"] {
-        for row in known.iter().filter(|row| word(&row[4]) == status).step_by(41).take(6) {
+        for row in known.iter().filter(|row| word(&row[4]) == status).step_by(17).take(12) {
             let customer = whole(&row[0]).expect("a customer");
             let lens = individual(&mut session, customer, None);
             assert_eq!(lens.first.signed_up, status != "lost", "customer {customer}");
@@ -197,6 +197,14 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
                     own.day
                 );
             }
+            if let (Some(since), Some(shown)) = (lens.issue_since(), lens.shown()) {
+                let sql = format!(
+                    "SELECT max(open_day) FROM issues WHERE customer_id = {customer} AND open_day <= {}",
+                    shown.day
+                );
+                assert_eq!(column(&mut session, &sql), [f64::from(since)], "customer {customer}");
+                *seen.entry("with an issue").or_insert(0) += 1;
+            }
             // An earlier day is a beginning of the same.
             let shown = lens.first.day + 1;
             if shown <= last_day {
@@ -206,7 +214,10 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
             *seen.entry(status).or_insert(0) += 1;
         }
     }
-    assert!(["lost", "cancelled", "subscribed"].iter().all(|status| seen.get(status) > Some(&2)), "{seen:?}");
+    assert!(
+        ["lost", "cancelled", "subscribed", "with an issue"].iter().all(|status| seen.get(status) > Some(&2)),
+        "{seen:?}"
+    );
     let refused = |session: &mut Session, customer, day| session.lens(customer, day).expect_err("no").code;
     assert_eq!(refused(&mut session, 0, None), "customer_not_found");
     assert_eq!(refused(&mut session, u32::MAX, None), "customer_not_found");

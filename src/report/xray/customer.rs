@@ -1,9 +1,7 @@
 //! An individual from within, in words: what it decided and why, term by term.
 
 use super::table;
-use crate::session::{
-    CustomerDay, CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed,
-};
+use crate::session::{CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed};
 use crate::world::identifiers::Plan;
 
 /// Days between two values of the satisfaction that is listed.
@@ -45,10 +43,10 @@ fn headline(lens: &CustomerLens) -> String {
             shown.payment_failure * 100.0
         ),
         (DayOutcome::Leaves(_), _) => {
-            format!("left on day {day}: no plan clears; {}", would_have_stayed(turning, shown))
+            format!("left on day {day}: no plan clears; {}", would_have_stayed(turning, lens))
         }
         (_, None) => {
-            format!("day {day} is no billing day; no plan would clear: {}", would_have_stayed(turning, shown))
+            format!("day {day} is no billing day; no plan would clear: {}", would_have_stayed(turning, lens))
         }
         (outcome, Some(best)) => {
             let what = match outcome {
@@ -59,16 +57,16 @@ fn headline(lens: &CustomerLens) -> String {
             format!(
                 "{what}: plan {best} clears best, by {:.4}; {}",
                 plans[*best].surplus,
-                would_leave(turning, shown)
+                would_leave(turning, lens)
             )
         }
     }
 }
 
-fn would_have_stayed(turning: &[TurningTerm], shown: &CustomerDay) -> String {
+fn would_have_stayed(turning: &[TurningTerm], lens: &CustomerLens) -> String {
     let turned = |without: &TurningTerm| {
         let (plan, surplus) = without.plan?;
-        Some(format!("without {} plan {plan} would, by {surplus:.4}", term_in_words(without.term, shown)))
+        Some(format!("without {} plan {plan} would, by {surplus:.4}", term_in_words(without.term, lens)))
     };
     match turning.iter().find_map(turned) {
         Some(text) => text,
@@ -76,19 +74,19 @@ fn would_have_stayed(turning: &[TurningTerm], shown: &CustomerDay) -> String {
     }
 }
 
-fn would_leave(turning: &[TurningTerm], shown: &CustomerDay) -> String {
-    let terms: Vec<String> = turning.iter().map(|without| term_in_words(without.term, shown)).collect();
+fn would_leave(turning: &[TurningTerm], lens: &CustomerLens) -> String {
+    let terms: Vec<String> = turning.iter().map(|without| term_in_words(without.term, lens)).collect();
     match terms.is_empty() {
         true => "no single term makes the difference".to_owned(),
         false => format!("no plan would without {}", terms.join(", or without ")),
     }
 }
 
-fn term_in_words(term: Term, shown: &CustomerDay) -> String {
+fn term_in_words(term: Term, lens: &CustomerLens) -> String {
     match term {
-        Term::Issue => match shown.day.checked_sub(shown.open_issue_days) {
-            Some(since) if shown.open_issue_days > 0 => format!("the issue open since day {since}"),
-            _ => "the open issue".to_owned(),
+        Term::Issue => match lens.issue_since() {
+            Some(since) => format!("the issue open since day {since}"),
+            None => "an issue".to_owned(),
         },
         Term::Ads => "ads".to_owned(),
         Term::Quota => "the limit of the quota".to_owned(),
@@ -128,8 +126,8 @@ fn plans(weighed: &Weighed, own: Plan) -> Vec<String> {
             number(seen.relationship),
             number(seen.tenure),
             number(seen.quota),
-            number(-seen.issues),
-            number(-seen.ads),
+            number(0.0 - seen.issues),
+            number(0.0 - seen.ads),
             number(terms.quality),
             number(terms.required),
             number(terms.surplus),
@@ -192,11 +190,12 @@ fn events(lens: &CustomerLens) -> Vec<String> {
     let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
     let mut waited = 0;
     for own in &lens.days {
-        if waited == 0 && own.open_issue_days > 0 {
-            lines.push(format!("day {}: an issue is open", own.day));
+        let is_new = own.open_issue_days > 0 && (waited == 0 || own.open_issue_days <= waited);
+        if waited > 0 && (own.open_issue_days == 0 || is_new) {
+            lines.push(format!("day {}: the issue is solved", own.day));
         }
-        if waited > 0 && own.open_issue_days == 0 {
-            lines.push(format!("day {}: the issue is solved after {waited} days", own.day));
+        if is_new {
+            lines.push(format!("day {}: an issue opens", own.day));
         }
         waited = own.open_issue_days;
         match own.outcome {

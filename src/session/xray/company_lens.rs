@@ -11,7 +11,7 @@ use crate::world::enterprise::letters::{late_days, late_penalty};
 use crate::world::enterprise::{
     Answer, Enterprise, Judge, Negotiation, Thread, counter_price, highest_price, moved_relationship,
 };
-use crate::world::events::{Offering, ThreadKind};
+use crate::world::events::{Offering, Sender, ThreadKind};
 use crate::world::identifiers::{ByPlan, Group};
 
 /// A plan, as a company judges it.
@@ -42,7 +42,7 @@ pub struct CompanyDay {
     pub budget: f64,
     /// The plans.
     pub plans: ByPlan<JudgedPlan>,
-    /// Turns in which it still takes part; at 0 it falls silent.
+    /// Turns in which it still answers; at 0 its next answer is silence.
     pub turns_left: u32,
     /// Relationship, 0..=1.
     pub relationship: f64,
@@ -50,7 +50,7 @@ pub struct CompanyDay {
     pub late_penalty: f64,
     /// Day on which it answers, if it is its turn.
     pub reply_day: Option<u32>,
-    /// The newest offerings.
+    /// The newest offerings of the player, if it is to answer to them; empty while the player's turn is awaited.
     pub offerings: Vec<Offering>,
     /// What it would answer to them today; none without offerings.
     pub answer: Option<Answer>,
@@ -125,7 +125,8 @@ fn company_day(
             enterprise.judge_of(thread, &Subscriber { relationship, ..row }, talks)?
         }
     };
-    let number = thread.last().number;
+    // Its answer follows a turn of the player: the newest one, or the one that is awaited.
+    let turns = thread.last().number + u32::from(thread.last().sender != Sender::Agent);
     let plans = ByPlan::from_fn(|plan| {
         let Judge { curve, quality, initial_offer_factor, .. } = offended;
         let highest = highest_price(quality[plan], &curve, params);
@@ -135,21 +136,24 @@ fn company_day(
             quality_if_answered: quality[plan],
             accepts_below: highest,
             accepts_any_price: beyond && !params.fidelity.deal_price_ceiling,
-            counter: counter_price(highest, initial_offer_factor, number, params),
+            counter: counter_price(highest, initial_offer_factor, turns, params),
         }
     });
-    let offerings = thread.offerings().to_vec();
+    let offerings = match thread.last().sender {
+        Sender::Agent => thread.offerings().to_vec(),
+        _ => Vec::new(),
+    };
     Some(CompanyDay {
         day,
         thread: thread.number,
         kind: thread.kind,
         budget: judge.curve.c_max,
         plans,
-        turns_left: judge.max_turns.saturating_sub(number),
+        turns_left: judge.max_turns.saturating_sub(turns),
         relationship: row.relationship,
         late_penalty,
         reply_day: turn.reply_day,
-        answer: (!offerings.is_empty()).then(|| judge.answer(&offerings, number, params)),
+        answer: (!offerings.is_empty()).then(|| judge.answer(&offerings, turns, params)),
         offerings,
     })
 }

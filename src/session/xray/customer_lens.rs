@@ -28,6 +28,20 @@ impl CustomerLens {
         self.days.last()
     }
 
+    /// Day on which the issue was opened that is open on the day that is shown.
+    pub fn issue_since(&self) -> Option<u32> {
+        let shown = self.shown().filter(|own| own.open_issue_days > 0)?;
+        let days = self.days.iter().rev();
+        let mut later = u32::MAX;
+        // Days count up while an issue is open: where they do not, another one was.
+        let same = days.take_while(|own| {
+            let is_same = own.open_issue_days > 0 && own.open_issue_days < later;
+            later = own.open_issue_days;
+            is_same
+        });
+        same.last().map_or(Some(shown.day), |own| Some(own.day))
+    }
+
     /// The last bill before that day.
     pub fn last_bill(&self) -> Option<&CustomerDay> {
         let shown = self.shown()?.day;

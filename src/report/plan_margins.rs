@@ -72,6 +72,11 @@ impl PlanUse {
         }
     }
 
+    /// What is paid for a month and seat, where use is known too.
+    fn measured_revenue(&self) -> Option<f64> {
+        self.revenue().filter(|_| self.usage().is_some())
+    }
+
     /// Share of what is paid that compute leaves, at dollars a unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
         margin(self.revenue()?, self.compute(unit_cost)?)
@@ -131,6 +136,11 @@ impl Sales {
         });
     }
 
+    /// Whether the use of any plan is known.
+    fn is_measured(&self) -> bool {
+        Plan::ALL.into_iter().any(|plan| self.of_plan(plan).usage().is_some())
+    }
+
     /// All subscribers of a plan.
     pub fn of_plan(&self, plan: Plan) -> PlanUse {
         self.sum(|_, own| own == plan)
@@ -163,6 +173,13 @@ pub struct PlanTerms {
     pub tier: u8,
     /// Units a day and account.
     pub quota: f64,
+}
+
+impl PlanTerms {
+    /// What a unit costs on the model that is set; none if it is none of these.
+    fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
+        models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
+    }
 }
 
 /// What a form sets, and what its margins are shown beside.
@@ -210,7 +227,7 @@ pub fn margin_lines(
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
-    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+    if !sales.is_measured() {
         return vec![NOTHING_MEASURED.to_owned()];
     }
     let mut lines = vec![format!("gross margin by model tier at the use of day {day}; [ ] as set")];
@@ -224,7 +241,7 @@ pub fn margin_lines(
             let cells: String = models.iter().map(cell).collect();
             format!("{label:<16}{cells}").trim_end().to_owned()
         };
-        let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+        let Some(paid) = own.measured_revenue() else {
             lines.push(format!("{plan} nobody used it on day {day}"));
             continue;
         };
@@ -253,15 +270,15 @@ pub fn margin_summary(
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
-    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+    if !sales.is_measured() {
         return vec![NOTHING_MEASURED.to_owned()];
     }
     let line = |plan: Plan| {
         let (own, set) = (sales.of_plan(plan), terms[plan]);
-        let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+        let Some(paid) = own.measured_revenue() else {
             return format!("{plan} nobody used it on day {day}");
         };
-        let unit_cost = models.iter().find(|(tier, _)| *tier == set.tier).map(|(_, unit_cost)| *unit_cost);
+        let unit_cost = set.unit_cost(models);
         let told = |margin: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(margin));
         let also = match lever {
             Lever::Price if differs(set.price, paid) => {
@@ -292,9 +309,9 @@ fn differs(list: f64, paid: f64) -> bool {
 
 /// The margins of a plan's groups on the model that is set; none where one group has the plan.
 fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> Option<String> {
-    let (_, unit_cost) = models.iter().find(|(tier, _)| *tier == set.tier)?;
+    let unit_cost = set.unit_cost(models)?;
     let told = |(group, own): &(Group, PlanUse)| {
-        let margin = own.margin(*unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
+        let margin = own.margin(unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
         format!("{group} {margin} of {}", own.revenue().map_or("–".to_owned(), money))
     };
     let groups = sales.by_group(plan);

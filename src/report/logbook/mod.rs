@@ -20,7 +20,7 @@ use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
 use crate::session::{
     Attendance, Consent, Ended, Line, Mode, Record, ScoredForecast, Session, SittingCount, StudyStamp,
-    TimeSpent,
+    TimeSpent, end_of,
 };
 use timeline::{Span, Timeline};
 
@@ -167,7 +167,7 @@ impl Logbook {
         let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.time.active_seconds());
         let ads = Books::channels_of(session);
         let (manifest, last) = (session.manifest(), lines.last());
-        let end = lines.iter().rev().find(|line| matches!(line.record, Record::End(_)));
+        let end = end_of(lines);
         Logbook {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),

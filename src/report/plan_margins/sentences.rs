@@ -13,7 +13,7 @@ pub fn margin_sentences(
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
-    if Plan::ALL.into_iter().all(|plan| sales.of_plan(plan).usage().is_none()) {
+    if !sales.is_measured() {
         return vec![NOTHING_MEASURED.to_owned()];
     }
     let mut lines =
@@ -32,10 +32,10 @@ fn of_plan(
     day: u32,
 ) -> Vec<String> {
     let own = sales.of_plan(plan);
-    let Some(paid) = own.revenue().filter(|_| own.usage().is_some()) else {
+    let Some(paid) = own.measured_revenue() else {
         return vec![format!("plan {plan}: nobody used it on day {day}")];
     };
-    let unit_cost = models.iter().find(|(tier, _)| *tier == set.tier).map(|(_, unit_cost)| *unit_cost);
+    let unit_cost = set.unit_cost(models);
     let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| in_words(unit_cost.and_then(told), of);
     let at_list = |unit_cost: f64| margin(set.price, own.compute(unit_cost)?);
     let is_at_list = lever == Lever::Price && differs(set.price, paid);

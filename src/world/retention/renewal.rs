@@ -210,7 +210,7 @@ fn switch(
     block.promotion[at] = promotion;
     block.effective_price[at] = (listed_price - promotion).max(params.billing.effective_price_min);
     block.effective_c_max[at] = match params.fidelity.drift_counted {
-        DriftCounted::EveryRead => drifted_curve(group, block, at, morning, params).c_max,
+        DriftCounted::EveryRead => drifted_curve(block.curve(at), morning.expectations[group], params).c_max,
         DriftCounted::Once => block.c_max[at],
     };
     (upgrade, terms(block, at))

@@ -6,7 +6,6 @@ use crate::customers::columns::Block;
 use crate::customers::curve::{Curve, required_quality};
 use crate::identifiers::{ByPlan, Group, Plan};
 use crate::market::drift::Expectation;
-use crate::morning::Morning;
 use crate::params::{Params, ServicePenalty};
 use crate::product::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
@@ -70,10 +69,8 @@ impl Weighing {
 
     /// The curve with what the market adds, and the budget with the economy.
     pub fn curve(&self, params: &Params) -> Curve {
-        let Weighing { own_curve, expectation, willingness_to_pay, .. } = self;
-        let curve =
-            own_curve.drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min);
-        curve.with_budget(curve.c_max * willingness_to_pay)
+        let curve = drifted_curve(self.own_curve, self.expectation, params);
+        curve.with_budget(curve.c_max * self.willingness_to_pay)
     }
 
     /// The plan that is best, if one is acceptable.
@@ -89,9 +86,8 @@ impl Weighing {
 }
 
 /// The curve of an individual with what the market adds.
-pub fn drifted_curve(group: Group, block: &Block, at: usize, morning: &Morning, params: &Params) -> Curve {
-    let expectation = morning.expectations[group];
-    block.curve(at).drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
+pub fn drifted_curve(own: Curve, expectation: Expectation, params: &Params) -> Curve {
+    own.drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
 /// The acceptable plan with the largest surplus; the earlier one on a tie, none if nothing is acceptable.

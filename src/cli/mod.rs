@@ -24,9 +24,9 @@ use clap::{Parser, Subcommand};
 pub use failure::Failure;
 
 use crate::session::{
-    Configuration, LabKey, Record, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
-    list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_refused_code,
-    seal_key_of,
+    Configuration, LabKey, Manifest, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
+    list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_look,
+    record_refused_code, seal_key_of,
 };
 
 /// Run a simulated AI subscription company for 500 days.
@@ -190,19 +190,31 @@ impl Context {
         }
     }
 
-    /// Refuses to show a run whose protocol hides results from everybody but the experimenter.
+    /// Refuses to show a run of which its study shows results to nobody but the experimenter.
     ///
     /// # Errors
     /// It is one, and no code was given; its manifest cannot be read.
     pub fn check_look(&self, folder: &Path) -> Result<(), Failure> {
-        let manifest = manifest_of(folder)?;
+        self.check_results_of(&manifest_of(folder)?)
+    }
+
+    fn check_results_of(&self, manifest: &Manifest) -> Result<(), Failure> {
         if self.is_experimenter || manifest.study.is_none() || !manifest.session_rules().hides_results() {
             return Ok(());
         }
         Err(Failure::usage(format!(
-            "run {} belongs to a study that shows no results: `--study DIR --code CODE` before the command opens it",
+            "run {} belongs to a study that shows no results of it: `--study DIR --code CODE` before the command opens it",
             manifest.id
         )))
+    }
+
+    /// Shows a run to a command: refuses as [`Context::check_look`] does, and records that the run is read.
+    ///
+    /// # Errors
+    /// As [`Context::check_look`] and [`record_look`].
+    pub fn look(&self, folder: &Path, command: &str, detail: &str) -> Result<(), Failure> {
+        self.check_look(folder)?;
+        Ok(record_look(folder, command, detail)?)
     }
 
     /// Refuses to play, or to watch, an unfinished run of a study outside of it.
@@ -210,12 +222,10 @@ impl Context {
     /// # Errors
     /// It is one, and no code was given; its manifest cannot be read.
     pub fn check_play(&self, folder: &Path) -> Result<(), Failure> {
-        self.check_look(folder)?;
         let manifest = manifest_of(folder)?;
-        let Some(study) = manifest.study.filter(|_| !self.is_experimenter) else { return Ok(()) };
-        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-        if trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_))) {
-            return Ok(());
+        let Some(study) = manifest.study.as_ref().filter(|_| !self.is_experimenter) else { return Ok(()) };
+        if Trajectory::read(&folder.join("trajectory.jsonl"))?.end().is_some() {
+            return self.check_results_of(&manifest);
         }
         Err(Failure::usage(format!(
             "run {} belongs to the study {}: `novamind --study DIR` goes on with it",

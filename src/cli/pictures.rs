@@ -13,7 +13,7 @@ use crate::console::photograph::{self, Paper};
 use crate::console::request::Recorded;
 use crate::console::screens::ScreenId;
 use crate::console::theme::Theme;
-use crate::session::{Goal, find_run_to_read, record_look};
+use crate::session::{Goal, find_run_to_read};
 
 /// Options of `pictures`.
 #[derive(Debug, Args)]
@@ -68,8 +68,7 @@ fn size(text: &str) -> Result<(u16, u16), String> {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs()?;
     let folder = find_run_to_read(&runs, &options.run)?;
-    context.check_look(&folder)?;
-    record_look(&folder, "pictures", &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")))?;
+    context.look(&folder, "pictures", &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")))?;
     let id = folder.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let settings = Settings {
         theme: Theme::find(&options.theme, &context.configuration).map_err(Failure::usage)?,

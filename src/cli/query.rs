@@ -10,7 +10,7 @@ use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
     Access, Cell, Library, Line, Record, Refusal, Rows, RunError, SealKey, Session, Trajectory,
-    connection_to_file, find_run_to_read, rebuild_database, record_look, rows_as_json,
+    connection_to_file, find_run_to_read, rebuild_database, rows_as_json,
 };
 
 /// Options of `query`.
@@ -43,9 +43,8 @@ pub enum RowFormat {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    context.check_look(&folder)?;
     let statement = statement(&options.sql, context)?;
-    record_look(&folder, "query", &statement)?;
+    context.look(&folder, "query", &statement)?;
     let rows = ask(&folder, &statement, &context.seal_key()?)?;
     match options.format {
         RowFormat::Table => print(&printable(&crate::plain::table(&rows))),

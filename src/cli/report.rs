@@ -8,7 +8,7 @@ use super::{Context, Failure, print};
 use crate::report::{
     Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
 };
-use crate::session::{Access, Session, Trajectory, find_run_to_read, lines_afterwards, record_look};
+use crate::session::{Access, Session, Trajectory, find_run_to_read, lines_afterwards};
 
 /// Options of `report`.
 #[derive(Debug, Args)]
@@ -47,10 +47,9 @@ pub enum ReportFormat {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    context.check_look(&folder)?;
     let usual = if options.card { ReportFormat::Text } else { ReportFormat::Markdown };
     let format = options.format.unwrap_or(usual);
-    record_look(&folder, "report", if options.session { "session" } else { "run" })?;
+    context.look(&folder, "report", if options.session { "session" } else { "run" })?;
     let text = match options.session {
         _ if options.card => card_of(&folder, format)?,
         true => session_of(&folder, format)?,

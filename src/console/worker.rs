@@ -16,9 +16,9 @@ mod visit;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -30,8 +30,8 @@ use super::preferences::Preferences;
 use super::request::Request;
 use crate::session::record::{LeavingCause, PresenceEvent};
 use crate::session::{
-    Activity, Configuration, Goal, Interface, Playback, QuerySource, Refusal, Rows, RunError, Session,
-    UnsentTexts,
+    Activity, CausesKept, Configuration, Goal, Interface, Playback, QuerySource, Refusal, Rows, RunError,
+    Session, UnsentTexts,
 };
 use crate::tools::ToolId;
 use desk::Desk;
@@ -110,7 +110,7 @@ impl Workers {
                 lists_everybody,
                 limits: None,
                 minutes_left: Vec::new(),
-                causes: causes::CausesKept::default(),
+                causes: Arc::default(),
                 news,
                 runs,
                 queries: for_session,
@@ -184,7 +184,7 @@ struct SessionThread {
     /// Minutes that are left to each limit, as they were told last.
     minutes_left: Vec<i64>,
     /// What was simulated to answer the last question why.
-    causes: causes::CausesKept,
+    causes: Arc<Mutex<CausesKept>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,

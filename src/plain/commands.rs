@@ -30,7 +30,8 @@ use crate::report::research::late_in_words;
 use crate::session::library::NamedQuery;
 use crate::session::record::{Help, LeavingCause, Select};
 use crate::session::{
-    Activity, Change, CodeCheck, Interface, Library, Mode, QuerySource, Refusal, Session, Via, rows_as_json,
+    Activity, CausesKept, Change, CodeCheck, Interface, Library, Mode, QuerySource, Refusal, Session, Via,
+    rows_as_json,
 };
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
@@ -123,14 +124,12 @@ pub struct Interpreter {
     watch: Watch,
     /// A person types and can be asked.
     pub(super) prompts: bool,
-    /// A time limit has stopped the clock.
-    pub(super) locked: bool,
     /// Says whether a word is the experimenter's code; none where there is no experimenter.
     pub(super) code_check: Option<CodeCheck>,
     /// A participant of a study is led: some commands are not theirs.
     pub(super) leads_participant: bool,
     /// What was simulated to answer the last question why.
-    asked: Option<why::Asked>,
+    causes_kept: CausesKept,
 }
 
 impl Interpreter {
@@ -141,10 +140,9 @@ impl Interpreter {
             library,
             watch,
             prompts,
-            locked: false,
             code_check: None,
             leads_participant: false,
-            asked: None,
+            causes_kept: CausesKept::default(),
         }
     }
 

@@ -8,7 +8,7 @@ use super::answers::Answer;
 use super::commands::Interpreter;
 use super::grammar::Line;
 use super::next::{self, Filing};
-use crate::session::record::{Limit, LimitEvent, LimitScope};
+use crate::session::record::{Limit, LimitEvent};
 use crate::session::{Refusal, TIME_LIMIT};
 
 /// What can be done while the clock stands.
@@ -31,13 +31,12 @@ impl Interpreter {
     /// `resume`, with the experimenter's code where a limit has stopped the clock.
     pub(super) fn resume(&mut self, code: &str) -> Answer {
         let right = self.code_check.as_ref().is_none_or(|check| check(code));
-        if self.locked && !right {
+        if self.session.is_held() && !right {
             let text = "the time limit is reached; the experimenter starts the clock with resume CODE";
             return Answer::refused("resume", Refusal::new("code_needed", text));
         }
         match self.session.start_clock() {
             Ok(stood) => {
-                self.locked = false;
                 let text = format!("the clock runs again; it stood for {stood:.0} s");
                 Answer::done("resume", text, json!({ "stood_seconds": stood }))
             }
@@ -68,12 +67,7 @@ impl Interpreter {
         let left = self.session.time_left().into_iter().find(|left| left.scope == limit.limit);
         let words = left.map_or(String::new(), |left| left.in_words());
         let follows = left.map_or("", |left| left.what_follows(self.session.rules().limits.at_limit));
-        let scope = match limit.limit {
-            LimitScope::Week => "week",
-            LimitScope::Session => "session",
-            LimitScope::Study => "study",
-        };
-        let data = json!({ "limit": scope, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
+        let data = json!({ "limit": limit.limit, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
         let tell = |what: &str| Answer::done("limit", format!("time limit: {words}{what}"), data.clone());
         match limit.event {
             LimitEvent::Warned => vec![tell(&format!("; {follows}"))],
@@ -84,7 +78,6 @@ impl Interpreter {
                 vec![tell("; the week is filed with the naive projection"), filed]
             }
             LimitEvent::Paused => {
-                self.locked = true;
                 let stopped = self.session.stop_clock(Some(TIME_LIMIT));
                 let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
                 let stopped = stopped.map_or("", |()| "; the clock is stopped");
@@ -118,7 +111,8 @@ impl Interpreter {
         if !self.session.is_held() {
             return None;
         }
-        self.locked = self.session.stop_clock(Some(TIME_LIMIT)).is_ok();
+        // It may stand already.
+        let _ = self.session.stop_clock(Some(TIME_LIMIT));
         let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
         let text = format!("a time limit has stopped the clock; {rest} starts it");
         Some(Answer::done("limit", text, json!({ "stopped": true })))

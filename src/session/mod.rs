@@ -51,7 +51,7 @@ pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
 pub use folder::derived::{manifest_of, manifest_text};
 pub use folder::library::{self, Library};
-pub use folder::manifest::{FORMAT, Manifest};
+pub use folder::manifest::{FORMAT, Manifest, write_whole};
 pub use folder::mode::Mode;
 pub use folder::preview::{RunPreview, run_preview};
 pub use folder::runs::{
@@ -96,14 +96,16 @@ pub use study::sittings::{Sitting, SittingState, sittings};
 pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{DECLINED, NextStep, Visit};
 pub use study::visit_log::{
-    VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits,
+    VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits, visits_of,
 };
 pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
-    Line, Record, ScriptedClock, Trajectory, nanoseconds as nanoseconds_of, record, steady, written_moment,
+    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, record, steady,
+    written_moment,
 };
 pub use why::{
-    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart, WhyProgress,
+    Cause, Causes, CausesKept, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart,
+    WhyProgress,
 };
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,

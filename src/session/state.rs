@@ -20,7 +20,7 @@ use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::resume::sealing::SealKey;
 use crate::session::study::answer_book::AnswerBook;
-use crate::session::study::rules::{ResultsShown, SessionRules};
+use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::session::witness::code_words;
 use crate::session::xray::hidden_day::Diary;
@@ -89,19 +89,14 @@ impl Session {
         list_world(&format!("{by} {mode}"), (*seed, *seed), scenario, Some(id), study);
     }
 
-    /// By which rules it is played. A practice shows no result, whatever the session shows: figures of how somebody
-    /// played would tell them before the session what is looked at.
+    /// By which rules it is played.
     pub fn rules(&self) -> SessionRules {
-        let rules = self.manifest.session_rules();
-        match self.is_practice() {
-            true => SessionRules { results: ResultsShown::None, ..rules },
-            false => rules,
-        }
+        self.manifest.session_rules()
     }
 
     /// Whether it is the practice of a study.
     pub fn is_practice(&self) -> bool {
-        self.manifest.study.as_ref().is_some_and(|study| study.practice)
+        self.manifest.is_practice()
     }
 
     /// Folder of the run; none in memory.

@@ -241,6 +241,30 @@ fn in_a_study_nothing_else_opens_without_the_code() {
 }
 
 #[test]
+fn a_practice_shows_no_results_to_any_command_without_the_code() {
+    let lab = Lab::new();
+    lab.edit("offer = \"none\"", "offer = \"required\"");
+    let code = said(lab.0.program().args(["study", "code"]), "open sesame\n");
+    let line = code.out.lines().find(|line| line.starts_with("code = ")).expect("a line");
+    lab.edit("# code = \"…\"", line);
+    let begun = lab.visit("P1\nyes\nnext \"a\" naive\nquit\n");
+    assert!(begun.out.contains("week 1 done"), "{}", begun.out);
+    let practice = id(&lab.only_run("P1"));
+    let as_participant = |command: &[&str]| lab.0.run(&[command, &[&practice, "--as", "P1"]].concat());
+    as_participant(&["play", "--plain", "--run"]).fails(2, &["novamind --study DIR` goes on with it"]);
+    as_participant(&["report"]).fails(2, &["shows no results of it"]);
+    // The other three weeks end it, and the session begins.
+    let over = lab.visit("P1\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\nquit\n");
+    assert!(over.out.contains("Before you begin"), "{}", over.out);
+    for command in [&["play", "--plain", "--run"][..], &["report"], &["report", "--session"], &["pictures"]] {
+        as_participant(command).fails(2, &["shows no results of it"]);
+    }
+    let with_code = ["--study", &lab.folder(), "--code", "open sesame", "report", &practice, "--as", "P1"];
+    let report = lab.0.run(&with_code);
+    assert_eq!(report.code, 0, "{}", report.err);
+}
+
+#[test]
 fn wrong_protocols_are_named_with_line_and_key() {
     let lab = Lab::new();
     let good = fs::read_to_string(lab.0.0.path().join("pilot/study.toml")).expect("a protocol");

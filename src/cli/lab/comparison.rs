@@ -10,7 +10,7 @@ use crate::lab::comparison::{as_rows, as_text, beside};
 use crate::notation::printable;
 use crate::report::Logbook;
 use crate::report::ranking::published;
-use crate::session::{Access, Session, Trajectory, find_run_to_read, record_look};
+use crate::session::{Access, Session, Trajectory, find_run_to_read};
 
 /// Options of `lab compare`.
 #[derive(Debug, Args)]
@@ -33,8 +33,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut compared = Vec::new();
     for name in &options.runs {
         let own = find_run_to_read(&folder, name)?;
-        context.check_look(&own)?;
-        record_look(&own, "compare", &options.runs.join(" "))?;
+        context.look(&own, "compare", &options.runs.join(" "))?;
         let session = Session::open(&own, Access::Read, true)?;
         let trajectory = Trajectory::read(&own.join("trajectory.jsonl"))?;
         compared.push(Logbook::of(&session, &trajectory.lines, &[]));

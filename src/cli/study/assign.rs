@@ -1,11 +1,11 @@
 //! `novamind study assign`: `assignment.csv`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::cli::{Failure, print};
-use crate::session::{ASSIGNMENT_FILE, Assignment, Protocol, RunError, STUDY_FILE};
+use crate::session::{ASSIGNMENT_FILE, Assignment, Protocol, RunError, STUDY_FILE, write_whole};
 
 /// Options of `study assign`.
 #[derive(Debug, Args)]
@@ -60,7 +60,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let csv = made.as_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
-    replace(&target, &csv)?;
+    // As a whole: participants may be coming meanwhile.
+    write_whole(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with {draw}\n{}{}",
         target.display(),
@@ -109,11 +110,4 @@ fn incomplete(places: usize, cells: usize) -> String {
             places - some + cells
         ),
     }
-}
-
-/// Writes the file as a whole: participants may be coming meanwhile.
-fn replace(target: &Path, text: &str) -> Result<(), RunError> {
-    let fresh = target.with_extension("csv.new");
-    std::fs::write(&fresh, text).map_err(RunError::io(&fresh))?;
-    std::fs::rename(&fresh, target).map_err(RunError::io(target))
 }

@@ -1,6 +1,5 @@
 //! `novamind study watch`: all running sessions of a machine, or of folders of runs that are shared.
 
-use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -11,8 +10,8 @@ use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::plain::table as aligned;
 use crate::session::{
-    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, VISITS, VisitLine, VisitSummary, has_come,
-    nanoseconds_of, participant_folder, remarks, sittings, visits, week_of, write_remark,
+    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, VisitSummary, has_come, nanoseconds_of,
+    participant_folder, remarks, sittings, visits_of, week_of, write_remark,
 };
 
 /// Options of `study watch`.
@@ -106,9 +105,8 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
 
 /// Who came, also where no run began.
 fn visitors(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> VisitSummary {
-    let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));
-    let lines: BTreeSet<VisitLine> = lines.filter(|line| line.study == study.digest).collect();
-    VisitSummary::of(&lines, &all.iter().map(|own| own.participant.as_str()).collect())
+    let with_runs = all.iter().map(|own| own.participant.as_str()).collect();
+    VisitSummary::of(&visits_of(study, machines), &with_runs)
 }
 
 fn table(all: &[Sitting]) -> Rows {

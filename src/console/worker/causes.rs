@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Open, SessionThread};
 use crate::console::message::{Message, News};
-use crate::session::{Causes, Refusal, WeekFigure, Why};
+use crate::session::{CausesKept, Refusal, WeekFigure, Why};
 
 /// A question why a figure changed in a week.
 pub struct WhyAsked {
@@ -21,12 +21,6 @@ pub struct WhyAsked {
     /// Ends the work.
     pub stop: Arc<AtomicBool>,
 }
-
-/// What was read of a record: its folder, lines as far as a day, and whether the run is over.
-type ReadAs = (PathBuf, u32, bool);
-
-/// Causes that were asked for, so that the next question about the same record is answered at once.
-pub(super) type CausesKept = Arc<Mutex<Option<(ReadAs, Causes)>>>;
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.
@@ -59,22 +53,16 @@ impl SessionThread {
 
 fn answer(
     asked: &WhyAsked,
-    read_as: ReadAs,
-    kept: &CausesKept,
+    (folder, day, is_over): (PathBuf, u32, bool),
+    kept: &Mutex<CausesKept>,
     news: &Sender<Message>,
 ) -> Result<Option<Why>, Refusal> {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut causes = match kept.take().filter(|(known, _)| *known == read_as) {
-        Some((_, causes)) => causes,
-        None => Causes::read(&read_as.0)?,
-    };
-    let answer = causes.why(asked.figure, Some(asked.week), &|progress| {
+    kept.of(folder, day, is_over)?.why(asked.figure, Some(asked.week), &|progress| {
         let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
         match asked.stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
-    });
-    *kept = Some((read_as, causes));
-    answer
+    })
 }

@@ -11,17 +11,7 @@ use super::Interpreter;
 use crate::database::text::aligned;
 use crate::notation::nearest;
 use crate::report::why::{equation, heading, lines};
-use crate::session::record::Select;
-use crate::session::{Activity, Causes, Refusal, WeekFigure, Why};
-
-/// What was read of a run: the run, its last day, and whether it is over.
-type ReadAs = (String, u32, bool);
-
-/// Causes that were asked for, so that the next question about them is answered at once.
-pub(super) struct Asked {
-    read_as: ReadAs,
-    causes: Causes,
-}
+use crate::session::{Causes, Refusal, WeekFigure, Why};
 
 impl Interpreter {
     pub(super) fn why(&mut self, words: &str) -> Result<Answer, Problem> {
@@ -34,9 +24,7 @@ impl Interpreter {
             })
         });
         self.watch.enter(super::Phase::Working);
-        let (screen, what) = ("plain".to_owned(), "command".to_owned());
-        let which = format!("why {words}").trim_end().to_owned();
-        self.session.note_activity(Activity::Select(Select { screen, what, which }));
+        self.note_look(format!("why {words}").trim_end(), &[]);
         Ok(match answer {
             Ok(Some(why)) => Answer::done("why", as_text(&why), as_data(&why)),
             Ok(None) => {
@@ -48,13 +36,7 @@ impl Interpreter {
 
     fn causes(&mut self) -> Result<&mut Causes, Refusal> {
         let folder = self.session.folder_of_causes()?;
-        let id = self.session.manifest().id.clone();
-        let read_as = (id, self.session.day(), self.session.ended().is_some());
-        let asked = match self.asked.take().filter(|asked| asked.read_as == read_as) {
-            Some(asked) => asked,
-            None => Asked { read_as, causes: Causes::read(&folder)? },
-        };
-        Ok(&mut self.asked.insert(asked).causes)
+        self.causes_kept.of(folder, self.session.day(), self.session.ended().is_some())
     }
 }
 

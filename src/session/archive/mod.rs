@@ -60,6 +60,11 @@ fn is_compressed(archive: &Path) -> bool {
     ending.is_some_and(|ending| ending == "gz" || ending == "tgz")
 }
 
+/// Whether a file with this name is taken for an archive.
+pub(in crate::session) fn is_archive_name(name: &str) -> bool {
+    [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
+}
+
 /// Whether this can be the name of a run: eight hexadecimal digits.
 fn is_run_name(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))

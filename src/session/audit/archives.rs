@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{AuditFinding, AuditKind};
-use crate::session::archive::{LabPublicKey, Workshop, place_run};
+use crate::session::archive::{LabPublicKey, Workshop, is_archive_name, place_run};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::study::definition::Study;
@@ -32,7 +32,7 @@ pub(super) fn not_signed(study: &Study, folders: &[PathBuf]) -> Result<Vec<Audit
 
 fn is_archive(path: &Path) -> bool {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    path.is_file() && [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
+    path.is_file() && is_archive_name(&name)
 }
 
 fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> Option<AuditFinding> {

@@ -11,7 +11,7 @@ mod finding;
 mod machine;
 mod rehearsal;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -26,9 +26,9 @@ use crate::session::play::afterwards::lines_afterwards;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::verify::verify_sealed;
 use crate::session::study::definition::Study;
-use crate::session::study::visit_log::{VISITS, VisitLine, VisitSummary, visits};
+use crate::session::study::visit_log::{VisitSummary, visits_of};
 use crate::session::trajectory::record::{Activity, PresenceEvent};
-use crate::session::trajectory::{Record, Trajectory};
+use crate::session::trajectory::{Line, Record, Trajectory};
 use crate::session::witness::{Finding, FindingKind, Told, compare, read_witness};
 use machine::{MachineRecord, RunRecord};
 
@@ -77,13 +77,8 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
     if let Some(record) = &told {
         audit.findings.extend(gone(&records, &record.runs));
     }
-    let visits: BTreeSet<VisitLine> = machines
-        .iter()
-        .flat_map(|base| visits(&base.join(VISITS)))
-        .filter(|own| own.study == study.digest)
-        .collect();
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
-    audit.visits = VisitSummary::of(&visits, &with_runs);
+    audit.visits = VisitSummary::of(&visits_of(study, machines), &with_runs);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     audit.findings.sort_by(|one, other| {
         (&one.participant, &one.run, one.line, one.kind).cmp(&(
@@ -134,8 +129,12 @@ impl Inspection<'_> {
                 found.push(self.finding(AuditKind::Missing, None, "", problem.to_string()));
             }
             Ok(trajectory) => {
-                found.extend(told.into_iter().flat_map(|told| self.beside_witness(trajectory, told)));
-                found.extend(self.afterwards(trajectory));
+                let afterwards = lines_afterwards(&self.run.folder, trajectory);
+                let damaged = |problem| self.finding(AuditKind::Damaged, None, "", problem);
+                found.extend(afterwards.as_ref().err().map(|problem| damaged(problem.to_string())));
+                let afterwards = afterwards.map_or(Vec::new(), |after| after.lines);
+                let beside = |told| self.beside_witness(trajectory, &afterwards, told);
+                found.extend(told.into_iter().flat_map(beside));
                 found.extend(self.beside_database(trajectory));
                 found.extend(self.simulated());
                 found.extend(self.manifest());
@@ -159,7 +158,12 @@ impl Inspection<'_> {
         unsaved.map(|name| self.finding(AuditKind::Unsaved, None, "", words(name))).collect()
     }
 
-    fn beside_witness(&self, trajectory: &Trajectory, told: &[Told]) -> Vec<AuditFinding> {
+    fn beside_witness(
+        &self,
+        trajectory: &Trajectory,
+        afterwards: &[Line],
+        told: &[Told],
+    ) -> Vec<AuditFinding> {
         let kind = |kind: FindingKind| match kind {
             FindingKind::Changed => Some(AuditKind::Changed),
             FindingKind::Cut => Some(AuditKind::Cut),
@@ -172,15 +176,7 @@ impl Inspection<'_> {
         let of = |Finding { kind: own, line, at, words, .. }: Finding| {
             Some(self.finding(kind(own)?, Some(line), &at, words))
         };
-        let afterwards = lines_afterwards(&self.run.folder, trajectory).map(|after| after.lines);
-        let afterwards = afterwards.unwrap_or_default();
-        compare(trajectory, &afterwards, told).into_iter().filter_map(of).collect()
-    }
-
-    /// Whether what was done after the end can be read.
-    fn afterwards(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
-        let problem = lines_afterwards(&self.run.folder, trajectory).err()?;
-        Some(self.finding(AuditKind::Damaged, None, "", problem.to_string()))
+        compare(trajectory, afterwards, told).into_iter().filter_map(of).collect()
     }
 
     /// Whether the lines lead to the states that they record.
@@ -230,7 +226,7 @@ impl Inspection<'_> {
         if folder.as_deref() != Some(label.as_str()) {
             wrong.push(format!("the run of {label} lies in the folder {}", folder.unwrap_or_default()));
         }
-        if manifest.session_rules() != self.study.rules() {
+        if manifest.recorded_rules() != self.study.rules() {
             wrong.push("it was played by other rules than those of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {

@@ -4,16 +4,12 @@ use super::machine::RunRecord;
 use super::{AuditFinding, AuditKind, Inspection};
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::{EXPERIMENTER, WorldLine};
-use crate::session::trajectory::{Record, Trajectory, seconds};
+use crate::session::trajectory::{Line, Trajectory, seconds};
 
 /// What the machine knows of the world of a run.
 pub(super) fn of(own: &Inspection<'_>, trajectory: &Trajectory) -> Vec<AuditFinding> {
     let Some(manifest) = &own.run.manifest else { return Vec::new() };
-    let over = trajectory
-        .lines
-        .last()
-        .filter(|line| matches!(line.record, Record::End(_)))
-        .map(|line| line.moment());
+    let over = trajectory.end().map(Line::moment);
     let mut found = listed(own, manifest, trajectory, over);
     found.extend(left(own, manifest, trajectory, over, &found));
     found.extend(untold(own, manifest));

@@ -12,7 +12,6 @@ use super::script::{Move, between, moves};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::playback::{Origin, read};
-use crate::session::trajectory::Record;
 
 /// Moments that are kept in memory besides the first: a moment is as large as its company.
 const KEPT: usize = 4;
@@ -38,7 +37,7 @@ impl Past {
     /// It is missing, damaged or of another version.
     pub(in crate::session) fn read(path: &Path) -> Result<Past, RunError> {
         let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
-        let ended = trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_)));
+        let ended = trajectory.end().is_some();
         let opening = Arc::new(KeptState::opening(&manifest, params));
         Ok(Past {
             path,

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::attendance::WATCHES_KEYS;
 use crate::session::trajectory::record::{Activity, ClockEvent, PresenceEvent};
-use crate::session::trajectory::{Line, Record};
+use crate::session::trajectory::{Line, Record, end_of};
 
 /// How often the program took up the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
@@ -50,8 +50,7 @@ impl SittingCount {
             }
         }
         // What closes the sitting in which a run ends stands after its end.
-        let is_over = lines.last().is_some_and(|line| matches!(line.record, Record::End(_)));
-        count.not_closed += u32::from(is_open && !is_over);
+        count.not_closed += u32::from(is_open && end_of(lines).is_none());
         count.machines = machines.len() as u32;
         count
     }

@@ -9,7 +9,7 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::mode::Mode;
 use crate::session::error::RunError;
-use crate::session::study::rules::SessionRules;
+use crate::session::study::rules::{ResultsShown, SessionRules};
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record};
@@ -173,9 +173,24 @@ impl Manifest {
         toml::to_string(self).expect("a manifest holds plain values")
     }
 
-    /// By which rules it is played.
+    /// By which rules it is played. A practice shows no result, whatever the session shows: figures of how somebody
+    /// played would tell them before the session what is looked at.
     pub fn session_rules(&self) -> SessionRules {
+        let rules = self.recorded_rules();
+        match self.is_practice() {
+            true => SessionRules { results: ResultsShown::None, ..rules },
+            false => rules,
+        }
+    }
+
+    /// The rules that the start of the run records; those of its mode, where it records none.
+    pub(in crate::session) fn recorded_rules(&self) -> SessionRules {
         self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
+    }
+
+    /// Whether it is the practice of a study.
+    pub fn is_practice(&self) -> bool {
+        self.study.as_ref().is_some_and(|study| study.practice)
     }
 
     /// Whether the run's parameters are others than those of the shipped scenario whose name it has.
@@ -236,13 +251,19 @@ fn differing(own: &Table, shipped: &Table) -> Table {
 }
 
 /// Writes a file so that after a crash it is the old one or the new one, never a part of it.
-pub(in crate::session) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+///
+/// # Errors
+/// The disk refuses it; the old one stays.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     use std::io::Write;
     let draft = path.with_extension("draft");
     let written = std::fs::File::create(&draft)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| std::fs::rename(&draft, path));
-    written.map_err(RunError::io(path))?;
+    if let Err(error) = written {
+        let _ = std::fs::remove_file(&draft);
+        return Err(RunError::io(path)(error));
+    }
     if let Some(folder) = path.parent() {
         sync_folder(folder)?;
     }

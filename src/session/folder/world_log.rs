@@ -4,7 +4,6 @@
 //! Each line names the hash of the one before, and every sitting of a run records how long the list was and how it ended:
 //! a list that was cut or edited contradicts the runs.
 
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::session::play::machine::Machine;
 use crate::session::trajectory::record::WorldsSeen;
-use crate::session::trajectory::{now, read_regular_text};
+use crate::session::trajectory::{append_to_regular_file, now, read_regular_text};
 
 /// Name of the file.
 pub const WORLDS: &str = "worlds.jsonl";
@@ -101,7 +100,7 @@ fn append(path: &Path, line: WorldLine) -> std::io::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
-    let mut file = File::options().create(true).read(true).append(true).open(path)?;
+    let mut file = append_to_regular_file(path)?;
     // Two programs at once write one after the other.
     file.lock()?;
     let mut text = String::new();
@@ -123,7 +122,7 @@ fn last_head(text: &str) -> String {
 
 /// How long the list of this process is now, and how it ends; none where none is kept.
 pub(in crate::session) fn worlds_seen() -> Option<WorldsSeen> {
-    let text = std::fs::read_to_string(place()?).unwrap_or_default();
+    let text = read_regular_text(&place()?);
     Some(WorldsSeen { lines: text.lines().count() as u64, head: last_head(&text) })
 }
 

@@ -57,10 +57,12 @@ impl Session {
     }
 
     fn note_clock(&mut self, clock: Clock) {
-        let stopped = (clock.event == ClockEvent::Stopped).then(|| seconds(&now()));
+        let event = clock.event;
+        let stopped = (event == ClockEvent::Stopped).then(|| seconds(&now()));
         self.note_activity(Activity::Clock(clock));
         // Where the rules leave clocks out of the record, the screen is covered all the same.
         self.clock.stopped = stopped;
+        self.clock.held &= event != ClockEvent::Started;
     }
 
     /// Time that is left to each limit of the rules; while the clock stands, as when it was stopped.

@@ -3,17 +3,15 @@
 //! The file is written whole and takes the place of the old one. It is no part of the record, and is not exported.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 
 use serde::{Deserialize, Serialize};
 
+use crate::session::folder::manifest::write_whole;
 use crate::session::state::Session;
 use crate::tools::ToolId;
 
 /// Name of the file in the folder of the run.
 const FILE: &str = "drafts.json";
-/// The file while it is written.
-const UNFINISHED: &str = "drafts.new";
 
 /// Texts that were typed and not sent.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,18 +72,13 @@ impl Session {
     /// stop: they are in the window.
     pub fn keep_drafts(&self, drafts: &UnsentTexts) {
         let (Some(folder), true) = (&self.folder, self.recorder.is_some()) else { return };
-        let (file, unfinished) = (folder.join(FILE), folder.join(UNFINISHED));
+        let file = folder.join(FILE);
         if drafts.is_empty() {
             let _ = std::fs::remove_file(&file);
             return;
         }
         let Ok(text) = serde_json::to_vec(drafts) else { return };
-        let written = std::fs::File::create(&unfinished)
-            .and_then(|mut own| own.write_all(&text).and_then(|()| own.sync_all()))
-            .and_then(|()| std::fs::rename(&unfinished, &file));
-        if written.is_err() {
-            let _ = std::fs::remove_file(&unfinished);
-        }
+        let _ = write_whole(&file, &text);
     }
 
     /// Texts that were kept when the program was stopped; none of a run that is only read, and none that cannot be read.

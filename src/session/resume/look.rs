@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::open::Access;
 use crate::session::error::RunError;
+use crate::session::folder::derived::manifest_of;
 use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, Look};
@@ -18,21 +18,27 @@ use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWrite
 /// # Errors
 /// Somebody plays the run; it is damaged; the disk refuses the line.
 pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), RunError> {
-    let manifest = Manifest::read(folder)?;
+    let manifest = manifest_of(folder)?;
     if manifest.mode != Mode::Baseline || !manifest.session_rules().records("look") {
         return Ok(());
     }
     let path = folder.join("trajectory.jsonl");
-    if is_over(&Trajectory::read(&path)?) {
+    if Trajectory::read(&path)?.end().is_some() {
         return Ok(());
     }
     let lock = match lock_run(folder, &manifest.id) {
         Ok(lock) => lock,
         Err(RunError::NotWritable { .. }) => return Ok(()),
         Err(RunError::InUse { id, holder }) => {
+            // A run of a study is watched by nobody but its experimenter.
+            let watch = if manifest.study.is_none() {
+                format!(", or watch it with `novamind play --watch {id}`")
+            } else {
+                String::new()
+            };
             return Err(RunError::NotPossible(format!(
                 "baseline run {id} is being played ({holder}), and {command} would show what its record does not tell; \
-                 try again when it is closed, or watch it with `novamind play --watch {id}`"
+                 try again when it is closed{watch}"
             )));
         }
         Err(error) => return Err(error),
@@ -51,10 +57,6 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
     writer.append(day, &Record::Activity(look), Durability::Synced)?;
     drop(lock);
     Ok(())
-}
-
-fn is_over(trajectory: &Trajectory) -> bool {
-    trajectory.lines.iter().any(|line| matches!(line.record, Record::End(_)))
 }
 
 /// Whether a week was confirmed and not simulated.
@@ -111,7 +113,12 @@ mod tests {
         session.save().expect("saved");
         drop(session);
         record_look(&folder, "query", "SELECT 1").expect("recorded");
+        // `run.toml` may say what it likes: the first line says that it is a baseline.
+        let manifest = folder.join("run.toml");
+        let text = std::fs::read_to_string(&manifest).expect("a manifest");
+        std::fs::write(&manifest, text.replace("\"baseline\"", "\"sandbox\"")).expect("written");
         record_look(&folder, "report", "markdown").expect("recorded");
+        std::fs::write(&manifest, text).expect("written");
         let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
         assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are as they were left");
         let rows = session.query("SELECT max(day) FROM ledger").expect("rows");

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::session::archive::{LabPublicKey, place_run};
+use crate::session::archive::{LabPublicKey, is_archive_name, place_run};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
@@ -287,7 +287,7 @@ fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io
     let path = path.canonicalize()?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if path.is_file() {
-        if [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending)) {
+        if is_archive_name(&name) {
             found.archives.insert(path);
         } else if name == VISITS {
             let folder = path.parent().unwrap_or(&path).to_owned();

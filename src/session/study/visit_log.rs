@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
 use crate::session::play::machine::Machine;
-use crate::session::trajectory::{now, read_regular_text};
+use crate::session::trajectory::{append_to_regular_file, now, read_regular_text};
 
 /// Name of the file.
 pub const VISITS: &str = "visits.jsonl";
@@ -70,12 +69,8 @@ impl VisitLog {
             VisitLine { at: now(), machine: Machine::here().id, study: self.study.clone(), label, event };
         let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
         let folder = self.path.parent().map_or(Ok(()), std::fs::create_dir_all);
-        // A pipe in its place would keep the participant waiting.
-        if std::fs::metadata(&self.path).is_ok_and(|own| !own.is_file()) {
-            return;
-        }
         let _ = folder
-            .and_then(|()| File::options().create(true).append(true).open(&self.path))
+            .and_then(|()| append_to_regular_file(&self.path))
             .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
     }
 
@@ -153,6 +148,12 @@ impl fmt::Display for VisitSummary {
         )?;
         write!(out, ", {refused_codes} codes")
     }
+}
+
+/// Who came to a study on some machines, each line once: folders may be copies of one another.
+pub fn visits_of(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
+    let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));
+    lines.filter(|line| line.study == study.digest).collect()
 }
 
 /// The lines of a list of visits; those that cannot be read are left out.

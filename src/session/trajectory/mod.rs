@@ -20,7 +20,9 @@ pub(super) use line::hash_of_first_line;
 #[cfg(test)]
 pub(super) use medium::Medium;
 pub use record::Record;
-pub(super) use regular_file::{open_regular_file, read_regular_file, read_regular_text};
+pub(super) use regular_file::{
+    append_to_regular_file, open_regular_file, read_regular_file, read_regular_text,
+};
 pub(super) use time::scripted_steady;
 pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
 pub use writer::{Durability, TrajectoryWriter};
@@ -28,6 +30,11 @@ pub use writer::{Durability, TrajectoryWriter};
 use crate::database::Position;
 use crate::session::error::RunError;
 use line::line_hash;
+
+/// The line that says how a run ended, among its lines; none while it is unfinished.
+pub fn end_of(lines: &[Line]) -> Option<&Line> {
+    lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
+}
 
 /// A trajectory that was read.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -49,6 +56,11 @@ impl Trajectory {
     /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
         Trajectory::of_file(path, &read_regular_file(path).map_err(RunError::io(path))?)
+    }
+
+    /// The line that says how the run ended; none while it is unfinished. In runs of format 1 others can follow it.
+    pub fn end(&self) -> Option<&Line> {
+        end_of(&self.lines)
     }
 
     /// Checks the bytes of a file as [`Trajectory::read`] does.

@@ -1,4 +1,4 @@
-//! Reading what somebody else may have put in the place of a file: a pipe would keep the reader waiting for ever.
+//! Opening what somebody else may have put in the place of a file: a pipe would keep the program waiting for ever.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -10,9 +10,24 @@ use std::path::Path;
 /// There is none, it is something else, or it cannot be opened.
 pub fn open_regular_file(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "this is no regular file"));
+        return Err(no_regular_file());
     }
     File::open(path)
+}
+
+/// Opens a regular file for appending and reading; makes it where there is none.
+///
+/// # Errors
+/// It is something else, or cannot be opened or made.
+pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
+    if std::fs::metadata(path).is_ok_and(|own| !own.is_file()) {
+        return Err(no_regular_file());
+    }
+    File::options().create(true).read(true).append(true).open(path)
+}
+
+fn no_regular_file() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "this is no regular file")
 }
 
 /// The bytes of a regular file.

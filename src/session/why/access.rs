@@ -2,7 +2,6 @@
 
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
-use crate::session::study::rules::ResultsShown;
 use crate::tools::Refusal;
 
 /// How finely the inputs of the world are told apart.
@@ -17,12 +16,13 @@ pub(super) enum Sight {
 /// What may be seen of a run.
 ///
 /// # Errors
-/// `not_in_this_mode` for an unfinished baseline run, and for one whose study shows no results.
+/// `not_in_this_mode` for an unfinished baseline run, and for one of which its study shows no results.
 pub(super) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
     match (manifest.mode, ended) {
-        (Mode::Baseline, true) if manifest.session_rules().results == ResultsShown::None => {
-            Err(Refusal::new("not_in_this_mode", "the study of this run shows no results to its players"))
-        }
+        (Mode::Baseline, true) if manifest.session_rules().hides_results() => Err(Refusal::new(
+            "not_in_this_mode",
+            "the study of this run shows no results of it to its player",
+        )),
         (_, true) | (Mode::Debug, _) => Ok(Sight::All),
         (Mode::Sandbox | Mode::Lesson, false) => Ok(Sight::Market),
         (Mode::Baseline, false) => Err(Refusal::new(
@@ -30,5 +30,38 @@ pub(super) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> 
             "causes are found by simulating the company again, which agents cannot do either: not in an unfinished \
              baseline run",
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::NewRun;
+    use crate::session::state::Session;
+    use crate::session::study::rules::{ResultsShown, SessionRules};
+    use crate::session::study::stamp::StudyStamp;
+
+    #[test]
+    fn an_ended_baseline_tells_its_causes_unless_its_study_shows_no_results_of_it() {
+        let new = NewRun { mode: Mode::Baseline, days: Some(28), ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut manifest = session.manifest().clone();
+        assert_eq!(sight(&manifest, true), Ok(Sight::All));
+        let stamp = StudyStamp {
+            name: "pilot".to_owned(),
+            digest: String::new(),
+            condition: None,
+            order: None,
+            practice: false,
+            refused_labels: 0,
+        };
+        for (practice, results) in [(true, ResultsShown::Own), (false, ResultsShown::None)] {
+            manifest.study = Some(StudyStamp { practice, ..stamp.clone() });
+            manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
+            assert_eq!(sight(&manifest, true).map_err(|refusal| refusal.code), Err("not_in_this_mode"));
+        }
+        manifest.rules.as_mut().expect("rules").results = ResultsShown::Own;
+        assert_eq!(sight(&manifest, true), Ok(Sight::All));
     }
 }

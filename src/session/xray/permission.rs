@@ -7,13 +7,11 @@ use crate::session::trajectory::{Durability, Record};
 use crate::tools::Refusal;
 
 impl Session {
-    /// Whether hidden state may be shown: in debug runs, and in runs that are over. Not where a study shows no results, and
-    /// not of its practice, since its session is still to come.
+    /// Whether hidden state may be shown: in debug runs, and in runs that are over. Not where a study shows no results, as
+    /// none does of its practice: its session is still to come.
     pub fn may_look_inside(&self) -> bool {
-        let hides_result = self.rules().hide_result(self.history.ended);
-        let is_practice = self.manifest.study.as_ref().is_some_and(|study| study.practice);
         let is_open = self.manifest.mode == Mode::Debug || self.history.ended.is_some();
-        is_open && !hides_result && !is_practice
+        is_open && !self.rules().hide_result(self.history.ended)
     }
 
     /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study

@@ -309,6 +309,11 @@ impl<K: BlockKind> BlockCursor<'_, K> {
         }
     }
 
+    /// Whether the place is a row of the run that is open, and every row is asked for: so it is for most rows.
+    fn is_within_run(&self) -> bool {
+        self.customer.is_none() && self.run.as_ref().is_some_and(|run| self.place.at < run.customers().len())
+    }
+
     /// Number of the row; nothing once all rows were seen.
     fn number(&self) -> Option<i64> {
         match &self.found {
@@ -394,7 +399,9 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
             Some((_, rest)) => rest.start += 1,
             None => {
                 self.place.at += 1;
-                self.settle();
+                if !self.is_within_run() {
+                    self.settle();
+                }
             }
         }
         Ok(())

@@ -8,6 +8,7 @@ mod readings;
 mod report;
 mod rules;
 mod thread;
+mod whatif;
 mod why;
 mod words;
 mod xray;
@@ -28,10 +29,9 @@ use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::research::late_in_words;
 use crate::session::library::NamedQuery;
-use crate::session::record::{Help, LeavingCause, Select};
+use crate::session::record::{Help, Select};
 use crate::session::{
-    Activity, CausesKept, Change, CodeCheck, Interface, Library, Mode, QuerySource, Refusal, Session, Via,
-    rows_as_json,
+    Activity, CausesKept, Change, CodeCheck, Library, QuerySource, Refusal, Session, Via, rows_as_json,
 };
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
@@ -73,13 +73,21 @@ const COMMANDS: &[(&str, &str)] = &[
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
     ("report", "report [week|run]        what changed in the last week; or the story of the run"),
     ("why", "why FIGURE [WEEK]        how much of the change of a week's figure each cause brought"),
+    (
+        "whatif",
+        "whatif from WEEK: EDITS   what would have been under other decisions; whatif WEEK lists what was decided",
+    ),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
     ("tools", "tools [NAME]             the tools, or one of them"),
     ("tables", "tables [NAME]            the tables, or one of them"),
     ("explain", "explain TERM             what a term, tool, argument, table or column means (also: what)"),
     ("glossary", "glossary [WORD]          every term, one per line, or those with a word"),
     ("vars", "vars                     the current day, as get_vars returns it"),
-    ("branch", "branch WEEK              continue in a branch from the start of that week"),
+    (
+        "branch",
+        "branch WEEK [keep]       continue in a branch from the start of that week; keep: with the decisions made since",
+    ),
+    ("branches", "branches                 the tree of branches in which the run stands"),
     ("step", "step [DAYS]              debug: run single days (1)"),
     (
         "xray",
@@ -110,6 +118,7 @@ const LOOKS: &[&str] = &[
     "leads",
     "history",
     "report",
+    "branches",
     "tools",
     "tables",
     "queries",
@@ -160,6 +169,10 @@ impl Interpreter {
         let answer = match parsed {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
+            Ok(Line::Text { word, rest }) if word == "whatif" => {
+                let column = line.trim_end().chars().count() - rest.chars().count() + 1;
+                self.what_if(&rest, column).unwrap_or_else(usage)
+            }
             Ok(Line::Text { word, rest }) if word == "why" => self.why(&rest).unwrap_or_else(usage),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest, line),
             Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
@@ -314,7 +327,8 @@ impl Interpreter {
             "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
             "report" => name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
-            "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
+            "branch" => self.branch(arguments),
+            "branches" => none(arguments).map(|()| self.branches()),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
@@ -370,25 +384,6 @@ impl Interpreter {
             Ok(again) => Answer::done("redo", in_words("redone", &again), json!({ "set_again": again })),
             Err(refusal) => Answer::refused("redo", refusal),
         }
-    }
-
-    fn branch(&mut self, week: Option<u32>, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let week = week
-            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for instance branch 4"))?;
-        let own = self.session.manifest().mode;
-        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
-        Ok(match self.session.branch(week, mode) {
-            Ok(branch) => {
-                self.session.leave(LeavingCause::Quit);
-                let _ = self.session.save();
-                self.session = branch;
-                self.session.take_up(Interface { name: "plain", window: None });
-                let (run, day) = (self.session.manifest().id.clone(), self.session.day());
-                let text = format!("run {run} continues from day {day} · {mode}");
-                Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
-            }
-            Err(refusal) => Answer::refused("branch", refusal),
-        })
     }
 
     fn step(&mut self, days: u32) -> Answer {

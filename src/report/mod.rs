@@ -39,6 +39,7 @@ pub(crate) mod tables;
 pub(crate) mod test_kit;
 mod turn;
 pub(crate) mod week;
+pub(crate) mod whatif;
 pub(crate) mod why;
 mod words;
 pub(crate) mod xray;

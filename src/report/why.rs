@@ -3,7 +3,7 @@
 use super::chapters::change_in_words;
 use super::words::{count, number, whole};
 use crate::notation::{grouped, percent};
-use crate::session::{Detail, FigureUnit, InputDetail, WeekFigure, Why};
+use crate::session::{Detail, FigureUnit, InputDetail, Why};
 
 /// What no cause explains.
 pub const REST: &str = "composition and chance";
@@ -24,7 +24,7 @@ pub struct CauseLine {
 /// Every cause, the largest first, and the rest.
 pub fn lines(why: &Why) -> Vec<CauseLine> {
     let line = |name, amount, details| {
-        let written = signed(why.figure, amount);
+        let written = signed(why.figure.unit(), amount);
         CauseLine { name, amount, written, details }
     };
     let part = |part: &crate::session::WhyPart| {
@@ -37,18 +37,18 @@ pub fn lines(why: &Why) -> Vec<CauseLine> {
 pub fn equation(why: &Why) -> String {
     let parts: Vec<String> =
         lines(why).iter().map(|line| format!("{} {}", line.name, line.written)).collect();
-    format!("{} {} = {}", why.figure.name(), signed(why.figure, why.change()), parts.join(" · "))
+    format!("{} {} = {}", why.figure.name(), signed(why.figure.unit(), why.change()), parts.join(" · "))
 }
 
 /// The figure in both weeks: `week 20: 195 → 1,137`.
 pub fn heading(why: &Why) -> String {
-    let value = |value| written(why.figure, value);
+    let value = |value| written(why.figure.unit(), value);
     format!("{}, week {}: {} → {}", why.figure.name(), why.week, value(why.before), value(why.after))
 }
 
-/// A value of a figure.
-pub fn written(figure: WeekFigure, value: f64) -> String {
-    match figure.unit() {
+/// A value of a figure in a unit.
+pub fn written(unit: FigureUnit, value: f64) -> String {
+    match unit {
         FigureUnit::Dollars => crate::notation::dollars(value + 0.0),
         FigureUnit::Count => whole(value),
         FigureUnit::Share => percent(value, 1),
@@ -57,9 +57,9 @@ pub fn written(figure: WeekFigure, value: f64) -> String {
 }
 
 /// A change of a figure with its sign; shares change by percentage points.
-fn signed(figure: WeekFigure, change: f64) -> String {
+pub fn signed(unit: FigureUnit, change: f64) -> String {
     let size = change.abs();
-    let text = match figure.unit() {
+    let text = match unit {
         FigureUnit::Dollars => format!("${}", grouped(size, 0)),
         FigureUnit::Count if size < 100.0 && (size - size.round()).abs() > 0.05 => grouped(size, 1),
         FigureUnit::Count => grouped(size, 0),
@@ -88,7 +88,7 @@ fn in_words(detail: &Detail) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Cause, ToolId, WhyPart};
+    use crate::session::{Cause, ToolId, WeekFigure, WhyPart};
 
     fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
         let part =

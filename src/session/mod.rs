@@ -17,6 +17,7 @@ mod resume;
 mod state;
 mod study;
 mod trajectory;
+mod whatif;
 mod why;
 mod witness;
 mod xray;
@@ -24,6 +25,7 @@ mod xray;
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
+pub use counterfactual::script::PastCall;
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
@@ -102,6 +104,11 @@ pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via
 pub use trajectory::{
     Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, record, steady,
     written_moment,
+};
+pub use whatif::{
+    Adopted, BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FORMS,
+    FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference, WhatIf, branches_of,
+    sets_amounts,
 };
 pub use why::{
     Cause, Causes, CausesKept, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart,

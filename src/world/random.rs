@@ -99,20 +99,26 @@ parts! {
 #[derive(Debug, Clone)]
 pub struct Streams {
     seed: u64,
-    keys: Vec<[u8; 32]>,
+    keys: PartKeys,
+    /// The last day whose luck was the run's own, and the keys it was drawn with; none where the luck was never redrawn.
+    own: Option<(u32, PartKeys)>,
 }
+
+/// A key for each part.
+type PartKeys = Vec<[u8; 32]>;
 
 impl Streams {
     /// Streams of a run with this seed.
     pub fn new(seed: u64) -> Self {
-        let key = |part: &Part| {
-            blake3::Hasher::new_derive_key("novamind random streams, version 1")
-                .update(&seed.to_le_bytes())
-                .update(part.name().as_bytes())
-                .finalize()
-                .into()
-        };
-        Streams { seed, keys: Part::ALL.iter().map(key).collect() }
+        Streams { seed, keys: part_keys("novamind random streams, version 1", &[seed]), own: None }
+    }
+
+    /// The same run with other luck after a day: equal salts give equal luck. What was drawn up to that day and is read
+    /// again stays, see [`Streams::open_since`].
+    pub fn redrawn(&self, salt: u64, last_own_day: u32) -> Self {
+        let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
+        let own = self.own.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
+        Streams { seed: self.seed, keys, own: Some(own) }
     }
 
     /// The seed these streams were derived from.
@@ -125,13 +131,18 @@ impl Streams {
         Stream::of(self.key(part, entity))
     }
 
+    /// The stream of something that is drawn on a day and read again on later ones. Where luck was redrawn after that day,
+    /// it keeps the run's own.
+    pub fn open_since<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
+        let keys = match &self.own {
+            Some((last, own)) if day <= *last => own,
+            _ => &self.keys,
+        };
+        Stream::of(key_of(&keys[part as usize], entity))
+    }
+
     fn key<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> StreamKey {
-        const { assert!(KEYS <= 4) };
-        let mut bytes = [0u8; 32];
-        for (slot, key) in bytes.chunks_exact_mut(8).zip(entity) {
-            slot.copy_from_slice(&key.to_le_bytes());
-        }
-        StreamKey(*blake3::keyed_hash(&self.keys[part as usize], &bytes[..8 * KEYS]).as_bytes())
+        key_of(&self.keys[part as usize], entity)
     }
 
     /// Keys of the streams of a part for many entities; [`Stream::of`] opens one as [`Streams::open`] does.
@@ -153,6 +164,26 @@ impl Streams {
             |some| simd_streams::first_words(&self.keys[part as usize], some).map(|words| words.map(Word)),
         )
     }
+}
+
+fn part_keys(context: &str, numbers: &[u64]) -> PartKeys {
+    let key = |part: &Part| {
+        let mut hasher = blake3::Hasher::new_derive_key(context);
+        for number in numbers {
+            hasher.update(&number.to_le_bytes());
+        }
+        hasher.update(part.name().as_bytes()).finalize().into()
+    };
+    Part::ALL.iter().map(key).collect()
+}
+
+fn key_of<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey {
+    const { assert!(KEYS <= 4) };
+    let mut bytes = [0u8; 32];
+    for (slot, key) in bytes.chunks_exact_mut(8).zip(entity) {
+        slot.copy_from_slice(&key.to_le_bytes());
+    }
+    StreamKey(*blake3::keyed_hash(part, &bytes[..8 * KEYS]).as_bytes())
 }
 
 /// Works on entities eight by eight where the processor can, and one by one where it cannot or for the last few.
@@ -398,6 +429,23 @@ mod tests {
         assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
         assert_eq!(stream.standard_normal().to_bits(), SECOND_NORMAL);
     }
+
+    #[test]
+    fn redrawn_luck_is_other_luck_but_for_what_was_drawn_before() {
+        let streams = Streams::new(42);
+        let first = |streams: &Streams| streams.open(Part::Macro, [1]).word();
+        let [one, same, other] = [(1, 30), (1, 30), (2, 30)].map(|(salt, day)| streams.redrawn(salt, day));
+        assert_eq!(first(&one), first(&same));
+        assert_ne!(first(&one), first(&other));
+        assert_ne!(first(&one), first(&streams));
+        let since = |streams: &Streams, day| streams.open_since(day, Part::InvoluntaryMu, [3, 1]).word();
+        assert_eq!(since(&one, 30), since(&streams, 30));
+        assert_ne!(since(&one, 31), since(&streams, 31));
+        assert_eq!(since(&streams, 31), streams.open(Part::InvoluntaryMu, [3, 1]).word());
+        // Redrawn again, what was the run's own stays the run's own.
+        assert_eq!(since(&one.redrawn(7, 60), 30), since(&streams, 30));
+    }
+
     const FIRST_UNIFORM: u64 = 4604554976407843933;
     const SECOND_NORMAL: u64 = 4603890776221144754;
 

@@ -3,20 +3,22 @@
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::edits::{AddedCall, Edits};
+use super::edits::{AddedCall, Edits, Redrawn};
 use super::kept_state::KeptState;
-use super::script::{Move, PastDays, has_replies};
+use super::script::{Move, PastCall, PastDays, has_replies};
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::StateHash;
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
 use crate::tools::bounds;
 use crate::tools::{Arguments, Numbers, Refusal, ToolId, View};
+use crate::world::command::Command;
 use crate::world::events::{DayFigures, LedgerEntry};
-use crate::world::held::Held;
 use crate::world::market::surges::week_end;
+use crate::world::params::Params;
+use crate::world::state::World;
 
 /// What came of days that were simulated again.
 pub(in crate::session) struct BranchOutcome {
@@ -24,14 +26,30 @@ pub(in crate::session) struct BranchOutcome {
     pub weeks: Vec<WeekFigures>,
     /// Figures of every day.
     pub days: Vec<DayFigures>,
+    /// Mean satisfaction of the individual subscribers at the end of each of those weeks; not a number without any.
+    pub satisfaction: Vec<f64>,
     /// Day and hash of every state that the moves of the run named, where hashes were asked for.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
-    /// Calls that are refused now: their line, none for one that was added; tool, refusal.
-    #[cfg_attr(not(test), expect(dead_code, reason = "causes take what is still possible"))]
-    pub refused: Vec<(Option<u64>, ToolId, Refusal)>,
+    /// Calls that are refused now.
+    pub refused: Vec<RefusedCall>,
+    /// Calls that the run refused and that would be accepted now; they are not made.
+    pub possible: Vec<PastCall>,
     /// Where it ended.
     pub end: KeptState,
+}
+
+/// A call that is refused when days are simulated again.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct RefusedCall {
+    /// Its line; none for one that was added.
+    pub seq: Option<u64>,
+    /// Decision day.
+    pub day: u32,
+    /// Tool.
+    pub tool: ToolId,
+    /// Why.
+    pub refusal: Refusal,
 }
 
 /// Simulates the days after a moment again, up to one of them: the moves of the run under some edits; days that the moves do
@@ -43,7 +61,9 @@ pub(in crate::session) fn counterfactual(
     until: u32,
     progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
 ) -> Option<BranchOutcome> {
-    play(OpenBranch::of(start, moves, edits, false), moves, edits, until, progress)
+    let mut branch = OpenBranch::of(start, moves, edits, false);
+    branch.advance(until, progress)?;
+    Some(branch.outcome())
 }
 
 /// The same, with the hash of every state that the moves name.
@@ -54,38 +74,36 @@ pub(in crate::session) fn counterfactual_with_hashes(
     edits: &Edits,
     until: u32,
 ) -> Option<BranchOutcome> {
-    play(OpenBranch::of(start, moves, edits, true), moves, edits, until, &mut |_| ControlFlow::Continue(()))
-}
-
-fn play(
-    mut branch: OpenBranch,
-    moves: &[Move],
-    edits: &Edits,
-    until: u32,
-    progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-) -> Option<BranchOutcome> {
-    for step in moves {
-        match step {
-            Move::Call(call) if !call.accepted || edits.dropped.contains(&call.seq) => {}
-            Move::Call(call) => {
-                let args = edits.changed.get(&call.seq).unwrap_or(&call.args);
-                let changed = edits.changed.contains_key(&call.seq);
-                if let Err(refusal) = branch.call(call.tool, args, changed) {
-                    branch.refused.push((Some(call.seq), call.tool, refusal));
-                }
-            }
-            Move::Days(days) => {
-                branch.run_days(days.until.min(until), edits, progress)?;
-                branch.close(days);
-            }
-        }
-    }
-    branch.run_days(until, edits, progress)?;
+    let mut branch = OpenBranch::of(start, moves, edits, true);
+    branch.advance(until, &mut |_| ControlFlow::Continue(()))?;
     Some(branch.outcome())
 }
 
+/// The first day at whose end two edits of the same moves have led to different companies; none if they do not up to a day.
+pub(in crate::session) fn first_difference(
+    start: &KeptState,
+    moves: &[Move],
+    (one, other): (&Edits, &Edits),
+    until: u32,
+) -> Option<u32> {
+    let mut both = [one, other].map(|edits| OpenBranch::of(start, moves, edits, false));
+    for day in start.world.day + 1..=until {
+        for branch in &mut both {
+            branch.advance(day, &mut |_| ControlFlow::Continue(()))?;
+        }
+        let [left, right] = both.each_ref().map(|branch| branch.simulation.world.part_hashes());
+        if left != right {
+            return Some(day);
+        }
+    }
+    None
+}
+
 /// Days on the way.
-struct OpenBranch {
+struct OpenBranch<'a> {
+    edits: &'a Edits,
+    /// Moves that are still to be made.
+    moves: &'a [Move],
     simulation: Simulation,
     /// Nothing is written.
     projection: Projection,
@@ -102,18 +120,22 @@ struct OpenBranch {
     numbers: OnceLock<Arc<Numbers>>,
     weeks: Vec<WeekFigures>,
     days: Vec<DayFigures>,
+    satisfaction: Vec<f64>,
     states: Vec<(u32, StateHash)>,
-    refused: Vec<(Option<u64>, ToolId, Refusal)>,
+    refused: Vec<RefusedCall>,
+    possible: Vec<PastCall>,
 }
 
-impl OpenBranch {
-    fn of(start: &KeptState, moves: &[Move], edits: &Edits, hashed: bool) -> OpenBranch {
+impl<'a> OpenBranch<'a> {
+    fn of(start: &KeptState, moves: &'a [Move], edits: &'a Edits, hashed: bool) -> OpenBranch<'a> {
         let told = hashed || has_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
         let feed = if told { start.feed.clone() } else { Default::default() };
         let given = (params, start.streams.clone(), start.names.clone());
         let simulation = Simulation::at(given, start.world.clone(), feed);
-        OpenBranch {
+        let mut branch = OpenBranch {
+            edits,
+            moves,
             cash_before: simulation.world.finance.cash,
             simulation,
             projection: Projection::default(),
@@ -124,13 +146,72 @@ impl OpenBranch {
             numbers: OnceLock::new(),
             weeks: Vec::new(),
             days: Vec::new(),
+            satisfaction: Vec::new(),
             states: Vec::new(),
             refused: Vec::new(),
+            possible: Vec::new(),
+        };
+        branch.open();
+        branch
+    }
+
+    /// Makes the calls that come before everything else.
+    fn open(&mut self) {
+        for (tool, args) in &self.edits.opening {
+            self.try_new(*tool, args);
         }
     }
 
-    /// Makes a call; a new one keeps the bounds of arguments, one of the run was accepted once.
-    fn call(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Refusal> {
+    /// Makes the moves, and lets days pass, up to the end of a day.
+    fn advance(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
+        while let [step, rest @ ..] = self.moves
+            && !self.is_over()
+        {
+            match step {
+                // What is decided on the last day is none of its business.
+                Move::Call(call) if call.day >= until => break,
+                Move::Call(call) => self.make(call),
+                Move::Days(days) => {
+                    self.run_days(days.until.min(until), progress)?;
+                    if days.until > until {
+                        break;
+                    }
+                    self.close(days);
+                }
+            }
+            self.moves = rest;
+        }
+        self.run_days(until, progress)
+    }
+
+    /// Makes a call of the run, as the edits leave it.
+    fn make(&mut self, call: &PastCall) {
+        if self.edits.dropped.contains(&call.seq) {
+            return;
+        }
+        let changed = self.edits.changed.get(&call.seq);
+        if !call.accepted && changed.is_none() {
+            if self.plan(call.tool, &call.args, true).is_ok() {
+                self.possible.push(call.clone());
+            }
+            return;
+        }
+        if let Err(refusal) = self.call(call.tool, changed.unwrap_or(&call.args), changed.is_some()) {
+            let PastCall { seq, day, tool, .. } = *call;
+            self.refused.push(RefusedCall { seq: Some(seq), day, tool, refusal });
+        }
+    }
+
+    /// Makes a call that the run did not make.
+    fn try_new(&mut self, tool: ToolId, args: &Value) {
+        if let Err(refusal) = self.call(tool, args, true) {
+            let day = self.simulation.world.day;
+            self.refused.push(RefusedCall { seq: None, day, tool, refusal });
+        }
+    }
+
+    /// What a call would do; a new one keeps the bounds of arguments, one of the run was accepted once.
+    fn plan(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Refusal> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| Numbers::of(params).into()).clone();
         let tool = tool.tool();
@@ -139,7 +220,12 @@ impl OpenBranch {
             bounds::hold(tool.spec(), &given)?;
         }
         let planned = tool.plan(&View::new(world, params).with_posts(&feed.posts), &given)?;
-        let resolved = self.simulation.resolve(planned.command);
+        Ok(planned.command)
+    }
+
+    fn call(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Refusal> {
+        let command = self.plan(tool, args, is_new)?;
+        let resolved = self.simulation.resolve(command);
         if resolved.only_reads() {
             return Ok(());
         }
@@ -151,15 +237,10 @@ impl OpenBranch {
         Ok(())
     }
 
-    fn run_days(
-        &mut self,
-        until: u32,
-        edits: &Edits,
-        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
-    ) -> Option<()> {
-        while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
-            self.add_calls(edits);
-            self.run_day(&edits.held);
+    fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
+        while self.simulation.world.day < until && !self.is_over() {
+            self.follow_edits();
+            self.run_day();
             if progress(self.simulation.world.day).is_break() {
                 return None;
             }
@@ -167,19 +248,33 @@ impl OpenBranch {
         Some(())
     }
 
-    /// Makes the calls that are added on this day; they keep the bounds of new calls.
-    fn add_calls(&mut self, edits: &Edits) {
-        let day = self.simulation.world.day;
+    fn is_over(&self) -> bool {
+        self.simulation.world.is_over(&self.simulation.params)
+    }
+
+    /// Does what the edits say of this day: calls are made, capacity follows usage, luck is redrawn.
+    fn follow_edits(&mut self) {
+        let (day, edits) = (self.simulation.world.day, self.edits);
         for AddedCall { tool, args, .. } in edits.added.iter().filter(|added| added.day == day) {
-            if let Err(refusal) = self.call(*tool, args, true) {
-                self.refused.push((None, *tool, refusal));
-            }
+            self.try_new(*tool, args);
+        }
+        if edits.capacity_follows_usage
+            && self.week.days_run == 0
+            && let Some(week) = self.weeks.last()
+        {
+            let tier = covering_tier(week.busiest_day, &self.simulation.params);
+            self.try_new(ToolId::SetCapacityTier, &json!({ "tier": tier }));
+        }
+        if let Some(Redrawn { after, salt }) = edits.redrawn
+            && day == after
+        {
+            self.simulation.streams = self.simulation.streams.redrawn(salt, after);
         }
     }
 
-    fn run_day(&mut self, held: &Held) {
+    fn run_day(&mut self) {
         let day_before = self.left_to_tell.then(Vec::new);
-        let figures = self.simulation.simulate_day(held, self.projection.entries(), day_before);
+        let figures = self.simulation.simulate_day(&self.edits.held, self.projection.entries(), day_before);
         self.left_to_tell = self.told;
         self.simulation.judge_own_posts(self.projection.entries());
         let Simulation { facts, params, world, .. } = &self.simulation;
@@ -198,6 +293,7 @@ impl OpenBranch {
         self.week.cash_change = cash - self.cash_before;
         self.week.open_issues = self.simulation.open_issues();
         self.weeks.push(std::mem::take(&mut self.week));
+        self.satisfaction.push(mean_satisfaction(&self.simulation.world));
         self.cash_before = cash;
     }
 
@@ -213,7 +309,23 @@ impl OpenBranch {
     }
 
     fn outcome(self) -> BranchOutcome {
-        let OpenBranch { simulation, weeks, days, states, refused, .. } = self;
-        BranchOutcome { weeks, days, states, refused, end: KeptState::of(simulation) }
+        let OpenBranch { simulation, weeks, days, satisfaction, states, refused, possible, .. } = self;
+        let end = KeptState::of(simulation);
+        BranchOutcome { weeks, days, satisfaction, states, refused, possible, end }
     }
+}
+
+/// The smallest capacity tier that serves so many units a day without overload; the largest where none does.
+pub(in crate::session) fn covering_tier(units: u64, params: &Params) -> u8 {
+    let tiers = &params.capacity_tier;
+    let covering = tiers.iter().find(|tier| u64::from(tier.capacity_units) >= units);
+    covering.or(tiers.last()).map_or(0, |tier| tier.tier)
+}
+
+/// Mean satisfaction of the individual subscribers, from 0 to 1; not a number without any.
+fn mean_satisfaction(world: &World) -> f64 {
+    let individuals = || world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
+    let count: usize = individuals().map(|(_, block)| block.len()).sum();
+    let sum: f64 = individuals().flat_map(|(_, block)| &block.satisfaction).sum();
+    sum / count as f64
 }

@@ -12,16 +12,31 @@ use crate::world::params::Params;
 /// Changes to the days of a run. Without any, they lead to the state they led to.
 #[derive(Debug, Clone, Default)]
 pub(in crate::session) struct Edits {
+    /// Calls that are made before everything else.
+    pub opening: Vec<(ToolId, Value)>,
     /// Lines of calls that are not made.
     pub dropped: BTreeSet<u64>,
     /// Other arguments of calls, by line.
     pub changed: BTreeMap<u64, Value>,
     /// Calls that are made besides.
     pub added: Vec<AddedCall>,
+    /// At the start of every week the smallest capacity tier is set that covers the busiest day of the week before.
+    pub capacity_follows_usage: bool,
     /// Inputs of the world that are held.
     pub held: Held,
     /// Other parameters.
     pub params: Option<Arc<Params>>,
+    /// Other luck.
+    pub redrawn: Option<Redrawn>,
+}
+
+/// Luck that is redrawn after a day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::session) struct Redrawn {
+    /// The last day with the luck of the run.
+    pub after: u32,
+    /// Equal salts give equal luck.
+    pub salt: u64,
 }
 
 /// A call that was not made in the run.

@@ -7,7 +7,10 @@
 pub(in crate::session) mod branch;
 pub(in crate::session) mod edits;
 pub(in crate::session) mod kept_state;
+pub(in crate::session) mod one_each;
 pub(in crate::session) mod past;
 pub(in crate::session) mod script;
+#[cfg(test)]
+pub(in crate::session) mod test_kit;
 #[cfg(test)]
 mod tests;

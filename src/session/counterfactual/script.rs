@@ -19,7 +19,7 @@ pub(in crate::session) enum Move {
 
 /// A call of the past.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct PastCall {
+pub struct PastCall {
     /// Its line.
     pub seq: u64,
     /// Decision day.

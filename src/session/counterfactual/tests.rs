@@ -91,7 +91,9 @@ fn what_is_not_edited_keeps_its_luck() {
 fn a_call_that_is_no_longer_possible_is_told_and_nothing_else_is_lost() {
     let call = AddedCall { day: 35, tool: ToolId::SetPrices, args: json!({"A": -1}) };
     let outcome = week_under(Edits { added: vec![call], ..Edits::default() });
-    let [(None, ToolId::SetPrices, refusal)] = &outcome.refused[..] else { panic!("{:?}", outcome.refused) };
+    let [RefusedCall { seq: None, day: 35, tool: ToolId::SetPrices, refusal }] = &outcome.refused[..] else {
+        panic!("{:?}", outcome.refused)
+    };
     assert_eq!(refusal.code, "price_not_positive");
     assert_eq!(outcome.weeks, week_under(Edits::default()).weeks);
 }

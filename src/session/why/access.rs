@@ -6,7 +6,7 @@ use crate::tools::Refusal;
 
 /// How finely the inputs of the world are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sight {
+pub(in crate::session) enum Sight {
     /// The market is one cause: what moves it is hidden.
     Market,
     /// Every input for itself.
@@ -17,7 +17,7 @@ pub(super) enum Sight {
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, and for one of which its study shows no results.
-pub(super) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
+pub(in crate::session) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
     match (manifest.mode, ended) {
         (Mode::Baseline, true) if manifest.session_rules().hides_results() => Err(Refusal::new(
             "not_in_this_mode",

@@ -3,9 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-
-use rayon::ThreadPoolBuilder;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::access::Sight;
 use super::cause::{Cause, Detail};
@@ -14,6 +12,7 @@ use super::{OnProgress, WhyProgress};
 use crate::session::counterfactual::branch::{BranchOutcome, counterfactual};
 use crate::session::counterfactual::edits::Edits;
 use crate::session::counterfactual::kept_state::KeptState;
+use crate::session::counterfactual::one_each::one_each;
 use crate::session::counterfactual::past::Past;
 use crate::session::counterfactual::script::{Move, PastCall};
 use crate::session::error::RunError;
@@ -124,40 +123,24 @@ impl Laboratory {
         Some(())
     }
 
-    /// Each processor simulates one week after the other: no two of them wait for each other, and there are never more
-    /// companies in memory than processors.
     fn simulate_all(
         &self,
         wanted: &[Without],
         progress: OnProgress<'_>,
     ) -> Option<Vec<(Without, WeekFigures)>> {
-        let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let work = || {
-            let mut found = Vec::new();
-            while let Some(without) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut go_on = |_| match stopped.load(Ordering::Relaxed) {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
-                };
-                let Some(outcome) = self.simulate(*without, &mut go_on) else { break };
-                found.push((*without, figures(&outcome)));
-                let done = next.load(Ordering::Relaxed).min(wanted.len());
-                if progress(WhyProgress::Simulated(done, wanted.len())).is_break() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
+        let done = AtomicUsize::new(0);
+        one_each(wanted, |without, stopped| {
+            let mut go_on = |_| match stopped.is_set() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            let outcome = self.simulate(*without, &mut go_on)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            match progress(WhyProgress::Simulated(done, wanted.len())) {
+                ControlFlow::Break(()) => None,
+                ControlFlow::Continue(()) => Some((*without, figures(&outcome))),
             }
-            found
-        };
-        let workers = rayon::current_num_threads().min(wanted.len());
-        let alone = || match ThreadPoolBuilder::new().num_threads(1).build() {
-            Ok(pool) => pool.install(work),
-            Err(_) => work(),
-        };
-        let found = std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..workers).map(|_| scope.spawn(alone)).collect();
-            workers.into_iter().filter_map(|worker| worker.join().ok()).flatten().collect::<Vec<_>>()
-        });
-        (found.len() == wanted.len()).then_some(found)
+        })
     }
 
     fn simulate(

@@ -26,7 +26,7 @@ use super::counterfactual::past::Past;
 use super::error::RunError;
 use crate::session::state::Session;
 use crate::tools::Refusal;
-use access::{Sight, sight};
+pub(in crate::session) use access::{Sight, sight};
 use laboratory::Laboratory;
 
 /// How far an answer has come.
@@ -124,7 +124,7 @@ impl CausesKept {
     }
 }
 
-fn not_readable(error: &RunError) -> Refusal {
+pub(in crate::session) fn not_readable(error: &RunError) -> Refusal {
     Refusal::new("not_readable", error.to_string())
 }
 

@@ -1,55 +1,17 @@
 //! Planted changes are found, worth what a branch without them lacks; parts add up; what is hidden stays hidden.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::*;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
+use crate::session::counterfactual::test_kit::{WEEKS, played};
 use crate::session::folder::mode::Mode;
 use crate::session::trajectory::record::Via;
 use crate::tools::ToolId;
 
-/// Weeks before the one that is explained.
-const WEEKS: u32 = 7;
-
 fn on(_: WhyProgress) -> ControlFlow<()> {
     ControlFlow::Continue(())
-}
-
-/// A company that has customers, plays some weeks, and then one under a change.
-fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
-    let new = NewRun {
-        seed: Some(seed),
-        days: Some(120),
-        mode,
-        cash: Some(50_000_000.0),
-        storage: Storage::Runs(runs.to_owned()),
-        projection: false,
-        sync_calls: false,
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    for (tool, arguments) in [
-        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
-        ("set_model_tiers", json!({"A": 2, "B": 3, "C": 4})),
-        ("set_usage_quotas", json!({"A": 60_000, "B": 250_000, "C": 1_200_000})),
-        ("set_daily_spend", json!({"operations": 400, "development": 2000})),
-        ("set_targeted_ad_spend", json!({"search_ads": {"S1": 9000, "S2": 9000}, "linkedin": {"S3": 6000}})),
-        ("set_capacity_tier", json!({"capacity_tier": 2})),
-    ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-    }
-    for week in 0..=WEEKS {
-        if let (true, Some((tool, arguments))) = (week == WEEKS, &change) {
-            session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-        }
-        let forecasts = session.naive_forecasts();
-        session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    }
-    session
 }
 
 fn why(session: &Session, figure: WeekFigure) -> Why {

@@ -98,7 +98,7 @@ impl Company {
     pub fn first_impression(&self, params: &Params, streams: &Streams) -> f64 {
         let quality = &params.quality;
         streams
-            .open(Part::NegotiationNoise, [self.group.index() as u64, u64::from(self.n)])
+            .open_since(0, Part::NegotiationNoise, [self.group.index() as u64, u64::from(self.n)])
             .between(quality.initial_decision_noise_min, quality.initial_decision_noise_max)
     }
 }

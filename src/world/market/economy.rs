@@ -92,7 +92,7 @@ impl Economy {
 
 fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
     if law.macro_pmi_random_phase {
-        streams.open(Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
+        streams.open_since(0, Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
     } else {
         law.macro_pmi_fixed_phase
     }

@@ -35,7 +35,8 @@ pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &St
     if let Some(rate) = given.filter(|_| law.enable_involuntary_churn) {
         return rate;
     }
-    let z = streams.open(Part::InvoluntaryMu, [group.index() as u64, u64::from(month)]).standard_normal();
+    let keys = [group.index() as u64, u64::from(month)];
+    let z = streams.open_since(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
     let own = params.group(group);
     involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
 }

@@ -48,6 +48,8 @@ pub enum Via {
     Policy,
     /// A stored script.
     Script,
+    /// A branch that keeps the decisions of its run.
+    Branch,
 }
 
 /// What a call does to earlier calls of its week.

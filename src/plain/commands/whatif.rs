@@ -1,0 +1,373 @@
+//! `whatif …`: what would have been under other decisions (docs/interfaces/plain-mode.md#what-if).
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Interpreter, Phase, count, problem};
+use crate::database::text::aligned;
+use crate::report::whatif::{
+    branch_line, decisions, futures_heading, futures_table, heading, kin_line, name, sureness, table,
+};
+use crate::session::record::LeavingCause;
+use crate::session::{
+    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, Mode, PastCall, Refusal, WhatIf,
+    branches_of,
+};
+
+/// Futures that are drawn where no number is named.
+const FUTURES: u32 = 20;
+/// Most of them.
+const MOST_FUTURES: u32 = 200;
+/// How a question reads.
+const USAGE: &str = "for instance: whatif from 20: set_prices * 0.9";
+
+/// A question, as it is written.
+#[derive(Debug, Clone, PartialEq)]
+struct Question {
+    from: u32,
+    until: Option<u32>,
+    futures: Option<u32>,
+    alternatives: Vec<Vec<DecisionEdit>>,
+}
+
+impl Interpreter {
+    /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
+    pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
+        if let Ok(week) = words.parse() {
+            return Ok(self.decisions_from(week));
+        }
+        if let Some(path) = words.strip_prefix("file ") {
+            let text = std::fs::read_to_string(Path::new(path.trim()));
+            let problem = |text: String| Problem { text, column: column + "file ".len() };
+            let text = text.map_err(|error| problem(format!("{} cannot be read: {error}", path.trim())))?;
+            return read(&as_question(&text), 0)
+                .map(|question| self.compare(&question))
+                .map_err(|wrong| problem(wrong.text));
+        }
+        match words.strip_prefix("adopt ") {
+            Some(rest) => {
+                read(rest, column + "adopt ".len()).and_then(|question| self.adopt(&question, column))
+            }
+            None => read(words, column).map(|question| self.compare(&question)),
+        }
+    }
+
+    fn what_if_of_run(&self) -> Result<WhatIf, Refusal> {
+        WhatIf::read(&self.session.folder_of_causes()?)
+    }
+
+    /// The calls from a week on, with their lines.
+    fn decisions_from(&mut self, week: u32) -> Answer {
+        let calls = self.what_if_of_run().and_then(|own| Ok((own.decisions(week)?, own.days_per_week())));
+        let (calls, days) = match calls {
+            Ok(calls) => calls,
+            Err(refusal) => return Answer::refused("whatif", refusal),
+        };
+        self.note_look("whatif", &[]);
+        let row = |call: &PastCall| {
+            let refused = if call.accepted { "" } else { "refused" };
+            vec![
+                call.seq.to_string(),
+                (call.day / days + 1).to_string(),
+                call.tool.name().to_owned(),
+                call.args.to_string(),
+                refused.to_owned(),
+            ]
+        };
+        let rows: Vec<Vec<String>> = calls.iter().map(row).collect();
+        let headers = ["line", "week", "call", "arguments", ""].map(str::to_owned);
+        let text = match rows.is_empty() {
+            true => format!("nothing was decided from week {week} on; {USAGE}"),
+            false => format!("{}{USAGE}", aligned(&headers, &rows)),
+        };
+        let one = |call: &PastCall| {
+            json!({
+                "line": call.seq, "week": call.day / days + 1, "day": call.day, "tool": call.tool.name(),
+                "args": call.args, "ok": call.accepted,
+            })
+        };
+        Answer::done("whatif", text, json!({ "calls": calls.iter().map(one).collect::<Vec<_>>() }))
+    }
+
+    fn compare(&mut self, question: &Question) -> Answer {
+        let stop = self.watch.enter_stoppable();
+        let go_on = |_, _| match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let Question { from, until, futures, alternatives } = question;
+        let answer = self.what_if_of_run().and_then(|mut own| {
+            let Some(comparison) = own.compare(*from, *until, alternatives, &go_on)? else { return Ok(None) };
+            let drawn = match futures {
+                Some(count) => match own.futures(*from, *until, alternatives, *count, &go_on)? {
+                    Some(futures) => Some(futures),
+                    None => return Ok(None),
+                },
+                None => None,
+            };
+            Ok(Some((comparison, drawn, own.days_per_week())))
+        });
+        self.watch.enter(Phase::Working);
+        self.note_look("whatif", &[]);
+        match answer {
+            Ok(Some((comparison, futures, days))) => {
+                let text = as_text(&comparison, futures.as_ref(), days);
+                Answer::done("whatif", text, as_data(&comparison, futures.as_ref(), days))
+            }
+            Ok(None) => {
+                Answer::refused("whatif", Refusal::new("stopped", "stopped before the answer was found"))
+            }
+            Err(refusal) => Answer::refused("whatif", refusal),
+        }
+    }
+
+    /// Makes the only alternative of a question a run of its own, and goes on in it.
+    fn adopt(&mut self, question: &Question, column: usize) -> Result<Answer, Problem> {
+        let decided = match &question.alternatives[..] {
+            [] => Vec::new(),
+            [only] => only.clone(),
+            _ => {
+                let text = "one alternative can be adopted; name its edits alone".to_owned();
+                return Err(Problem { text, column });
+            }
+        };
+        Ok(self.branch_keeping(question.from, &decided))
+    }
+
+    /// `branch WEEK [keep]`
+    pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let (last, first) =
+            arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));
+        let keeps = last.is_some_and(|last| last.key.is_none() && last.value == "keep");
+        let week = count(if keeps { first } else { arguments })?
+            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for instance branch 4"))?;
+        if keeps {
+            return Ok(self.branch_keeping(week, &[]));
+        }
+        let own = self.session.manifest().mode;
+        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        Ok(match self.session.branch(week, mode) {
+            Ok(branch) => {
+                self.session.leave(LeavingCause::Quit);
+                let _ = self.session.save();
+                self.session = branch;
+                self.session.take_up(Interface { name: "plain", window: None });
+                let (run, day) = (self.session.manifest().id.clone(), self.session.day());
+                let text = format!("run {run} continues from day {day} · {mode}");
+                Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
+            }
+            Err(refusal) => Answer::refused("branch", refusal),
+        })
+    }
+
+    /// Goes on in a branch that keeps the decisions of this run, some of them edited.
+    fn branch_keeping(&mut self, week: u32, decided: &[DecisionEdit]) -> Answer {
+        let own = self.session.manifest().mode;
+        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        let stop = self.watch.enter_stoppable();
+        let mut go_on = |_| match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let adopted = self.session.branch_with_decisions(week, decided, mode, &mut go_on);
+        self.watch.enter(Phase::Working);
+        let adopted = match adopted {
+            Ok(adopted) => adopted,
+            Err(refusal) => return Answer::refused("branch", refusal),
+        };
+        self.session.leave(LeavingCause::Quit);
+        let _ = self.session.save();
+        self.session = adopted.session;
+        self.session.take_up(Interface { name: "plain", window: None });
+        let (run, day) = (self.session.manifest().id.clone(), self.session.day());
+        let refused: Vec<Value> = adopted
+            .refused
+            .iter()
+            .map(|(day, tool, refusal)| json!({ "day": day, "tool": tool.name(), "error": refusal }))
+            .collect();
+        let told = adopted.refused.iter().map(|(day, tool, refusal)| {
+            format!("\nday {day}: {} was refused: {}", tool.name(), refusal.message)
+        });
+        let text = format!(
+            "run {run} stands on day {day} with the decisions of its parent · {mode} · {}{}",
+            name(decided),
+            told.collect::<String>()
+        );
+        Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode, "refused": refused }))
+    }
+
+    /// `branches`: the tree in which the run stands.
+    pub(super) fn branches(&self) -> Answer {
+        let id = &self.session.manifest().id;
+        let Some(runs) = self.session.folder().and_then(Path::parent) else {
+            return Answer::refused(
+                "branches",
+                Refusal::new("not_possible", "a run in memory has no branches"),
+            );
+        };
+        let tree = branches_of(runs, id);
+        let lines: Vec<String> = tree.iter().map(|kin| kin_line(kin, id)).collect();
+        let one = |kin: &crate::session::Kin| {
+            json!({
+                "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.left_in_week,
+                "first_change": kin.first_change.map(|(day, tool)| json!({ "day": day, "tool": tool.name() })),
+                "day": kin.run.day, "cash": kin.run.cash, "ended": kin.run.ended,
+            })
+        };
+        let data: Vec<Value> = tree.iter().map(one).collect();
+        Answer::done("branches", lines.join("\n"), json!({ "runs": data }))
+    }
+}
+
+/// A file holds the words before the colon in its first line, and an alternative in each of the others.
+fn as_question(text: &str) -> String {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let first = lines.next().unwrap_or_default().trim_end_matches(':');
+    format!("{first}: {}", lines.collect::<Vec<_>>().join(" | "))
+}
+
+/// Reads a question that begins in a column.
+fn read(words: &str, column: usize) -> Result<Question, Problem> {
+    let problem = |text: String, at: usize| Problem { text, column: column + words[..at].chars().count() };
+    let (head, rest) = words.split_once(':').unwrap_or((words, ""));
+    let mut question = Question { from: 0, until: None, futures: None, alternatives: Vec::new() };
+    let mut named = head.split_whitespace().peekable();
+    while let Some(word) = named.next() {
+        let at = word.as_ptr() as usize - words.as_ptr() as usize;
+        let number = named.peek().and_then(|next| next.parse::<u32>().ok());
+        match (word, number) {
+            ("from", Some(week)) => question.from = week,
+            ("until", Some(week)) => question.until = Some(week),
+            ("futures", Some(count)) if (2..=MOST_FUTURES).contains(&count) => question.futures = Some(count),
+            ("futures", Some(_)) => {
+                return Err(problem(format!("futures are drawn in numbers from 2 to {MOST_FUTURES}"), at));
+            }
+            ("futures", None) => question.futures = Some(FUTURES),
+            ("from" | "until", None) => {
+                return Err(problem(format!("{word} needs the number of a week; {USAGE}"), at));
+            }
+            _ => return Err(problem(format!("{word} is not understood; {USAGE}"), at)),
+        }
+        if number.is_some() {
+            named.next();
+        }
+    }
+    if question.from == 0 {
+        return Err(problem(format!("name the week to begin with; {USAGE}"), 0));
+    }
+    for alternative in rest.split('|').filter(|own| !own.trim().is_empty()) {
+        let at = alternative.as_ptr() as usize - words.as_ptr() as usize;
+        let edits = alternative.split(';').map(str::trim).filter(|edit| !edit.is_empty());
+        let edits = edits.map(str::parse).collect::<Result<Vec<DecisionEdit>, String>>();
+        question.alternatives.push(edits.map_err(|text| problem(text, at + 1))?);
+    }
+    Ok(question)
+}
+
+fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> String {
+    let mut text = heading(comparison, days);
+    for (number, branch) in comparison.branches.iter().enumerate() {
+        text += &format!("\n{}", branch_line(number, branch));
+        text.extend(decisions(branch, days).iter().map(|line| format!("\n     {line}")));
+    }
+    let (headers, rows) = table(comparison, days);
+    text += &format!("\n\n{}", aligned(&headers, &rows));
+    let Some(futures) = futures else { return text };
+    let (headers, rows) = futures_table(comparison, futures, days);
+    text += &format!("\n{}\n{}", futures_heading(futures), aligned(&headers, &rows));
+    for number in 1..comparison.branches.len() {
+        text += &format!(
+            "\n{number}, at the end of week {}, beside the run as it was, future by future:",
+            comparison.until.div_ceil(days)
+        );
+        text.extend(sureness(comparison, futures, number).iter().map(|line| format!("\n     {line}")));
+    }
+    text
+}
+
+fn as_data(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> Value {
+    let number = |value: f64| if value.is_nan() { Value::Null } else { json!(value) };
+    let branch = |own: &BranchFigures| {
+        let curves = comparison.figures.iter().map(|figure| {
+            let values: Vec<Value> = own.curve(*figure).map(|(_, value)| number(value)).collect();
+            (figure.id(), Value::Array(values))
+        });
+        let days_of: Vec<u32> = comparison
+            .figures
+            .first()
+            .map_or(Vec::new(), |one| own.curve(*one).map(|(day, _)| day).collect());
+        json!({
+            "name": name(&own.edits),
+            "differs_on": own.differs_on,
+            "decisions": decisions(own, days),
+            "days": days_of,
+            "figures": Value::Object(curves.collect()),
+        })
+    };
+    json!({
+        "from": comparison.from,
+        "until": comparison.until,
+        "recorded_until": comparison.recorded_until,
+        "branches": comparison.branches.iter().map(branch).collect::<Vec<_>>(),
+        "futures": futures.map(|futures| futures_as_data(comparison, futures)),
+    })
+}
+
+fn futures_as_data(comparison: &BranchComparison, futures: &Futures) -> Value {
+    let branch = |at: usize| {
+        let figures = comparison.figures.iter().map(|figure| {
+            let bands: Vec<Value> = futures
+                .bands(at, *figure)
+                .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
+                .collect();
+            let difference = futures.difference(at, *figure, comparison.until).map(|own| {
+                json!({ "mean": own.mean, "interval": [own.interval.0, own.interval.1], "more": own.more, "of": own.of })
+            });
+            (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
+        });
+        Value::Object(figures.collect())
+    };
+    json!({
+        "count": futures.count,
+        "redrawn_after": futures.redrawn_after,
+        "branches": (0..comparison.branches.len()).map(branch).collect::<Vec<_>>(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_names_weeks_futures_and_alternatives() {
+        let edit = |text: &str| text.parse::<DecisionEdit>().expect(text);
+        let asked = read("from 20 until 40 futures: set_prices * 0.9; drop 7 | keep set_prices", 1);
+        let expected = Question {
+            from: 20,
+            until: Some(40),
+            futures: Some(FUTURES),
+            alternatives: vec![vec![edit("set_prices * 0.9"), edit("drop 7")], vec![edit("keep set_prices")]],
+        };
+        assert_eq!(asked, Ok(expected.clone()));
+        let file = "# cheaper\nfrom 20 until 40 futures:\nset_prices * 0.9; drop 7\n\nkeep set_prices\n";
+        assert_eq!(read(&as_question(file), 1), Ok(expected));
+        assert_eq!(read("from 3", 1).map(|own| own.alternatives), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn what_is_no_question_is_refused_where_it_goes_wrong() {
+        let said = |words: &str| read(words, 8).expect_err(words);
+        assert_eq!(said("").column, 8);
+        assert!(said("from: set_prices * 2").text.starts_with("from needs the number of a week"));
+        let wrong = said("from 20 to 30: drop 1");
+        assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
+        assert!(said("from 20 futures 1: drop 1").text.starts_with("futures are drawn in numbers"));
+        let wrong = said("from 20: set_price * 2");
+        assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));
+    }
+}

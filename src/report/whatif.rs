@@ -1,0 +1,174 @@
+//! What would have been, in words and tables.
+
+use super::why::{signed, written};
+use super::words::count;
+use crate::notation::printable;
+use crate::session::{
+    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin, ToolId,
+};
+
+/// The name of the run as it was.
+pub const AS_IT_WAS: &str = "as it was";
+
+/// What a branch decides otherwise, as it is written.
+pub fn name(edits: &[DecisionEdit]) -> String {
+    match edits {
+        [] => AS_IT_WAS.to_owned(),
+        edits => edits.iter().map(DecisionEdit::to_string).collect::<Vec<_>>().join("; "),
+    }
+}
+
+/// From when to when, and where the decisions end.
+pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
+    let BranchComparison { from, until, recorded_until, .. } = comparison;
+    let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
+    let beyond = match recorded_until < until {
+        true => format!("; after day {recorded_until} nothing is decided, the settings stay"),
+        false => String::new(),
+    };
+    format!("weeks {first} to {last} (days {} to {until}) again, the same luck{beyond}", from + 1)
+}
+
+/// A branch: its number, name, and when its company becomes another.
+pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
+    let name = name(&branch.edits);
+    let since = match (branch.differs_on, branch.edits.is_empty()) {
+        (_, true) => String::new(),
+        (Some(day), _) => format!(" · another company from day {day} on"),
+        (None, _) => " · the same company on every day".to_owned(),
+    };
+    format!("{number}  {name}{since}")
+}
+
+/// What is decided otherwise, what is refused now, and what would be accepted now; nothing is left out.
+pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
+    let week = |day: u32| day / days_per_week + 1;
+    let differing = branch.differences.iter().map(|call| difference(call, week(call.day)));
+    let refused = branch.refused.iter().map(|(day, tool, refusal)| {
+        format!("week {}: {} is refused: {}", week(*day), tool.name(), refusal.message)
+    });
+    let possible = branch.possible.iter().map(|(line, day, tool)| {
+        format!(
+            "week {}: {} of line {line} was refused and would be accepted; it is not made",
+            week(*day),
+            tool.name()
+        )
+    });
+    differing.chain(refused).chain(possible).map(|line| printable(&line).into_owned()).collect()
+}
+
+fn difference(call: &DecisionDifference, week: u32) -> String {
+    let tool = call.tool.name();
+    match (&call.seq, &call.was, &call.is) {
+        (Some(line), Some(was), Some(is)) => format!("week {week}: {tool} {was} → {is} (line {line})"),
+        (Some(line), Some(was), None) => format!("week {week}: {tool} {was} is not made (line {line})"),
+        (_, _, Some(is)) => format!("week {week}: {tool} {is} is new"),
+        _ => format!("week {week}: {tool}"),
+    }
+}
+
+/// Headers and rows: a figure at each milestone, in each branch, with its difference from the run as it was.
+pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>, Vec<Vec<String>>) {
+    let numbers = 0..comparison.branches.len();
+    let headers =
+        ["after week", "figure"].map(str::to_owned).into_iter().chain(numbers.map(|at| at.to_string()));
+    let mut rows = Vec::new();
+    for day in comparison.milestones(days_per_week) {
+        for (at, figure) in comparison.figures.iter().enumerate() {
+            let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
+            let cells = comparison.branches.iter().map(|branch| cell(comparison, branch, *figure, day));
+            rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
+        }
+    }
+    (headers.collect(), rows)
+}
+
+/// A value, and what it has more than the run as it was.
+pub fn cell(comparison: &BranchComparison, branch: &BranchFigures, figure: BranchFigure, day: u32) -> String {
+    let Some(value) = branch.value(figure, day) else { return "over".to_owned() };
+    if value.is_nan() {
+        return "—".to_owned();
+    }
+    let shown = written(figure.unit(), value);
+    let base = comparison.branches.first().filter(|_| !branch.edits.is_empty());
+    match base.and_then(|base| base.value(figure, day)).filter(|base| !base.is_nan()) {
+        Some(base) => format!("{shown} ({})", signed(figure.unit(), value - base)),
+        None => shown,
+    }
+}
+
+/// How many futures were drawn, and from when on.
+pub fn futures_heading(futures: &Futures) -> String {
+    format!(
+        "{} of which the luck is drawn anew after day {}; median, and in brackets from the tenth to the ninetieth percent",
+        count(futures.count, "future"),
+        futures.redrawn_after
+    )
+}
+
+/// Headers and rows: a figure at each milestone, in each branch, over the futures.
+pub fn futures_table(
+    comparison: &BranchComparison,
+    futures: &Futures,
+    days_per_week: u32,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let (headers, _) = table(comparison, days_per_week);
+    let mut rows = Vec::new();
+    for day in comparison.milestones(days_per_week) {
+        for (at, figure) in comparison.figures.iter().enumerate() {
+            let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
+            let cell = |branch: usize| match futures.band(branch, *figure, day) {
+                None => "—".to_owned(),
+                Some(band) => {
+                    let value = |value| written(figure.unit(), value);
+                    format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
+                }
+            };
+            let cells = (0..comparison.branches.len()).map(cell);
+            rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
+        }
+    }
+    (headers, rows)
+}
+
+/// How sure it is what a branch has more, at the last milestone.
+pub fn sureness(comparison: &BranchComparison, futures: &Futures, branch: usize) -> Vec<String> {
+    let line = |figure: &BranchFigure| {
+        let difference = futures.difference(branch, *figure, comparison.until)?;
+        let signed = |value| signed(figure.unit(), value);
+        let (low, high) = difference.interval;
+        Some(format!(
+            "{}: {} on average (95 % interval {} to {}), more in {} of {}",
+            figure.name(),
+            signed(difference.mean),
+            signed(low),
+            signed(high),
+            difference.more,
+            count(difference.of, "future")
+        ))
+    };
+    comparison.figures.iter().filter_map(line).collect()
+}
+
+/// A run in the tree of branches.
+pub fn kin_line(kin: &Kin, own: &str) -> String {
+    let run = &kin.run;
+    let mark = if run.id == own { " (this run)" } else { "" };
+    let left = kin.left_in_week.map_or(String::new(), |week| format!(" · left in week {week}"));
+    let change = match (kin.first_change, kin.left_in_week) {
+        (Some((day, tool)), Some(_)) => {
+            format!(", first call of its own {} on day {day}", ToolId::name(tool))
+        }
+        (None, Some(_)) => ", no call of its own".to_owned(),
+        _ => String::new(),
+    };
+    let end = run.ended.map_or(String::new(), |ended| format!(", {}", ended.id()));
+    format!(
+        "{}{}{mark}{left}{change} · day {} of {}, cash {}{end}",
+        "  ".repeat(kin.depth),
+        run.id,
+        run.day,
+        run.days,
+        crate::notation::dollars(run.cash)
+    )
+}

@@ -1,0 +1,47 @@
+//! Several simulations at once.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use rayon::ThreadPoolBuilder;
+
+/// Says whether another simulation was stopped: then none of them is wanted any more.
+pub(in crate::session) struct Stopped(AtomicBool);
+
+impl Stopped {
+    pub(in crate::session) fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Works on each of some tasks, in their order; none if one of them was stopped, which stops the others.
+///
+/// Each processor simulates one after the other: no two of them wait for each other, and there are never more companies in
+/// memory than processors.
+pub(in crate::session) fn one_each<T: Sync, R: Send>(
+    tasks: &[T],
+    work: impl Fn(&T, &Stopped) -> Option<R> + Sync,
+) -> Option<Vec<R>> {
+    let (next, stopped) = (AtomicUsize::new(0), Stopped(AtomicBool::new(false)));
+    let take_turns = || {
+        let mut found = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let Some(task) = tasks.get(at).filter(|_| !stopped.is_set()) else { return found };
+            match work(task, &stopped) {
+                Some(result) => found.push((at, result)),
+                None => stopped.0.store(true, Ordering::Relaxed),
+            }
+        }
+    };
+    let alone = || match ThreadPoolBuilder::new().num_threads(1).build() {
+        Ok(pool) => pool.install(take_turns),
+        Err(_) => take_turns(),
+    };
+    let workers = rayon::current_num_threads().min(tasks.len());
+    let mut found = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(alone)).collect();
+        workers.into_iter().filter_map(|worker| worker.join().ok()).flatten().collect::<Vec<_>>()
+    });
+    found.sort_by_key(|(at, _)| *at);
+    (found.len() == tasks.len()).then(|| found.into_iter().map(|(_, result)| result).collect())
+}

@@ -1,0 +1,349 @@
+//! What is decided otherwise in a what-if, and how that is written.
+
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
+use serde_json::{Map, Value, json};
+
+use crate::notation::json_number;
+use crate::session::counterfactual::edits::{AddedCall, Edits};
+use crate::session::counterfactual::kept_state::KeptState;
+use crate::session::counterfactual::script::{Move, PastCall};
+use crate::tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
+use crate::world::settings::Settings;
+
+/// Something that is decided otherwise from a week on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DecisionEdit {
+    /// The settings of a tool, those in force and those that are set later, times a factor of at least 0.
+    Scale {
+        /// The tool.
+        tool: ToolId,
+        /// The factor.
+        factor: f64,
+    },
+    /// No call of a tool is made: what it set stays as it is.
+    Keep(ToolId),
+    /// A single call is not made.
+    Drop(u64),
+    /// A single call is made with other arguments.
+    Change {
+        /// Its line.
+        seq: u64,
+        /// The arguments.
+        args: Value,
+    },
+    /// A call is made besides, after those of its day.
+    Add {
+        /// Week at whose start it is made, counted from 1; the first of the what-if if none is named.
+        week: Option<u32>,
+        /// The tool.
+        tool: ToolId,
+        /// The arguments.
+        args: Value,
+    },
+    /// No call sets the capacity; at the start of every week it is the smallest tier that covers the busiest day of the week
+    /// before.
+    CapacityFollowsUsage,
+}
+
+/// What a what-if changes in days of a run that follow a moment.
+///
+/// # Errors
+/// `line_unknown`, `week_unknown`: it names what is not there.
+pub(super) fn edits(
+    decided: &[DecisionEdit],
+    opening: &Opening<'_>,
+    moves: &[Move],
+    until: u32,
+) -> Result<Edits, Refusal> {
+    let mut edits = Edits::default();
+    for edit in decided {
+        edit.add_to(&mut edits, opening, moves, until)?;
+    }
+    Ok(edits)
+}
+
+/// The company at the start of the week that a what-if begins with.
+pub(super) struct Opening<'a> {
+    pub day: u32,
+    pub settings: &'a Settings,
+    pub days_per_week: u32,
+}
+
+impl Opening<'_> {
+    pub(super) fn of(start: &KeptState) -> Opening<'_> {
+        let (world, run) = (&start.world, &start.params.run);
+        Opening { day: world.day, settings: &world.settings, days_per_week: run.days_per_week }
+    }
+}
+
+impl DecisionEdit {
+    fn add_to(
+        &self,
+        edits: &mut Edits,
+        opening: &Opening<'_>,
+        moves: &[Move],
+        until: u32,
+    ) -> Result<(), Refusal> {
+        match self {
+            DecisionEdit::Scale { tool, factor } => scale(*tool, *factor, edits, opening, moves),
+            DecisionEdit::Keep(tool) => drop_all(*tool, edits, moves),
+            DecisionEdit::Drop(seq) => {
+                call_of(*seq, moves)?;
+                edits.dropped.insert(*seq);
+            }
+            DecisionEdit::Change { seq, args } => {
+                call_of(*seq, moves)?;
+                edits.changed.insert(*seq, args.clone());
+            }
+            DecisionEdit::Add { week, tool, args } => {
+                let (from, week_days) = (opening.day, opening.days_per_week);
+                let day = week.map_or(from, |week| week.saturating_sub(1) * week_days);
+                if !(from..until).contains(&day) {
+                    let (first, last) = (from / week_days + 1, until.div_ceil(week_days));
+                    let message = format!("a call can be added in weeks {first} to {last} of this what-if");
+                    return Err(Refusal::at("week", "week_unknown", message));
+                }
+                edits.added.push(AddedCall { day, tool: *tool, args: args.clone() });
+            }
+            DecisionEdit::CapacityFollowsUsage => {
+                drop_all(ToolId::SetCapacityTier, edits, moves);
+                edits.capacity_follows_usage = true;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
+    moves.iter().filter_map(|step| match step {
+        Move::Call(call) => Some(call),
+        Move::Days(_) => None,
+    })
+}
+
+fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
+    edits.dropped.extend(calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
+}
+
+fn call_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
+    let is_there = calls(moves).any(|call| call.seq == seq);
+    let message = || format!("line {seq} is no call of the weeks of this what-if; whatif WEEK lists them");
+    is_there.then_some(()).ok_or_else(|| Refusal::at("line", "line_unknown", message()))
+}
+
+/// Values in force are set anew before anything else; calls that set some are made with other numbers.
+fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, moves: &[Move]) {
+    let mut in_force = tool.tool().current(opening.settings);
+    if tool == ToolId::SetPrices {
+        // A plan without a price stays without.
+        in_force.retain(|_, price| price.as_f64() != Some(0.0));
+    }
+    if !in_force.is_empty() {
+        edits.opening.push((tool, scaled(&Value::Object(in_force), factor)));
+    }
+    for call in calls(moves).filter(|call| call.tool == tool) {
+        let args = edits.changed.get(&call.seq).unwrap_or(&call.args);
+        let args = scaled(args, factor);
+        edits.changed.insert(call.seq, args);
+    }
+}
+
+/// Every number times a factor.
+fn scaled(value: &Value, factor: f64) -> Value {
+    match value {
+        Value::Number(number) => number.as_f64().map_or(Value::Null, |own| json_number(own * factor)),
+        Value::Object(fields) => {
+            fields.iter().map(|(name, value)| (name.clone(), scaled(value, factor))).collect()
+        }
+        Value::Array(items) => items.iter().map(|item| scaled(item, factor)).collect(),
+        other => other.clone(),
+    }
+}
+
+/// Whether the arguments of a tool are amounts: numbers of which a multiple makes sense.
+pub fn sets_amounts(tool: ToolId) -> bool {
+    let spec = tool.spec();
+    let is_amount = |kind: &ArgumentKind| {
+        matches!(kind, ArgumentKind::Number(_) | ArgumentKind::Map(..) | ArgumentKind::Matrix(..))
+    };
+    spec.kind == Kind::Setting && spec.arguments.iter().all(|own| is_amount(&own.kind))
+}
+
+impl Display for DecisionEdit {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            DecisionEdit::Scale { tool, factor } => write!(formatter, "{} * {factor}", tool.name()),
+            DecisionEdit::Keep(tool) => write!(formatter, "keep {}", tool.name()),
+            DecisionEdit::Drop(seq) => write!(formatter, "drop {seq}"),
+            DecisionEdit::Change { seq, args } => write!(formatter, "change {seq} {args}"),
+            DecisionEdit::Add { week: None, tool, args } => write!(formatter, "{} {args}", tool.name()),
+            DecisionEdit::Add { week: Some(week), tool, args } => {
+                write!(formatter, "in {week} {} {args}", tool.name())
+            }
+            DecisionEdit::CapacityFollowsUsage => formatter.write_str("capacity follows usage"),
+        }
+    }
+}
+
+/// Forms of an edit, as help shows them.
+pub const FORMS: [&str; 6] = [
+    "set_prices * 0.9",
+    "keep set_daily_spend",
+    "drop 57",
+    "change 57 {\"B\": 30}",
+    "[in 24] set_prices B=30",
+    "capacity follows usage",
+];
+
+impl FromStr for DecisionEdit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<DecisionEdit, String> {
+        let text = text.trim();
+        let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        let rest = rest.trim();
+        match first {
+            "" => Err(format!("an edit is missing; for instance {}", FORMS.join(" or "))),
+            "keep" => acting(rest).map(DecisionEdit::Keep),
+            "drop" => line(rest).map(DecisionEdit::Drop),
+            "change" => {
+                let (seq, args) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+                Ok(DecisionEdit::Change { seq: line(seq)?, args: arguments(args, None)? })
+            }
+            "in" => {
+                let (week, call) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+                let number = week.parse().map_err(|_| format!("{week} is not the number of a week"))?;
+                added(Some(number), call)
+            }
+            "capacity" if rest == "follows usage" || rest == "follows use" => {
+                Ok(DecisionEdit::CapacityFollowsUsage)
+            }
+            _ => scale_or_call(text),
+        }
+    }
+}
+
+/// `set_prices * 0.9`, or a call.
+fn scale_or_call(text: &str) -> Result<DecisionEdit, String> {
+    let name = text.split(|letter: char| letter.is_whitespace() || letter == '*').next().unwrap_or_default();
+    let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else { return added(None, text) };
+    let tool = acting(name)?;
+    if !sets_amounts(tool) {
+        let amounts: Vec<&str> = ToolId::all().filter(|own| sets_amounts(*own)).map(ToolId::name).collect();
+        return Err(format!("{name} sets no amounts; a factor goes with {}", amounts.join(", ")));
+    }
+    let factor = factor.trim();
+    let number = factor.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    number
+        .map(|factor| DecisionEdit::Scale { tool, factor })
+        .ok_or_else(|| format!("{factor} is not a factor; write a number of at least 0, for instance 0.9"))
+}
+
+fn added(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
+    let (name, rest) = call.split_once(char::is_whitespace).unwrap_or((call, ""));
+    let tool = acting(name)?;
+    Ok(DecisionEdit::Add { week, tool, args: arguments(rest, tool.spec().whole)? })
+}
+
+/// The tool of a name, if it can change the company.
+fn acting(name: &str) -> Result<ToolId, String> {
+    let Some(tool) = find(name) else {
+        let near = catalogue::nearest(name);
+        let help = match near.is_empty() {
+            true => format!("an edit reads {}", FORMS.join(" or ")),
+            false => format!("did you mean {}?", near.join(" or ")),
+        };
+        return Err(format!("there is no tool {name}; {help}"));
+    };
+    let spec = tool.spec();
+    match spec.kind.acts() && spec.kind != Kind::Time {
+        true => Ok(spec.id),
+        false => Err(format!("{name} changes nothing in the company")),
+    }
+}
+
+fn line(number: &str) -> Result<u64, String> {
+    let number = number.trim();
+    number.parse().map_err(|_| format!("{number} is not the number of a line; for instance drop 57"))
+}
+
+/// Arguments as JSON, or as `NAME=VALUE` separated by blanks.
+fn arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
+    let text = text.trim();
+    if text.starts_with('{') {
+        let given: Map<String, Value> =
+            serde_json::from_str(text).map_err(|error| format!("the arguments are not JSON: {error}"))?;
+        return Ok(match whole.filter(|name| !given.contains_key(*name)) {
+            Some(name) => json!({ name: given }),
+            None => Value::Object(given),
+        });
+    }
+    let pair = |word: &str| {
+        let (name, value) =
+            word.split_once('=').ok_or_else(|| format!("{word} is no argument; write NAME=VALUE"))?;
+        let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
+        Ok((name.to_owned(), value))
+    };
+    text.split_whitespace().map(pair).collect::<Result<Map<_, _>, String>>().map(Value::Object)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edits_are_written_as_they_are_read() {
+        for text in [
+            "set_prices * 0.9",
+            "keep set_daily_spend",
+            "drop 57",
+            "change 57 {\"B\":30}",
+            "set_prices {\"B\":30}",
+            "in 24 set_prices {\"B\":30}",
+            "capacity follows usage",
+        ] {
+            let edit: DecisionEdit = text.parse().expect(text);
+            assert_eq!(edit.to_string(), text);
+        }
+        assert!(FORMS.iter().all(|form| form.replace(['[', ']'], "").parse::<DecisionEdit>().is_ok()));
+        let call = |text: &str| text.parse::<DecisionEdit>().expect(text).to_string();
+        assert_eq!(call("set_prices*2"), "set_prices * 2");
+        assert_eq!(call("in 3 set_prices A=16 B=34.5"), "in 3 set_prices {\"A\":16,\"B\":34.5}");
+        assert_eq!(
+            call("set_targeted_ad_spend {\"linkedin\": {\"S1\": 5}}"),
+            "set_targeted_ad_spend {\"targeted_spend\":{\"linkedin\":{\"S1\":5}}}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_edit_is_refused_with_what_is_one() {
+        let said = |text: &str| text.parse::<DecisionEdit>().expect_err(text);
+        assert!(said("").starts_with("an edit is missing"));
+        assert_eq!(
+            said("set_price * 2"),
+            "there is no tool set_price; did you mean set_prices or set_promotion?"
+        );
+        assert!(
+            said("set_capacity_tier * 2").starts_with("set_capacity_tier sets no amounts; a factor goes")
+        );
+        assert!(said("set_prices * much").starts_with("much is not a factor"));
+        assert!(said("set_prices * -1").starts_with("-1 is not a factor"));
+        assert!(said("set_prices * inf").starts_with("inf is not a factor"));
+        assert_eq!(said("keep get_vars"), "get_vars changes nothing in the company");
+        assert_eq!(said("next_week"), "next_week changes nothing in the company");
+        assert!(said("drop it").starts_with("it is not the number of a line"));
+        assert_eq!(said("in x set_prices B=3"), "x is not the number of a week");
+        assert_eq!(said("set_prices B"), "B is no argument; write NAME=VALUE");
+        assert!(said("set_prices {B}").starts_with("the arguments are not JSON"));
+    }
+
+    #[test]
+    fn every_number_of_a_call_is_scaled_and_no_name() {
+        let args = json!({"targeted_spend": {"linkedin": {"S1": 50.0}}, "name": "7"});
+        assert_eq!(scaled(&args, 0.5), json!({"targeted_spend": {"linkedin": {"S1": 25}}, "name": "7"}));
+        assert!(sets_amounts(ToolId::SetPrices) && sets_amounts(ToolId::SetTargetedAdSpend));
+        assert!(!sets_amounts(ToolId::SetModelTiers) && !sets_amounts(ToolId::PostSocialMedia));
+    }
+}

@@ -1,0 +1,82 @@
+//! The tree of branches of a run: where each left, what was changed first, where it stands now.
+
+use std::path::Path;
+
+use crate::session::figures::week::week_of;
+use crate::session::folder::derived::manifest_of;
+use crate::session::folder::runs::{RunSummary, list_runs, run_folder};
+use crate::session::trajectory::record::Parent;
+use crate::session::trajectory::{Record, Trajectory};
+use crate::tools::ToolId;
+
+/// A run in the tree.
+#[derive(Debug, Clone)]
+pub struct Kin {
+    /// The run as it stands.
+    pub run: RunSummary,
+    /// How many branches lie between it and the run at the root: 0 for that one.
+    pub depth: usize,
+    /// Week at whose start it left its parent; none for the root.
+    pub left_in_week: Option<u32>,
+    /// The first call that was made in it and not in its parent at that place; none if there is none.
+    pub first_change: Option<(u32, ToolId)>,
+}
+
+/// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read
+/// are left out.
+pub fn branches_of(runs: &Path, id: &str) -> Vec<Kin> {
+    let all: Vec<Node> = list_runs(runs).into_iter().flatten().filter_map(|run| node(runs, run)).collect();
+    let parent_of = |id: &str| {
+        let own = all.iter().find(|node| node.run.id == id)?;
+        let parent = own.parent.as_ref()?;
+        all.iter().any(|node| node.run.id == parent.run).then(|| parent.run.clone())
+    };
+    let mut root = id.to_owned();
+    // A chain of parents is no longer than there are runs, whatever the files say.
+    for _ in 0..all.len() {
+        match parent_of(&root) {
+            Some(parent) => root = parent,
+            None => break,
+        }
+    }
+    let mut tree = Vec::new();
+    grow(runs, &all, &root, 0, &mut tree);
+    tree
+}
+
+struct Node {
+    run: RunSummary,
+    parent: Option<Parent>,
+}
+
+fn node(runs: &Path, run: RunSummary) -> Option<Node> {
+    let manifest = manifest_of(&run_folder(runs, &run.id)).ok()?;
+    Some(Node { run, parent: manifest.parent })
+}
+
+fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) {
+    let Some(own) = all.iter().find(|node| node.run.id == id) else { return };
+    if tree.iter().any(|known| known.run.id == id) {
+        return;
+    }
+    let lines = own.parent.as_ref().and_then(|_| left(runs, &own.run.id));
+    let (left_in_week, first_change) = lines.map_or((None, None), |(week, change)| (Some(week), change));
+    tree.push(Kin { run: own.run.clone(), depth, left_in_week, first_change });
+    let mut branches: Vec<&Node> =
+        all.iter().filter(|node| node.parent.as_ref().is_some_and(|parent| parent.run == id)).collect();
+    branches.sort_by(|one, other| one.run.created.cmp(&other.run.created));
+    for branch in branches {
+        grow(runs, all, &branch.run.id, depth + 1, tree);
+    }
+}
+
+/// Week in which a branch left, and the day and tool of its first own call.
+fn left(runs: &Path, id: &str) -> Option<(u32, Option<(u32, ToolId)>)> {
+    let trajectory = Trajectory::read(&run_folder(runs, id).join("trajectory.jsonl")).ok()?;
+    let at = trajectory.lines.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
+    let own = trajectory.lines[at..].iter().find_map(|line| {
+        let (call, _) = line.record.accepted_call()?;
+        call.tool.spec().kind.acts().then_some((line.day, call.tool))
+    });
+    Some((week_of(trajectory.lines[at].day) + 1, own))
+}

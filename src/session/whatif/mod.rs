@@ -1,0 +1,239 @@
+//! What if: days of a run simulated again with other decisions, the rest of the decisions kept.
+//!
+//! Branches share the run's luck, so whatever an edit does not touch stays as it was, and a difference is worth exactly what
+//! the edit did. The future can be redrawn as well: then each branch meets the same futures.
+
+mod adopt;
+mod comparison;
+mod decision_edit;
+mod figure;
+mod futures;
+mod kin;
+#[cfg(test)]
+mod tests;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+pub use adopt::Adopted;
+pub use comparison::{BranchComparison, BranchFigures, DecisionDifference};
+pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
+pub use figure::BranchFigure;
+pub use futures::{FutureBand, Futures, PairedDifference};
+pub use kin::{Kin, branches_of};
+
+use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
+use super::counterfactual::edits::{Edits, Redrawn};
+use super::counterfactual::kept_state::KeptState;
+use super::counterfactual::one_each::one_each;
+use super::counterfactual::past::Past;
+use super::counterfactual::script::{Move, PastCall};
+use super::why::{Sight, sight};
+use crate::tools::Refusal;
+use crate::world::events::DayFigures;
+
+/// Alternatives that stand side by side, at most.
+pub const MOST_ALTERNATIVES: usize = 3;
+/// Weeks that are simulated at least, as far as the run has them.
+const LEAST_WEEKS: u32 = 12;
+/// Weeks before the branches part whose days are read for figures that look back.
+const WEEKS_BACK: u32 = 5;
+
+/// What is told of progress: days simulated, and how many there will be. It can stop the work.
+pub type OnWhatIfProgress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
+
+/// Answers what would have been if something else had been decided in a run.
+pub struct WhatIf {
+    past: Past,
+    sight: Sight,
+}
+
+/// Days of a run from which branches part.
+struct Parting {
+    start: Arc<KeptState>,
+    /// Days before it.
+    earlier: Vec<DayFigures>,
+    moves: Vec<Move>,
+    until: u32,
+}
+
+impl WhatIf {
+    /// Of the run in a folder, or of a trajectory file, as far as it is recorded now.
+    ///
+    /// # Errors
+    /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
+    pub fn read(path: &Path) -> Result<WhatIf, Refusal> {
+        let past = Past::read(path).map_err(|error| super::why::not_readable(&error))?;
+        let sight = sight(&past.manifest, past.ended)?;
+        Ok(WhatIf { past, sight })
+    }
+
+    /// The calls of the run from a week on: what can be decided otherwise.
+    ///
+    /// # Errors
+    /// `week_unknown`.
+    pub fn decisions(&self, week: u32) -> Result<Vec<PastCall>, Refusal> {
+        let from = self.day_of(week)?;
+        let moves = self.past.between(from, self.past.manifest.days);
+        let calls = moves.iter().filter_map(|step| match step {
+            Move::Call(call) => Some(call.clone()),
+            Move::Days(_) => None,
+        });
+        Ok(calls.collect())
+    }
+
+    /// The run as it was and up to three alternatives, from the start of a week to the end of another, or, if none is named,
+    /// of the last one recorded, for twelve weeks at least. None if it was stopped.
+    ///
+    /// # Errors
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `not_readable`.
+    pub fn compare(
+        &mut self,
+        week: u32,
+        until_week: Option<u32>,
+        alternatives: &[Vec<DecisionEdit>],
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<BranchComparison>, Refusal> {
+        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
+        let (all, edits) = all_edits(alternatives, &parting)?;
+        let Some(outcomes) = parting.simulate(&edits, progress) else { return Ok(None) };
+        let Parting { start, earlier, moves, until } = &parting;
+        let from = start.world.day;
+        let branches = all.iter().zip(&edits).zip(&outcomes).map(|((decided, made), outcome)| {
+            let differs_on = match decided.is_empty() {
+                true => None,
+                false => first_difference(start, moves, (&edits[0], made), *until),
+            };
+            BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on)
+        });
+        let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
+        Ok(Some(BranchComparison {
+            from,
+            until: *until,
+            recorded_until: self.past.last_day(),
+            branches: branches.collect(),
+            figures: BranchFigure::ALL.into_iter().filter(shown).collect(),
+        }))
+    }
+
+    /// The same under futures of which the luck is drawn anew: from the last recorded day on if the branches go beyond it, else
+    /// from the day on which they part. None if it was stopped.
+    ///
+    /// # Errors
+    /// As for [`WhatIf::compare`].
+    pub fn futures(
+        &mut self,
+        week: u32,
+        until_week: Option<u32>,
+        alternatives: &[Vec<DecisionEdit>],
+        count: u32,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<Futures>, Refusal> {
+        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
+        let (_, edits) = all_edits(alternatives, &parting)?;
+        let last = self.past.last_day();
+        let after =
+            if last < parting.until { last.max(parting.start.world.day) } else { parting.start.world.day };
+        let redrawn = |edits: &Edits, salt| {
+            let redrawn = Some(Redrawn { after, salt });
+            Edits { redrawn, ..edits.clone() }
+        };
+        let salts = || 0..u64::from(count);
+        let drawn: Vec<Edits> =
+            edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
+        let Some(outcomes) = parting.simulate(&drawn, progress) else { return Ok(None) };
+        let longest = outcomes.iter().max_by_key(|outcome| outcome.weeks.len());
+        let days = longest.map_or(Vec::new(), |one| one.weeks.iter().map(|week| week.day).collect());
+        let valued: Vec<_> =
+            outcomes.iter().map(|outcome| figure::values(&parting.earlier, outcome)).collect();
+        let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
+        Ok(Some(Futures::of(after, days, branches)))
+    }
+
+    /// Days of a week of the run.
+    pub fn days_per_week(&self) -> u32 {
+        self.past.days_per_week()
+    }
+
+    /// Day on which a week begins, if days of the record end on it.
+    fn day_of(&self, week: u32) -> Result<u32, Refusal> {
+        let days = self.past.days_per_week();
+        let day = week.checked_sub(1).map(|earlier| earlier.saturating_mul(days));
+        let last = self.past.last_day().min(self.past.manifest.days.saturating_sub(1)) / days + 1;
+        match day {
+            Some(day) if week <= last && self.past.ends_on(day) => Ok(day),
+            _ => {
+                let message =
+                    format!("a what-if cannot begin with week {week}; choose a week from 1 to {last}");
+                Err(Refusal::at("week", "week_unknown", message))
+            }
+        }
+    }
+
+    fn parting(
+        &mut self,
+        week: u32,
+        until_week: Option<u32>,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<Parting>, Refusal> {
+        let from = self.day_of(week)?;
+        let (days, horizon) = (self.past.days_per_week(), self.past.manifest.days);
+        let until = match until_week {
+            Some(last) if last >= week => last.saturating_mul(days).min(horizon),
+            Some(last) => {
+                let message = format!("a what-if from week {week} cannot end with week {last}");
+                return Err(Refusal::at("until", "week_unknown", message));
+            }
+            None => self.past.last_day().max(from + LEAST_WEEKS * days).min(horizon),
+        };
+        let mut reach = |day: u32| progress(day as usize, from as usize);
+        let back = (0..=from.saturating_sub(WEEKS_BACK * days)).rev().find(|day| self.past.ends_on(*day));
+        let moments = back.map_or(Ok(None), |day| self.past.moment(day, &mut reach));
+        let Some(back) = moments.map_err(|error| super::why::not_readable(&error))? else { return Ok(None) };
+        let moment = self.past.moment(from, &mut reach).map_err(|error| super::why::not_readable(&error))?;
+        let Some(start) = moment else { return Ok(None) };
+        let way = self.past.between(back.world.day, from);
+        let Some(earlier) = counterfactual(&back, way, &Edits::default(), from, &mut reach) else {
+            return Ok(None);
+        };
+        let moves = self.past.between(from, until).to_vec();
+        Ok(Some(Parting { start, earlier: earlier.days, moves, until }))
+    }
+}
+
+impl Parting {
+    /// Simulates the days under each of some edits. None if it was stopped.
+    fn simulate(&self, edits: &[Edits], progress: OnWhatIfProgress<'_>) -> Option<Vec<BranchOutcome>> {
+        let days = (self.until - self.start.world.day) as usize * edits.len();
+        let done = AtomicUsize::new(0);
+        one_each(edits, |own, stopped| {
+            let mut go_on = |_| {
+                let day = done.fetch_add(1, Ordering::Relaxed) + 1;
+                match progress(day, days).is_break() || stopped.is_set() {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            };
+            counterfactual(&self.start, &self.moves, own, self.until, &mut go_on)
+        })
+    }
+}
+
+/// What each branch decides, the run as it was first, and how its days are edited for it.
+type AllEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
+
+fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting) -> Result<AllEdits, Refusal> {
+    if alternatives.len() > MOST_ALTERNATIVES {
+        let message = format!("at most {MOST_ALTERNATIVES} alternatives stand side by side");
+        return Err(Refusal::new("too_many_alternatives", message));
+    }
+    let Parting { start, moves, until, .. } = parting;
+    let all: Vec<Vec<DecisionEdit>> =
+        std::iter::once(Vec::new()).chain(alternatives.iter().cloned()).collect();
+    let opening = decision_edit::Opening::of(start);
+    let edits = all.iter().map(|decided| decision_edit::edits(decided, &opening, moves, *until));
+    let edits = edits.collect::<Result<_, _>>()?;
+    Ok((all, edits))
+}

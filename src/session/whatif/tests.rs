@@ -1,0 +1,222 @@
+//! Branches lead where a run with those decisions leads; futures share their luck; what is hidden stays hidden.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use serde_json::json;
+
+use super::*;
+use crate::session::counterfactual::test_kit::played;
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Via;
+use crate::tools::ToolId;
+
+fn on(_: usize, _: usize) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn edits(all: &[&str]) -> Vec<DecisionEdit> {
+    all.iter().map(|edit| edit.parse().expect(edit)).collect()
+}
+
+fn of(session: &Session) -> WhatIf {
+    WhatIf::read(session.folder().expect("a folder")).expect("a what-if")
+}
+
+fn compared(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComparison {
+    let alternatives: Vec<_> = alternatives.iter().map(|own| edits(own)).collect();
+    let until = session.day() / 7;
+    let compared = of(session).compare(week, Some(until), &alternatives, &on);
+    compared.expect("an answer").expect("it is not stopped")
+}
+
+/// A run that decides something in weeks 1, 5 and 8, and asks for a project twice.
+fn run(runs: &Path, mode: Mode) -> Session {
+    let mut session = played(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
+    session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");
+    session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect_err("it is running");
+    for _ in 0..2 {
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+#[test]
+fn the_run_as_it_was_is_the_run() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let compared = compared(&session, 4, &[&["keep set_model_tiers"]]);
+    let [was, same] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
+    let cash: Vec<f64> = session.weeks().iter().skip(3).map(|week| week.cash).collect();
+    let curve =
+        |branch: &BranchFigures| branch.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect::<Vec<_>>();
+    assert_eq!(curve(was), cash);
+    // Nothing was set in those weeks, so keeping it changes nothing.
+    assert_eq!((curve(same), same.differs_on, same.differences.len()), (cash, None, 0));
+    let left = was.value(BranchFigure::Churn, session.day()).expect("a value");
+    let days = session.weeks().len();
+    assert!(left > 0.0 && left < 1.0 && days > 8, "{left}");
+}
+
+#[test]
+fn an_alternative_leads_where_a_branch_with_its_decisions_leads() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    for alternative in [
+        &["set_prices * 0.9"][..],
+        &["set_targeted_ad_spend * 0.5", "in 6 set_daily_spend operations=900"],
+        &["keep set_prices", "capacity follows usage"],
+        &["set_prices A=5 B=6 C=7"],
+    ] {
+        let compared = compared(&session, 5, &[alternative]);
+        let own = &compared.branches[1];
+        assert_eq!(own.refused, []);
+        let adopted = session
+            .branch_with_decisions(5, &edits(alternative), Mode::Debug, &mut |_| ControlFlow::Continue(()));
+        let adopted = adopted.expect("a branch");
+        assert_eq!((adopted.refused.len(), adopted.session.day()), (0, session.day()), "{alternative:?}");
+        let weeks = adopted.session.weeks().iter().skip(4);
+        let cash: Vec<f64> = weeks.map(|week| week.cash).collect();
+        let curve: Vec<f64> = own.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+        assert_eq!(curve, cash, "{alternative:?}");
+        assert_ne!(curve.last(), session.weeks().last().map(|week| &week.cash), "{alternative:?}");
+        let first = if alternative[0].starts_with("keep") { 50 } else { 29 };
+        assert!(own.differs_on.is_some_and(|day| day <= first), "{alternative:?}: {:?}", own.differs_on);
+    }
+}
+
+#[test]
+fn a_factor_scales_what_is_in_force_and_what_is_set_later() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let compared = compared(&session, 5, &[&["set_prices * 0.5"]]);
+    let told: Vec<_> = compared.branches[1]
+        .differences
+        .iter()
+        .map(|call| (call.day, call.tool, call.was.clone(), call.is.clone()))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            (28, ToolId::SetPrices, None, Some(json!({"A": 6, "B": 12.5, "C": 27.5}))),
+            (49, ToolId::SetPrices, Some(json!({"B": 30})), Some(json!({"B": 15}))),
+        ]
+    );
+}
+
+#[test]
+fn what_is_refused_now_and_what_is_not_any_more_is_told() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let own = of(&session);
+    let decided = own.decisions(8).expect("decisions");
+    let projects: Vec<_> = decided.iter().filter(|call| call.tool == ToolId::StartResearchProject).collect();
+    let [first, second] = projects[..] else { panic!("{decided:?}") };
+    assert_eq!((first.accepted, second.accepted), (true, false));
+    let drop = format!("drop {}", first.seq);
+    let earlier = "in 7 start_research_project tier=1";
+    let compared = compared(&session, 7, &[&[&drop], &[earlier]]);
+    let [_, dropped, twice] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
+    assert_eq!(dropped.possible, [(second.seq, second.day, second.tool)]);
+    assert_eq!(dropped.differences.len(), 1);
+    let [(56, ToolId::StartResearchProject, refusal)] = &twice.refused[..] else { panic!("{twice:?}") };
+    assert!(refusal.message.contains("running"), "{refusal}");
+}
+
+#[test]
+fn futures_are_the_same_for_every_branch_and_for_every_question() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let mut own = of(&session);
+    let asked = |own: &mut WhatIf| {
+        let alternatives = [edits(&["set_prices * 0.8"]), edits(&["keep set_prices"])];
+        own.futures(10, Some(13), &alternatives, 5, &on).expect("an answer").expect("it is not stopped")
+    };
+    let futures = asked(&mut own);
+    assert_eq!((futures.count, futures.redrawn_after), (5, session.day()));
+    assert_eq!(asked(&mut own), futures);
+    // Nobody decides anything after the record, so keeping it is no other branch.
+    let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
+    let same = difference(2, BranchFigure::Cash);
+    assert_eq!((same.mean, same.interval, same.more), (0.0, (0.0, 0.0), 0));
+    // At lower prices more stay, whatever the luck.
+    let fewer = difference(1, BranchFigure::Cancellations);
+    assert!(fewer.mean < 0.0 && fewer.more == 0, "{fewer:?}");
+    let band = futures.band(0, BranchFigure::Leads, 91).expect("a band");
+    assert!(band.low < band.median && band.median < band.high, "{band:?}");
+}
+
+#[test]
+fn luck_is_drawn_anew_from_the_day_after_the_record_on_and_not_before() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let futures =
+        of(&session).futures(8, Some(12), &[], 4, &on).expect("an answer").expect("it is not stopped");
+    let band = |week: u32| futures.band(0, BranchFigure::Cash, 7 * week).expect("a band");
+    let recorded = session.weeks()[9 - 1].cash;
+    assert_eq!((band(9).low, band(9).high), (recorded, recorded));
+    assert!(band(11).low < band(11).high);
+}
+
+#[test]
+fn weeks_lines_and_numbers_that_are_not_there_are_refused() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let mut own = of(&session);
+    let mut code = |week, until, alternatives: &[Vec<DecisionEdit>]| {
+        own.compare(week, until, alternatives, &on).expect_err("a refusal").code
+    };
+    assert_eq!(code(0, None, &[]), "week_unknown");
+    assert_eq!(code(12, None, &[]), "week_unknown");
+    assert_eq!(code(u32::MAX, None, &[]), "week_unknown");
+    assert_eq!(code(5, Some(4), &[]), "week_unknown");
+    assert_eq!(code(5, None, &[edits(&["drop 1"])]), "line_unknown");
+    assert_eq!(code(5, None, &[edits(&["in 4 set_prices B=3"])]), "week_unknown");
+    assert_eq!(code(5, None, &vec![edits(&["set_prices * 2"]); 4]), "too_many_alternatives");
+    let refused = session
+        .branch_with_decisions(5, &edits(&["drop 1"]), Mode::Debug, &mut |_| ControlFlow::Continue(()));
+    assert_eq!(refused.err().map(|refusal| refusal.code), Some("line_unknown"));
+    assert_eq!(std::fs::read_dir(runs.path()).expect("runs").count(), 1);
+    assert!(own.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no refusal").is_none());
+}
+
+#[test]
+fn an_unfinished_baseline_has_no_what_if_and_a_sandbox_shows_no_satisfaction() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let baseline = played(runs.path(), Mode::Baseline, 3, None);
+    let refused = WhatIf::read(baseline.folder().expect("a folder")).err().map(|refusal| refusal.code);
+    assert_eq!(refused, Some("not_in_this_mode"));
+    let kept = baseline.branch_with_decisions(2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
+    assert_eq!(kept.err().map(|refusal| refusal.code), Some("not_in_this_mode"));
+    for (mode, shown) in [(Mode::Sandbox, false), (Mode::Debug, true)] {
+        let session = played(runs.path(), mode, 3, None);
+        let figures = compared(&session, 4, &[]).figures;
+        assert_eq!(figures.contains(&BranchFigure::Satisfaction), shown, "{mode}");
+    }
+}
+
+#[test]
+fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let mut branch = session.branch(5, Mode::Debug).expect("a branch");
+    branch.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
+    let other = branch.branch(2, Mode::Debug).expect("a branch");
+    for id in [&session.manifest().id, &branch.manifest().id, &other.manifest().id] {
+        let tree = branches_of(runs.path(), id);
+        let told: Vec<_> = tree
+            .iter()
+            .map(|kin| (kin.run.id.clone(), kin.depth, kin.left_in_week, kin.first_change))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (session.manifest().id.clone(), 0, None, None),
+                (branch.manifest().id.clone(), 1, Some(5), Some((28, ToolId::SetPrices))),
+                (other.manifest().id.clone(), 2, Some(2), None),
+            ]
+        );
+    }
+}

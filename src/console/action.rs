@@ -41,6 +41,10 @@ pub enum Scope {
     Viewer,
     /// The pages of a participant of a study.
     Visit,
+    /// Decisions of a run that are made otherwise.
+    Decisions,
+    /// Branches side by side.
+    Branches,
     /// The offer of texts that were typed and not sent.
     Unsent,
     /// The cover while the clock is stopped.
@@ -49,7 +53,7 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 21] = [
+    pub const ALL: [Scope; 23] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -68,6 +72,8 @@ impl Scope {
         Scope::Menu,
         Scope::Final,
         Scope::Viewer,
+        Scope::Decisions,
+        Scope::Branches,
         Scope::Visit,
         Scope::Unsent,
         Scope::Cover,
@@ -95,6 +101,8 @@ impl Scope {
             Scope::Market => "market",
             Scope::Viewer => "viewer",
             Scope::Visit => "visit",
+            Scope::Decisions => "decisions",
+            Scope::Branches => "branches",
             Scope::Unsent => "unsent",
             Scope::Cover => "cover",
         }
@@ -122,6 +130,8 @@ impl Scope {
             Scope::Market => "Market",
             Scope::Viewer => "Replay of a run",
             Scope::Visit => "Pages of a participant",
+            Scope::Decisions => "What if: decisions",
+            Scope::Branches => "What if: figures",
             Scope::Unsent => "Unsent text",
             Scope::Cover => "While the clock is stopped",
         }
@@ -193,6 +203,7 @@ actions! {
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "what is this" "Explain the selected figure or field."
         Why "why" "why" "Say how much of the change of the selected figure each cause brought: the week is simulated again without it. Not in an unfinished baseline run."
+        Branches "branches" "what if" "Simulate the run again from a week on under other decisions, in memory. Not in an unfinished baseline run."
         Glossary "glossary" "glossary" "Look up any term."
         Tour "tour" "tour" "Resume the tour of a practice run; the start menu begins it."
         TourSkip "tour-skip" "skip" "Skip this step of the tour."
@@ -359,6 +370,17 @@ actions! {
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
         TakeOver "take-over" "take over" "Continue from this moment in a branch of your own."
         LeaveViewer "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
+    }
+    Decisions {
+        DropDecision "drop-decision" "leave out" "Leave the selected call out, or make it as it was; take another decision back."
+        AddDecision "add-decision" "decide" "Type another decision: a call, a factor, a tool whose settings stay."
+        NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or begin one; up to three stand side by side."
+        SimulateBranches "simulate-branches" "simulate" "Simulate the run again as it was and under each alternative."
+    }
+    Branches {
+        NextFigure "next-figure" "next figure" "Show the next figure."
+        DrawFutures "draw-futures" "futures" "Draw the luck anew twenty times, for every branch in the same way."
+        AdoptBranch "adopt-branch" "adopt" "Play the selected branch as a run of its own up to the day of this one, and go on in it."
     }
     Visit {
         GoOn "go-on" "go on" "Go on to the next question or page; after the last question, send the answers."

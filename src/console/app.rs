@@ -227,6 +227,8 @@ pub struct App {
     rows_question: u64,
     /// Number of the newest question why.
     why_question: u64,
+    /// Number of the last question what would have been.
+    branches_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
     /// The run that is being started shows the tour.
@@ -295,6 +297,7 @@ impl App {
             sql_question: 0,
             rows_question: 0,
             why_question: 0,
+            branches_question: 0,
             closing: None,
             tour_planned: false,
             visit: None,

@@ -1,10 +1,14 @@
 //! What an update asks for: work for the threads behind the screen, and changes of what is shown.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use serde_json::Value;
 
 use super::action::Action;
 use super::readings::Reading;
 use super::request::Request;
+use super::resimulation::BranchesQuestion;
 use super::screens::ScreenId;
 use crate::glossary::Subject;
 use crate::session::{Goal, Study};
@@ -45,6 +49,8 @@ pub enum Effect {
     Ask(String),
     /// Ask the database for the rows behind a figure.
     AskBehind(String),
+    /// Find out what would have been; the flag ends the work.
+    AskBranches(BranchesQuestion, Arc<AtomicBool>),
     /// Stop what the person asked.
     CancelQuery,
     /// Ask the database for a screen.

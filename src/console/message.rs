@@ -7,6 +7,7 @@ use crossterm::event::Event;
 
 use super::company::Company;
 use super::readings::Reading;
+use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
@@ -105,6 +106,10 @@ pub enum News {
     DatabaseBehind(String),
     /// The database holds everything again; with a handle that stops the person's queries.
     DatabaseWhole(Option<Interrupt>),
+    /// How many days were simulated for a question what would have been, and of how many; the number says which.
+    BranchesProgress(u64, usize, usize),
+    /// What would have been.
+    Branches(u64, Box<Result<BranchesFound, Refusal>>),
     /// How far a question why has come; the number says which.
     WhyProgress(u64, WhyProgress),
     /// It was answered.

@@ -26,6 +26,7 @@ mod posts;
 pub(crate) mod preferences;
 mod readings;
 pub mod request;
+mod resimulation;
 pub(crate) mod screens;
 pub(crate) mod speed;
 mod terminal;

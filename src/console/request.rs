@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::session::{Access, ConsentGiven, DueQuestion, Forecasts, Goal, Mode, NewRun, Study};
+use crate::session::{Access, ConsentGiven, DecisionEdit, DueQuestion, Forecasts, Goal, Mode, NewRun, Study};
 use crate::tools::ToolId;
 
 /// Work that a person asked for.
@@ -35,6 +35,13 @@ pub enum Request {
     },
     /// Go on from this moment of the replay in a run of one's own.
     TakeOver(Mode),
+    /// Go on in a branch that keeps the decisions of the run from a week on, some of them edited.
+    AdoptBranch {
+        /// The week.
+        week: u32,
+        /// What is decided otherwise.
+        edits: Vec<DecisionEdit>,
+    },
     /// Call a tool.
     Call {
         /// Tool.
@@ -140,6 +147,7 @@ impl Request {
             | Request::Rescue(_)
             | Request::Replay { .. }
             | Request::TakeOver(_)
+            | Request::AdoptBranch { .. }
             | Request::WriteReport => true,
             Request::Call { .. }
             | Request::Undo
@@ -159,6 +167,7 @@ impl Request {
             Request::Rescue(_) => "opening the intact part of the run",
             Request::Replay { .. } => "opening the record",
             Request::TakeOver(_) => "starting a run from here",
+            Request::AdoptBranch { .. } => "playing the branch",
             Request::Advance { .. } => "the week runs",
             Request::Visit(VisitRequest::Play) => "opening the run",
             _ => return None,

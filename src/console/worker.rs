@@ -4,6 +4,7 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod branches;
 mod causes;
 mod desk;
 mod folder;
@@ -28,17 +29,17 @@ use super::company::Company;
 use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
+use super::resimulation::{BranchesAsked, WhyAsked};
 use crate::session::record::{LeavingCause, PresenceEvent};
 use crate::session::{
-    Activity, CausesKept, Configuration, Goal, Interface, Playback, QuerySource, Refusal, Rows, RunError,
-    Session, UnsentTexts,
+    Activity, Causes, Configuration, Goal, Interface, LastRead, Playback, QuerySource, Refusal, Rows,
+    RunError, Session, UnsentTexts, WhatIf,
 };
 use crate::tools::ToolId;
 use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
 
-pub use causes::WhyAsked;
 pub use queries::Question;
 
 /// Work for the session's thread.
@@ -57,6 +58,8 @@ pub enum Job {
     Ask(Question),
     /// Find out why a figure changed.
     FindCauses(WhyAsked),
+    /// Find out what would have been.
+    FindBranches(BranchesAsked),
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
@@ -111,6 +114,7 @@ impl Workers {
                 limits: None,
                 minutes_left: Vec::new(),
                 causes: Arc::default(),
+                branches: Arc::default(),
                 news,
                 runs,
                 queries: for_session,
@@ -184,7 +188,9 @@ struct SessionThread {
     /// Minutes that are left to each limit, as they were told last.
     minutes_left: Vec<i64>,
     /// What was simulated to answer the last question why.
-    causes: Arc<Mutex<CausesKept>>,
+    causes: Arc<Mutex<LastRead<Causes>>>,
+    /// What was simulated to answer the last question what would have been.
+    branches: Arc<Mutex<LastRead<WhatIf>>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -252,6 +258,7 @@ impl SessionThread {
                 None
             }),
             Job::FindCauses(asked) => self.find_causes(asked),
+            Job::FindBranches(asked) => self.find_branches(asked),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
             Job::NotePresence(event, idle_ms, window) => {
@@ -322,6 +329,7 @@ impl SessionThread {
             Request::Rescue(id) => self.rescue(&id),
             Request::Replay { recorded, goal, follow } => self.replay(recorded, goal, follow),
             Request::TakeOver(mode) => self.take_over(mode),
+            Request::AdoptBranch { week, edits } => self.adopt_branch(week, &edits),
             Request::Call { tool, arguments } => self.with_run(|run| run.call(tool, &arguments)),
             Request::Undo => self.with_run(|run| run.undo()),
             Request::Redo => self.with_run(|run| run.redo()),

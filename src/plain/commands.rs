@@ -31,7 +31,8 @@ use crate::report::research::late_in_words;
 use crate::session::library::NamedQuery;
 use crate::session::record::{Help, Select};
 use crate::session::{
-    Activity, CausesKept, Change, CodeCheck, Library, QuerySource, Refusal, Session, Via, rows_as_json,
+    Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Refusal, Session, Via, WhatIf,
+    rows_as_json,
 };
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
@@ -138,7 +139,9 @@ pub struct Interpreter {
     /// A participant of a study is led: some commands are not theirs.
     pub(super) leads_participant: bool,
     /// What was simulated to answer the last question why.
-    causes_kept: CausesKept,
+    causes_kept: LastRead<Causes>,
+    /// And the last question what would have been.
+    branches_kept: LastRead<WhatIf>,
 }
 
 impl Interpreter {
@@ -151,7 +154,8 @@ impl Interpreter {
             prompts,
             code_check: None,
             leads_participant: false,
-            causes_kept: CausesKept::default(),
+            causes_kept: LastRead::default(),
+            branches_kept: LastRead::default(),
         }
     }
 

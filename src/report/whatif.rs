@@ -117,37 +117,39 @@ pub fn futures_table(
     for day in comparison.milestones(days_per_week) {
         for (at, figure) in comparison.figures.iter().enumerate() {
             let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
-            let cell = |branch: usize| match futures.band(branch, *figure, day) {
-                None => "—".to_owned(),
-                Some(band) => {
-                    let value = |value| written(figure.unit(), value);
-                    format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
-                }
-            };
-            let cells = (0..comparison.branches.len()).map(cell);
+            let cells = (0..comparison.branches.len()).map(|at| futures_cell(futures, at, *figure, day));
             rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
         }
     }
     (headers, rows)
 }
 
-/// How sure it is what a branch has more, at the last milestone.
-pub fn sureness(comparison: &BranchComparison, futures: &Futures, branch: usize) -> Vec<String> {
-    let line = |figure: &BranchFigure| {
-        let difference = futures.difference(branch, *figure, comparison.until)?;
-        let signed = |value| signed(figure.unit(), value);
-        let (low, high) = difference.interval;
-        Some(format!(
-            "{}: {} on average (95 % interval {} to {}), more in {} of {}",
-            figure.name(),
-            signed(difference.mean),
-            signed(low),
-            signed(high),
-            difference.more,
-            count(difference.of, "future")
-        ))
-    };
-    comparison.figures.iter().filter_map(line).collect()
+/// A figure over the futures: its median, and from where to where nine of ten and one of ten have more.
+pub fn futures_cell(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> String {
+    let Some(band) = futures.band(branch, figure, day) else { return "—".to_owned() };
+    let value = |value| written(figure.unit(), value);
+    format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
+}
+
+/// What a branch has more of a figure at the end, and how sure that is; none where no future has a value.
+pub fn difference_line(
+    comparison: &BranchComparison,
+    futures: &Futures,
+    branch: usize,
+    figure: BranchFigure,
+) -> Option<String> {
+    let difference = futures.difference(branch, figure, comparison.until)?;
+    let signed = |value| signed(figure.unit(), value);
+    let (low, high) = difference.interval;
+    Some(format!(
+        "{}: {} on average (95 % interval {} to {}), more in {} of {}",
+        figure.name(),
+        signed(difference.mean),
+        signed(low),
+        signed(high),
+        difference.more,
+        count(difference.of, "future")
+    ))
 }
 
 /// A run in the tree of branches.

@@ -25,6 +25,7 @@ mod xray;
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
+pub use counterfactual::last_read::LastRead;
 pub use counterfactual::script::PastCall;
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
@@ -111,8 +112,7 @@ pub use whatif::{
     sets_amounts,
 };
 pub use why::{
-    Cause, Causes, CausesKept, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart,
-    WhyProgress,
+    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart, WhyProgress,
 };
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,

@@ -121,6 +121,12 @@ impl App {
             News::Answered(number, ..) if *number == self.rows_question => {
                 return self.in_dialog(|dialog, look| dialog.hear(&news, look));
             }
+            News::Branches(number, _) | News::BranchesProgress(number, ..) => {
+                if *number == self.branches_question {
+                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
+                }
+                return;
+            }
             News::Why(number, _) | News::WhyProgress(number, _) => {
                 if *number == self.why_question {
                     self.in_dialog(|dialog, look| dialog.hear(&news, look));

@@ -44,6 +44,7 @@ impl App {
                 self.sql_question = self.ask(sql, via);
             }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
+            Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {

@@ -2,43 +2,20 @@
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use super::{Open, SessionThread};
 use crate::console::message::{Message, News};
-use crate::session::{CausesKept, Refusal, WeekFigure, Why};
-
-/// A question why a figure changed in a week.
-pub struct WhyAsked {
-    /// Tells its answer from others.
-    pub number: u64,
-    /// The figure.
-    pub figure: WeekFigure,
-    /// The week.
-    pub week: u32,
-    /// Ends the work.
-    pub stop: Arc<AtomicBool>,
-}
+use crate::console::resimulation::WhyAsked;
+use crate::session::{Causes, LastRead, Refusal, Why};
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.
     pub(super) fn find_causes(&mut self, asked: WhyAsked) {
-        let folder = match &self.open {
-            None => return,
-            Some(Open::Played(session)) => session.folder_of_causes(),
-            // What a record allows is read from it: it may be over though this moment of it is not.
-            Some(Open::Replayed(playback)) => {
-                playback.session().folder().map(Path::to_owned).ok_or_else(|| {
-                    Refusal::new(
-                        "not_possible",
-                        "this trajectory stands alone, without the folder of its run",
-                    )
-                })
-            }
-        };
         let Some(open) = &mut self.open else { return };
+        let folder = folder_of(open);
         let state = (open.session().day(), open.session().ended().is_some());
         let (news, kept) = (self.news.clone(), self.causes.clone());
         std::thread::spawn(move || {
@@ -51,14 +28,25 @@ impl SessionThread {
     }
 }
 
+/// The folder from which a run is simulated again.
+pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
+    match open {
+        Open::Played(session) => session.folder_of_causes(),
+        // What a record allows is read from it: it may be over though this moment of it is not.
+        Open::Replayed(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
+            Refusal::new("not_possible", "this trajectory stands alone, without the folder of its run")
+        }),
+    }
+}
+
 fn answer(
     asked: &WhyAsked,
     (folder, day, is_over): (PathBuf, u32, bool),
-    kept: &Mutex<CausesKept>,
+    kept: &Mutex<LastRead<Causes>>,
     news: &Sender<Message>,
 ) -> Result<Option<Why>, Refusal> {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    kept.of(folder, day, is_over)?.why(asked.figure, Some(asked.week), &|progress| {
+    kept.of(folder, day, is_over, Causes::read)?.why(asked.figure, Some(asked.week), &|progress| {
         let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
         match asked.stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),

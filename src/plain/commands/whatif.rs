@@ -11,7 +11,7 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, Phase, count, problem};
 use crate::database::text::aligned;
 use crate::report::whatif::{
-    branch_line, decisions, futures_heading, futures_table, heading, kin_line, name, sureness, table,
+    branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line, name, table,
 };
 use crate::session::record::LeavingCause;
 use crate::session::{
@@ -57,8 +57,9 @@ impl Interpreter {
         }
     }
 
-    fn what_if_of_run(&self) -> Result<WhatIf, Refusal> {
-        WhatIf::read(&self.session.folder_of_causes()?)
+    fn what_if_of_run(&mut self) -> Result<&mut WhatIf, Refusal> {
+        let folder = self.session.folder_of_causes()?;
+        self.branches_kept.of(folder, self.session.day(), self.session.ended().is_some(), WhatIf::read)
     }
 
     /// The calls from a week on, with their lines.
@@ -101,7 +102,7 @@ impl Interpreter {
             false => ControlFlow::Continue(()),
         };
         let Question { from, until, futures, alternatives } = question;
-        let answer = self.what_if_of_run().and_then(|mut own| {
+        let answer = self.what_if_of_run().and_then(|own| {
             let Some(comparison) = own.compare(*from, *until, alternatives, &go_on)? else { return Ok(None) };
             let drawn = match futures {
                 Some(count) => match own.futures(*from, *until, alternatives, *count, &go_on)? {
@@ -285,7 +286,9 @@ fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
             "\n{number}, at the end of week {}, beside the run as it was, future by future:",
             comparison.until.div_ceil(days)
         );
-        text.extend(sureness(comparison, futures, number).iter().map(|line| format!("\n     {line}")));
+        let lines =
+            comparison.figures.iter().filter_map(|own| difference_line(comparison, futures, number, *own));
+        text.extend(lines.map(|line| format!("\n     {line}")));
     }
     text
 }

@@ -36,7 +36,7 @@ impl Interpreter {
 
     fn causes(&mut self) -> Result<&mut Causes, Refusal> {
         let folder = self.session.folder_of_causes()?;
-        self.causes_kept.of(folder, self.session.day(), self.session.ended().is_some())
+        self.causes_kept.of(folder, self.session.day(), self.session.ended().is_some(), Causes::read)
     }
 }
 

@@ -7,6 +7,7 @@
 pub(in crate::session) mod branch;
 pub(in crate::session) mod edits;
 pub(in crate::session) mod kept_state;
+pub(in crate::session) mod last_read;
 pub(in crate::session) mod one_each;
 pub(in crate::session) mod past;
 pub(in crate::session) mod script;

@@ -99,31 +99,6 @@ impl Causes {
     }
 }
 
-/// The causes that were asked for last, so that the next question about the same record is answered at once.
-#[derive(Default)]
-pub struct CausesKept(Option<(ReadAs, Causes)>);
-
-/// What was read of a record: its folder, lines as far as a day, and whether the run is over.
-type ReadAs = (PathBuf, u32, bool);
-
-impl CausesKept {
-    /// The causes of the run in a folder, as far as a day.
-    ///
-    /// # Errors
-    /// As [`Causes::read`].
-    pub fn of(&mut self, folder: PathBuf, day: u32, is_over: bool) -> Result<&mut Causes, Refusal> {
-        let read_as = (folder, day, is_over);
-        let kept = match self.0.take().filter(|(known, _)| *known == read_as) {
-            Some(kept) => kept,
-            None => {
-                let causes = Causes::read(&read_as.0)?;
-                (read_as, causes)
-            }
-        };
-        Ok(&mut self.0.insert(kept).1)
-    }
-}
-
 pub(in crate::session) fn not_readable(error: &RunError) -> Refusal {
     Refusal::new("not_readable", error.to_string())
 }

@@ -1,0 +1,243 @@
+//! What would have been: the decisions of the run from a week on, edited, and what comes of them.
+
+mod decisions;
+mod outcome;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, centered};
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::request::Request;
+use crate::console::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
+use crate::console::screens::Look;
+use crate::console::theme::Role;
+use crate::session::{FORMS, Refusal};
+use decisions::Decisions;
+use outcome::Figures;
+
+/// Futures that are drawn.
+const FUTURES: u32 = 20;
+
+/// What is shown.
+enum Page {
+    /// The decisions, which can be edited.
+    Decisions,
+    /// Days are simulated: how many, of how many.
+    Working(usize, usize),
+    /// What came of it.
+    Figures(Box<Figures>),
+}
+
+/// The page.
+pub struct BranchesPage {
+    decisions: Decisions,
+    page: Page,
+    /// Ends the work.
+    stop: Arc<AtomicBool>,
+    problem: Option<String>,
+}
+
+impl BranchesPage {
+    /// For branches from a week on, at most from the last one; what was decided is not known yet.
+    pub fn new(week: u32, last_week: u32) -> BranchesPage {
+        BranchesPage {
+            decisions: Decisions::new(week, last_week),
+            page: Page::Decisions,
+            stop: Arc::default(),
+            problem: None,
+        }
+    }
+
+    /// The question that it begins with.
+    pub fn opening_question(&self) -> BranchesAsked {
+        BranchesAsked { number: 0, question: BranchesQuestion::Decisions, stop: self.stop.clone() }
+    }
+
+    fn ask(&mut self, futures: Option<u32>) -> Outcome {
+        let alternatives = self.decisions.alternatives();
+        if alternatives.is_empty() {
+            self.problem = Some(format!("decide something otherwise first; for instance {}", FORMS[0]));
+            return Outcome::stay();
+        }
+        self.stop = Arc::default();
+        self.page = Page::Working(0, 0);
+        let question = BranchesQuestion::Compare { week: self.decisions.week(), alternatives, futures };
+        Outcome::with(vec![Effect::AskBranches(question, self.stop.clone())])
+    }
+
+    fn leave(&mut self) -> Outcome {
+        match self.page {
+            Page::Decisions => {
+                self.stop.store(true, Ordering::Relaxed);
+                Outcome::close()
+            }
+            Page::Working(..) => {
+                self.stop.store(true, Ordering::Relaxed);
+                self.page = Page::Decisions;
+                Outcome::stay()
+            }
+            Page::Figures(_) => {
+                self.page = Page::Decisions;
+                Outcome::stay()
+            }
+        }
+    }
+
+    /// Makes the branch that is selected a run.
+    fn adopt(&mut self) -> Outcome {
+        let Page::Figures(figures) = &self.page else { return Outcome::stay() };
+        let (week, edits) = (self.decisions.week(), figures.selected_edits());
+        Outcome::close_with(vec![Effect::Request(Request::AdoptBranch { week, edits })])
+    }
+
+    fn take(&mut self, found: &Result<BranchesFound, Refusal>) {
+        match found {
+            Ok(BranchesFound::Decisions(calls, days)) => self.decisions.take(calls.clone(), *days),
+            Ok(BranchesFound::Compared(comparison, futures)) => {
+                let figure = match &self.page {
+                    Page::Figures(figures) => figures.figure(),
+                    _ => 0,
+                };
+                let days = self.decisions.days_per_week();
+                let figures = Figures::new((**comparison).clone(), futures.as_deref().cloned(), days, figure);
+                self.page = Page::Figures(Box::new(figures));
+            }
+            Err(refusal) => {
+                self.problem = Some(refusal.message.clone());
+                self.page = Page::Decisions;
+            }
+        }
+    }
+}
+
+impl Dialog for BranchesPage {
+    fn what(&self) -> String {
+        format!("what if, week {}", self.decisions.week())
+    }
+
+    fn step(&self) -> Option<&'static str> {
+        Some(match self.page {
+            Page::Decisions => "decisions",
+            Page::Working(..) => "simulating",
+            Page::Figures(_) => "figures",
+        })
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        match self.page {
+            Page::Decisions if self.decisions.is_typing() => vec![Scope::Field],
+            Page::Decisions => vec![Scope::Decisions, Scope::List, Scope::Dialog],
+            Page::Working(..) => vec![Scope::Dialog],
+            Page::Figures(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
+        }
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.page {
+            Page::Decisions if self.decisions.is_typing() => vec![Action::Commit, Action::Discard],
+            Page::Decisions => vec![
+                Action::DropDecision,
+                Action::Open,
+                Action::AddDecision,
+                Action::NextAlternative,
+                Action::Left,
+                Action::Right,
+                Action::SimulateBranches,
+                Action::Close,
+            ],
+            Page::Working(..) => vec![Action::Cancel],
+            Page::Figures(_) => {
+                vec![Action::NextFigure, Action::DrawFutures, Action::AdoptBranch, Action::Close]
+            }
+        }
+    }
+
+    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+        self.problem = None;
+        match (&mut self.page, action) {
+            (_, Action::Close | Action::Cancel) => return self.leave(),
+            (Page::Decisions, Action::SimulateBranches) => return self.ask(None),
+            (Page::Figures(_), Action::DrawFutures) => return self.ask(Some(FUTURES)),
+            (Page::Figures(_), Action::AdoptBranch) => return self.adopt(),
+            (Page::Decisions, action) => self.problem = self.decisions.act(action).err(),
+            (Page::Figures(figures), action) => figures.act(action),
+            (Page::Working(..), _) => {}
+        }
+        Outcome::stay()
+    }
+
+    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+        self.problem = None;
+        self.decisions.key(key);
+        Outcome::stay()
+    }
+
+    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+        self.decisions.paste(text);
+        Outcome::stay()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
+        match news {
+            News::BranchesProgress(_, done, all) => {
+                if let Page::Working(..) = self.page {
+                    self.page = Page::Working(*done, *all);
+                }
+            }
+            News::Branches(_, found) => self.take(found),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        match &mut self.page {
+            Page::Decisions => self.decisions.select(row),
+            Page::Figures(figures) => figures.select(row),
+            Page::Working(..) => {}
+        }
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
+        canvas.clear(own, Role::Text);
+        let week = self.decisions.week();
+        let inside = canvas.pane(own, &format!("What if, from week {week} on"), &self.note(), true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
+        let page = Rect { height: inside.height - below, ..inside };
+        match &self.page {
+            Page::Decisions => self.decisions.draw(canvas, page),
+            Page::Working(done, all) => {
+                let share = 100 * done / all.max(&1);
+                canvas.text(page, &format!("simulating days again: {share} % …"), Role::Warning);
+            }
+            Page::Figures(figures) => figures.draw(canvas, page),
+        }
+        if let Some(problem) = &self.problem {
+            let row = Rect { y: page.y + page.height, height: below, ..inside };
+            canvas.text(row, problem, Role::Bad);
+        }
+        canvas.pane_keys(own, &look.hints(&self.hints()));
+    }
+}
+
+impl BranchesPage {
+    fn note(&self) -> String {
+        match &self.page {
+            Page::Figures(figures) => figures.note(),
+            _ => self.decisions.note(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

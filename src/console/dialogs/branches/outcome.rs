@@ -1,0 +1,192 @@
+//! Branches side by side: curves of a figure, its values after some weeks, what differs.
+
+use ratatui::layout::Rect;
+
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, Click, fit, rows_of};
+use crate::console::theme::Role;
+use crate::console::widgets::chart::chart;
+use crate::console::widgets::{Axis, Line, Side, Unit};
+use crate::report::whatif::{
+    branch_line, cell, decisions, difference_line, futures_cell, futures_heading, heading,
+};
+use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
+
+/// Rows of a chart that is worth drawing.
+const LEAST_CHART: u16 = 6;
+/// Most of them.
+const MOST_CHART: u16 = 16;
+
+/// What came of the branches.
+pub(super) struct Figures {
+    comparison: BranchComparison,
+    futures: Option<Futures>,
+    days_per_week: u32,
+    figure: usize,
+    /// The branch whose decisions are shown.
+    selected: usize,
+}
+
+impl Figures {
+    pub(super) fn new(
+        comparison: BranchComparison,
+        futures: Option<Futures>,
+        days_per_week: u32,
+        figure: usize,
+    ) -> Figures {
+        let selected = 1.min(comparison.branches.len().saturating_sub(1));
+        Figures { comparison, futures, days_per_week, figure, selected }
+    }
+
+    pub(super) fn figure(&self) -> usize {
+        self.figure
+    }
+
+    fn shown(&self) -> BranchFigure {
+        self.comparison.figures[self.figure % self.comparison.figures.len()]
+    }
+
+    pub(super) fn note(&self) -> String {
+        let (name, percent) = (self.shown().name(), if is_share(self.shown()) { ", %" } else { "" });
+        format!("{name}{percent}")
+    }
+
+    /// What the selected branch decides otherwise.
+    pub(super) fn selected_edits(&self) -> Vec<DecisionEdit> {
+        self.comparison.branches.get(self.selected).map_or(Vec::new(), |branch| branch.edits.clone())
+    }
+
+    pub(super) fn select(&mut self, branch: usize) {
+        self.selected = branch.min(self.comparison.branches.len().saturating_sub(1));
+    }
+
+    pub(super) fn act(&mut self, action: Action) {
+        match action {
+            Action::NextFigure | Action::Right => {
+                self.figure = (self.figure + 1) % self.comparison.figures.len()
+            }
+            Action::Left => {
+                let all = self.comparison.figures.len();
+                self.figure = (self.figure + all - 1) % all;
+            }
+            Action::Up => self.select(self.selected.saturating_sub(1)),
+            Action::Down => self.select(self.selected + 1),
+            Action::First => self.select(0),
+            Action::Last => self.select(usize::MAX),
+            _ => {}
+        }
+    }
+
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let mut rest = area;
+        self.draw_branches(canvas, &mut rest);
+        let table = self.comparison.milestones(self.days_per_week).len() as u16 + 1;
+        let room = rest.height.saturating_sub(table + 2);
+        if room >= LEAST_CHART {
+            let height = room.saturating_sub(room / 3).min(MOST_CHART);
+            self.draw_chart(canvas, take(&mut rest, height));
+        }
+        self.draw_table(canvas, take(&mut rest, table));
+        let told = self.told();
+        for (row, line) in rows_of(rest).zip(&told) {
+            canvas.text(row, &fit(line, row.width as usize), Role::Dim);
+        }
+    }
+
+    /// When, and each branch with the role of its curve.
+    fn draw_branches(&self, canvas: &mut Canvas<'_>, rest: &mut Rect) {
+        let row = take(rest, 1);
+        let heading = heading(&self.comparison, self.days_per_week);
+        canvas.text(row, &fit(&heading, row.width as usize), Role::Dim);
+        for (number, branch) in self.comparison.branches.iter().enumerate() {
+            let row = take(rest, 1);
+            let here = number == self.selected;
+            let mark = if here { "›" } else { " " };
+            let text = format!("{mark} {}", branch_line(number, branch));
+            let role = if here { Role::Selection } else { Role::Series(number) };
+            canvas.text(row, &fit(&text, row.width as usize), role);
+            canvas.click(row, Click::Row(0, number));
+        }
+    }
+
+    fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let figure = self.shown();
+        let curve = |number: usize| -> Vec<(f64, f64)> {
+            match &self.futures {
+                Some(futures) => {
+                    futures.bands(number, figure).map(|(day, band)| (f64::from(day), band.median)).collect()
+                }
+                None => self.comparison.branches[number]
+                    .curve(figure)
+                    .map(|(day, value)| (f64::from(day), value))
+                    .collect(),
+            }
+        };
+        let scale = if is_share(figure) { 100.0 } else { 1.0 };
+        let points = |number| {
+            let finite = curve(number).into_iter().filter(|(_, value)| value.is_finite());
+            finite.map(|(day, value)| (day, scale * value)).collect()
+        };
+        let lines: Vec<Line> = (0..self.comparison.branches.len())
+            .map(|number| Line::through(points(number), Role::Series(number)))
+            .collect();
+        let unit = match figure.unit() {
+            FigureUnit::Dollars => Unit::Dollars,
+            FigureUnit::Count | FigureUnit::Share | FigureUnit::FineShare => Unit::Number,
+        };
+        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
+        chart(canvas, area, &lines, &x, &Side { unit, holds: &[] });
+    }
+
+    /// The figure at each milestone, in each branch.
+    fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let figure = self.shown();
+        let days = self.comparison.milestones(self.days_per_week);
+        let first = 10.min(area.width);
+        let width = (area.width - first) / self.comparison.branches.len().max(1) as u16;
+        let place =
+            |row: Rect, number: usize| Rect { x: row.x + first + number as u16 * width, width, ..row };
+        let mut rows = rows_of(area);
+        let Some(header) = rows.next() else { return };
+        canvas.text(header, "after week", Role::Header);
+        for number in 0..self.comparison.branches.len() {
+            canvas.text(place(header, number), &format!(" {number}"), Role::Header);
+        }
+        for (row, day) in rows.zip(days) {
+            canvas.text(row, &day.div_ceil(self.days_per_week).to_string(), Role::Dim);
+            for (number, branch) in self.comparison.branches.iter().enumerate() {
+                let text = match &self.futures {
+                    Some(futures) => futures_cell(futures, number, figure, day),
+                    None => cell(&self.comparison, branch, figure, day),
+                };
+                let text = format!(" {}", fit(&text, usize::from(width).saturating_sub(1)));
+                canvas.text(place(row, number), &text, Role::Text);
+            }
+        }
+    }
+
+    /// How sure a difference is, and what the selected branch decides otherwise.
+    fn told(&self) -> Vec<String> {
+        let Some(branch) = self.comparison.branches.get(self.selected) else { return Vec::new() };
+        let mut told = Vec::new();
+        if let Some(futures) = &self.futures {
+            told.push(futures_heading(futures));
+            let sure = difference_line(&self.comparison, futures, self.selected, self.shown());
+            told.extend(sure.filter(|_| !branch.edits.is_empty()).map(|line| format!("at the end: {line}")));
+        }
+        told.extend(decisions(branch, self.days_per_week));
+        told
+    }
+}
+
+fn is_share(figure: BranchFigure) -> bool {
+    matches!(figure.unit(), FigureUnit::Share | FigureUnit::FineShare)
+}
+
+/// Takes some rows from above.
+fn take(rest: &mut Rect, height: u16) -> Rect {
+    let height = height.min(rest.height);
+    let taken = Rect { height, ..*rest };
+    (rest.y, rest.height) = (rest.y + height, rest.height - height);
+    taken
+}

@@ -1,0 +1,93 @@
+//! What would have been, found on a thread of its own: the run goes on meanwhile.
+
+use std::ops::ControlFlow;
+use std::sync::PoisonError;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::Sender;
+
+use super::causes::folder_of;
+use super::{Open, SessionThread};
+use crate::console::message::{Message, News};
+use crate::console::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
+use crate::session::record::LeavingCause;
+use crate::session::{Access, DecisionEdit, Mode, Refusal, Session, WhatIf};
+
+impl SessionThread {
+    /// Finds what would have been, and reports how far that has come.
+    pub(super) fn find_branches(&mut self, asked: BranchesAsked) {
+        let Some(open) = &mut self.open else { return };
+        let (folder, state) = (folder_of(open), (open.session().day(), open.session().ended().is_some()));
+        let (news, kept) = (self.news.clone(), self.branches.clone());
+        std::thread::spawn(move || {
+            let found = folder.and_then(|folder| {
+                let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+                answer(&asked, kept.of(folder, state.0, state.1, WhatIf::read)?, &news)
+            });
+            // Nobody waits for what was stopped.
+            if let Some(found) = found.transpose() {
+                let _ = news.send(Message::News(News::Branches(asked.number, Box::new(found))));
+            }
+        });
+    }
+
+    /// Makes a branch that keeps the decisions of the run, some of them edited, and opens it.
+    pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
+        let Some(open) = &mut self.open else { return };
+        let own = open.session().manifest().mode;
+        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        let mut on = |_| ControlFlow::Continue(());
+        let adopted = match open {
+            Open::Played(session) => session.branch_with_decisions(week, edits, mode, &mut on),
+            // The moment that is shown is not the end of the record.
+            Open::Replayed(_) => folder_of(open).and_then(|folder| {
+                let whole = Session::open(&folder, Access::Read, false);
+                let whole = whole.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
+                whole.branch_with_decisions(week, edits, mode, &mut on)
+            }),
+        };
+        match adopted {
+            Ok(adopted) => {
+                let parent = open.session().manifest().id.clone();
+                let refused = match adopted.refused.len() {
+                    0 => String::new(),
+                    some => format!("; {some} calls were refused in it, the Journal shows them"),
+                };
+                let (id, day) = (adopted.session.manifest().id.clone(), adopted.session.day());
+                let remark =
+                    format!("this is run {id} now, played to day {day}; run {parent} is unchanged{refused}");
+                let _ = self.put_down(LeavingCause::Quit);
+                self.take(Ok(adopted.session), "", Some(remark));
+            }
+            Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
+        }
+    }
+}
+
+fn answer(
+    asked: &BranchesAsked,
+    own: &mut WhatIf,
+    news: &Sender<Message>,
+) -> Result<Option<BranchesFound>, Refusal> {
+    let progress = |done, all| {
+        let _ = news.send(Message::News(News::BranchesProgress(asked.number, done, all)));
+        match asked.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let (week, alternatives, futures) = match &asked.question {
+        BranchesQuestion::Decisions => {
+            return Ok(Some(BranchesFound::Decisions(own.decisions(1)?, own.days_per_week())));
+        }
+        BranchesQuestion::Compare { week, alternatives, futures } => (*week, alternatives, *futures),
+    };
+    let Some(compared) = own.compare(week, None, alternatives, &progress)? else { return Ok(None) };
+    let drawn = match futures {
+        Some(count) => match own.futures(week, None, alternatives, count, &progress)? {
+            Some(drawn) => Some(Box::new(drawn)),
+            None => return Ok(None),
+        },
+        None => None,
+    };
+    Ok(Some(BranchesFound::Compared(Box::new(compared), drawn)))
+}

@@ -1,8 +1,7 @@
 //! Rivals and drift, in words.
 
 use super::table;
-use crate::session::{DriftState, NextRivalMove, RivalState, Severity};
-use crate::world::identifiers::Group;
+use crate::session::{DriftState, GroupDrifted, NextRivalMove, RivalState, Severity};
 
 /// Moves that are listed.
 const LISTED_MOVES: usize = 10;
@@ -103,23 +102,23 @@ pub fn drift_in_words(own: &DriftState) -> Vec<String> {
             None => "  no drift is to come before the end of the run".to_owned(),
         },
     ];
-    let head = ["group", "everyone", "own", "expects more", "pays more, $", "next drift: expects", "pays, $"];
-    let rows: Vec<Vec<String>> = groups
-        .iter()
-        .map(|own| {
-            let unknown = if own.is_known { "" } else { " (unknown)" };
-            let named = |group: Group| format!("{group}{unknown}");
-            vec![
-                named(own.group),
-                format!("{everyone:+.4}"),
-                format!("{:+.4}", own.own),
-                format!("{:+.4}", own.expectation.quality),
-                format!("{:+.2}", own.expectation.c_max),
-                format!("{:+.4}", own.step.quality + step),
-                format!("{:+.2}", own.step.c_max),
-            ]
-        })
-        .collect();
-    lines.extend(table(&head, &rows));
+    let mut head = vec!["group", "everyone", "own", "expects more", "pays more, $"];
+    if next_day.is_some() {
+        head.extend(["next drift: expects", "pays, $"]);
+    }
+    let row = |own: &GroupDrifted| {
+        let mut row = vec![
+            format!("{}{}", own.group, if own.is_known { "" } else { " (unknown)" }),
+            format!("{everyone:+.4}"),
+            format!("{:+.4}", own.own),
+            format!("{:+.4}", own.expectation.quality),
+            format!("{:+.2}", own.expectation.c_max),
+        ];
+        if next_day.is_some() {
+            row.extend([format!("{:+.4}", own.step.quality + step), format!("{:+.2}", own.step.c_max)]);
+        }
+        row
+    };
+    lines.extend(table(&head, &groups.iter().map(row).collect::<Vec<_>>()));
     lines
 }

@@ -3,7 +3,7 @@
 use super::table;
 use crate::session::{Follows, KeyedDraws, NextDraws};
 
-/// Draws of a stream that stand in a table.
+/// Draws of a stream that stand in one row.
 const SHOWN_DRAWS: usize = 8;
 /// Customers that are named.
 const NAMED_CUSTOMERS: usize = 12;
@@ -17,25 +17,26 @@ pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
         lines
             .push("  a recorded series is replayed in place of these draws, as far as it reaches".to_owned());
     }
-    let shown = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0).min(SHOWN_DRAWS);
-    let numbers: Vec<String> = (1..=shown).map(|number| format!("draw {number}")).collect();
-    let mut head = vec!["stream", "key"];
-    head.extend(numbers.iter().map(String::as_str));
-    let follows = streams.iter().any(|own| own.draws.len() <= SHOWN_DRAWS);
-    head.extend(follows.then_some("follows"));
-    let rows: Vec<Vec<String>> = streams
-        .iter()
-        .map(|own| {
-            let draws = own.draws.iter().take(shown).map(|draw| format!("{:.6}", draw.uniform));
-            let what = follows.then(|| in_words(&own.follows));
-            [own.stream.to_owned(), key(own)].into_iter().chain(draws).chain(what).collect()
-        })
-        .collect();
-    lines.extend(table(&head, &rows));
-    if streams.iter().any(|own| own.draws.len() > SHOWN_DRAWS) {
-        streams.iter().for_each(|own| lines.extend(in_full(own)));
+    match streams.iter().any(|own| own.draws.len() > SHOWN_DRAWS) {
+        true => streams.iter().for_each(|own| lines.extend(in_full(own))),
+        false => lines.extend(side_by_side(streams)),
     }
     lines
+}
+
+/// A row for each stream.
+fn side_by_side(streams: &[KeyedDraws]) -> Vec<String> {
+    let count = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0);
+    let numbers: Vec<String> = (1..=count).map(|number| format!("draw {number}")).collect();
+    let mut head = vec!["stream", "key"];
+    head.extend(numbers.iter().map(String::as_str));
+    head.push("follows");
+    let row = |own: &KeyedDraws| {
+        let draws = own.draws.iter().map(|draw| format!("{:.6}", draw.uniform));
+        let what = [in_words(&own.follows)];
+        [own.stream.to_owned(), key(own)].into_iter().chain(draws).chain(what).collect()
+    };
+    table(&head, &streams.iter().map(row).collect::<Vec<_>>())
 }
 
 fn key(own: &KeyedDraws) -> String {
@@ -59,7 +60,7 @@ fn in_full(own: &KeyedDraws) -> Vec<String> {
 fn in_words(follows: &Follows) -> String {
     match follows {
         Follows::Leads { expected, number } => {
-            format!("{number} leads around {expected:.2} as on the last day")
+            format!("{number} come if λ is {expected:.2} as on the last day")
         }
         Follows::FailedPayments { rate, customers } => failed(*rate, customers),
         Follows::OutageAbove(chance) => format!("an outage if its chance is above {:.2} %", chance * 100.0),

@@ -5,7 +5,7 @@ use crate::session::play::simulation::Simulation;
 use crate::session::state::Session;
 use crate::tools::Refusal;
 use crate::world::identifiers::Group;
-use crate::world::market::competitors::next_move;
+use crate::world::market::competitors::move_of;
 use crate::world::market::economy::index_of;
 use crate::world::market::surges::{Surge, surge_of};
 use crate::world::product::development::daily_noise;
@@ -259,8 +259,7 @@ impl Session {
     fn rivals_on(&self, day: u32) -> Follows {
         let Simulation { world, params, streams, .. } = &self.simulation;
         let last_event = world.market.competitors.last().map(|event| event.day);
-        // The search ends with the day itself, and with the run.
-        let made = next_move(world.day, day.min(world.total_days), last_event, params, streams);
+        let made = move_of(day, world.total_days, last_event, params, streams);
         Follows::RivalMove(made.map(|made| (made.sampled, made.u)))
     }
 

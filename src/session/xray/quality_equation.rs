@@ -1,8 +1,5 @@
 //! What the product delivers to a group on each plan, term by term.
 
-use super::hidden_day::HiddenDay;
-use crate::session::state::Session;
-use crate::tools::Refusal;
 use crate::world::identifiers::{ByGroup, ByPlan, Group};
 use crate::world::market::drift::{DriftTotals, Expectation};
 use crate::world::morning::Morning;
@@ -129,8 +126,8 @@ pub struct QualityEquation {
 }
 
 impl QualityEquation {
-    fn of(group: Group, day: u32, seen: &HiddenDay) -> QualityEquation {
-        let seen = &seen.quality;
+    /// The group on a day.
+    pub(in crate::session) fn of(group: Group, day: u32, seen: &QualityDay) -> QualityEquation {
         QualityEquation {
             group,
             day,
@@ -150,18 +147,5 @@ impl QualityEquation {
     /// What the terms come to with a multiplier.
     pub fn product(&self, multiplier: f64) -> f64 {
         delivered_quality(self.base, self.shared, self.own, multiplier)
-    }
-}
-
-impl Session {
-    /// What was delivered to a group on a day, the last one if none is named. The look is recorded.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
-    pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("quality", group.id(), day)?;
-        self.hidden_day(day).map(|seen| QualityEquation::of(group, day, &seen))
     }
 }

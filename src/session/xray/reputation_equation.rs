@@ -1,8 +1,5 @@
 //! What moved the reputation of a group on a day, and how the change of each group spilled over to the others.
 
-use super::hidden_day::HiddenDay;
-use crate::session::state::Session;
-use crate::tools::Refusal;
 use crate::world::day::watch::SettledReputation;
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::market::reputation::{ReputationBook, Spill, called_change, daily_change, spill};
@@ -159,8 +156,8 @@ pub struct ReputationEquation {
 }
 
 impl ReputationEquation {
-    fn of(group: Group, day: u32, seen: &HiddenDay) -> ReputationEquation {
-        let seen = &seen.reputation;
+    /// The group on a day.
+    pub(in crate::session) fn of(group: Group, day: u32, seen: &ReputationDay) -> ReputationEquation {
         ReputationEquation {
             group,
             day,
@@ -198,39 +195,52 @@ pub struct Spillover {
 }
 
 impl Spillover {
+    /// A day on which some groups were known.
+    pub(in crate::session) fn of(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
+        let known = Group::all().filter(|group| known[*group]).collect();
+        let ReputationDay { own, spills, least, .. } = seen;
+        Spillover { day, known, own, spills, least }
+    }
+
     /// What the change of a group did to another one; none without a weight or a change.
     pub fn between(&self, from: Group, to: Group) -> Option<Spill> {
         self.spills.iter().copied().find(|spill| spill.from == from && spill.to == to)
     }
 }
 
-impl Session {
-    /// What moved the reputation of a group on a day, the last one if none is named. The look is recorded.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
-    pub fn reputation_equation(
-        &mut self,
-        group: Group,
-        day: Option<u32>,
-    ) -> Result<ReputationEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("reputation", group.id(), day)?;
-        self.hidden_day(day).map(|seen| ReputationEquation::of(group, day, &seen))
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::xray::hidden_day::Diary;
+    use crate::world::day::step_day_watched;
+    use crate::world::events::Facts;
+    use crate::world::held::Held;
+    use crate::world::random::Streams;
+    use crate::world::state::World;
 
-    /// How changes of reputation spilled over on a day, the last one if none is named. The look is recorded.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
-    pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("spillover", "", day)?;
-        let seen = self.hidden_day(day)?;
-        let known = Group::all().filter(|group| seen.known[*group]).collect();
-        let ReputationDay { own, spills, least, .. } = seen.reputation;
-        Ok(Spillover { day, known, own, spills, least })
+    #[test]
+    fn the_floor_is_a_term_of_its_own() {
+        let (params, streams) = (Params::shipped(), Streams::new(5));
+        let mut facts = Facts::default();
+        let mut world = World::open(500, 1e9, &params, &mut facts);
+        crate::world::test_kit::policy_p(&mut world);
+        let diary = Diary::default();
+        let mut day = |world: &mut World| {
+            step_day_watched(world, &params, &streams, &Held::default(), &mut facts, &diary);
+        };
+        (0..80).for_each(|_| day(&mut world));
+        // Nothing is delivered any more, and prices rise: everybody is unhappy, and many leave.
+        world.settings.core.prices.0 = [90.0, 190.0, 390.0];
+        world.settings.core.capacity_tier = 0;
+        (0..30).for_each(|_| day(&mut world));
+        let s1 = Group::parse("S1").expect("a group");
+        world.market.reputation.set(s1, 0.0011);
+        day(&mut world);
+        let seen = diary.day(world.day).expect("a day").reputation;
+        let own = ReputationEquation::of(s1, world.day, &seen);
+        assert_eq!((own.before, own.after), (0.0011, params.reputation.reputation_floor));
+        assert_eq!(own.after.to_bits(), world.market.reputation.of(s1).to_bits());
+        assert!(own.own.called < 0.0 && own.bounds > 1e-6, "{own:?}");
+        assert!((own.sum() - own.after).abs() < 1e-12, "{own:?}");
     }
 }

@@ -3,9 +3,6 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
-use super::hidden_day::HiddenDay;
-use crate::session::state::Session;
-use crate::tools::Refusal;
 use crate::world::context::DayContext;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
@@ -183,8 +180,13 @@ pub struct SatisfactionEquation {
 }
 
 impl SatisfactionEquation {
-    fn of(group: Group, day: u32, seen: &HiddenDay, before: Option<&HiddenDay>) -> SatisfactionEquation {
-        let own = seen.satisfaction[group];
+    /// The group on a day, and how it was on the day before.
+    pub(in crate::session) fn of(
+        group: Group,
+        day: u32,
+        own: SatisfactionDay,
+        yesterday: Option<SatisfactionDay>,
+    ) -> SatisfactionEquation {
         SatisfactionEquation {
             group,
             day,
@@ -194,7 +196,7 @@ impl SatisfactionEquation {
             subscribers: own.end_count,
             evening: mean(own.end_sum, own.end_count),
             seen: own,
-            yesterday: before.map(|before| before.satisfaction[group]),
+            yesterday,
         }
     }
 
@@ -232,23 +234,4 @@ impl SatisfactionEquation {
 
 fn mean(sum: f64, count: u32) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
-}
-
-impl Session {
-    /// What moved the satisfaction of a group on a day, the last one if none is named. The look is recorded.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
-    pub fn satisfaction_equation(
-        &mut self,
-        group: Group,
-        day: Option<u32>,
-    ) -> Result<SatisfactionEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("satisfaction", group.id(), day)?;
-        let seen = self.hidden_day(day)?;
-        let before = if day > 1 { Some(self.hidden_day(day - 1)?) } else { None };
-        Ok(SatisfactionEquation::of(group, day, &seen, before.as_ref()))
-    }
 }

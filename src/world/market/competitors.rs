@@ -111,8 +111,8 @@ impl RivalMove {
     }
 }
 
-/// The move of a day after the last event, if there is one.
-fn move_of(
+/// The move of a day that follows the last event, if there is one.
+pub fn move_of(
     day: u32,
     total_days: u32,
     last_event: Option<u32>,

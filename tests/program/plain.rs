@@ -381,7 +381,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         "xray streams part=leads",
     ];
     let lines = format!("{EXAMPLE}\n{}\n", views.join("\n"));
-    let debug = ["--seed", "7", "--days", "28", "--mode", "debug"];
+    let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
     let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
     let said = objects(&said);
     // The last line tells of the end of the input.
@@ -431,7 +431,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
     // In a sandbox run nothing that is asked makes a difference.
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
     let said = objects(&said);
     let answers = &said[said.len() - views.len() - 1..said.len() - 1];
     for answer in answers {

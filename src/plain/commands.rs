@@ -92,7 +92,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("step", "step [DAYS]              debug: run single days (1)"),
     (
         "xray",
-        "xray leads GROUP [DAY]   debug runs and runs that are over: the equation of a group's leads; R=1 holds a factor",
+        "xray VIEW …              debug runs and runs that are over: hidden state, view by view; help xray lists the views",
     ),
     (
         "lens",

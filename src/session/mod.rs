@@ -121,9 +121,15 @@ pub use witness::{
 pub use xray::company_lens::{CompanyDay, CompanyLens, JudgedPlan};
 pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
 pub use xray::customer_lens::CustomerLens;
+pub use xray::drift_state::{DriftState, GroupDrifted};
 pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
 pub use xray::lens::Lens;
+pub use xray::next_draws::{Draw, DrawnPart, Follows, KeyedDraws, MOST_DRAWS, NextDraws};
+pub use xray::quality_equation::{PlanDelivered, QualityEquation, SharedGains};
+pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, ReputationEquation, Spillover};
+pub use xray::rival_state::{NextRivalMove, RivalState};
+pub use xray::satisfaction_equation::{MoodTerm, SatisfactionEquation};
 pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
@@ -131,5 +137,9 @@ pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
 pub use crate::world::enterprise::Answer as CompanyAnswer;
-pub use crate::world::events::{Category, EndCause};
+pub use crate::world::events::{Category, EndCause, Severity};
+pub use crate::world::market::competitors::Event as RivalEvent;
+pub use crate::world::market::drift::Expectation;
+pub use crate::world::market::reputation::Spill;
+pub use crate::world::market::surges::Surge;
 pub use crate::world::settings::{CoreSettings, Settings};

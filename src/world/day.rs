@@ -2,7 +2,7 @@
 
 pub mod watch;
 
-use watch::{DayWatch, Unwatched};
+use watch::{DayWatch, SettledReputation, Unwatched};
 
 use super::canonical::canonical;
 use super::context::DayContext;
@@ -67,6 +67,7 @@ pub fn step_day_watched(
     // The morning: what stays as it is for the whole day.
     surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
     let morning = morning_of(world, params);
+    watch.morning_came(world, &morning, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
     if drift::is_drift_day(day - 1, &params.drift) && !held.holds_drift(day - 1) {
         refresh_requirements(customers, &morning, params);
@@ -107,7 +108,7 @@ pub fn step_day_watched(
 
     // Subscribers call for help, feel, decide, and pay if they stay; companies wait for answers.
     let scene = Scene { day: &today, chronicle: &market.social.chronicle };
-    let mut felt = feel(customers, &today, &scene);
+    let mut felt = feel(customers, &today, &scene, watch);
     let crowd = felt.voices.map(|voices| crowd::listen(voices, customers, &scene, streams));
     issues::allot(&mut felt.calls, settings, customers, issue_desk, &today);
     let judgement = RenewalContext {
@@ -126,6 +127,8 @@ pub fn step_day_watched(
     let knowledge = market.knowledge;
     let moods = satisfaction::by_group(felt.moods);
     reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
+    let (gave_up, lost) = (&renewals.gave_up, &negotiated.lost);
+    watch.reputation_settled(&SettledReputation { day: &today, gave_up, lost, moods: &moods, market });
 
     // People and the press write.
     if let Some(mut crowd) = crowd {
@@ -184,11 +187,12 @@ struct Felt {
 }
 
 /// Subscribers call for help, and their satisfaction moves; those who may post are heard.
-fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>) -> Felt {
+fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>, watch: &dyn DayWatch) -> Felt {
     let listening = crowd::is_posting_day(day.day(), day.params);
     let felt = customers.sweep(|group, number, block| {
         let calls = issues::read_calls(group, number, block, day);
         let before = listening.then(|| block.satisfaction.clone());
+        watch.before_moods(group, block, day);
         let mood = satisfaction::update(group, block, day);
         let voices = before.map(|before| crowd::hear(group, block, before, scene));
         (calls, (group, mood), voices)

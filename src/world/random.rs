@@ -27,7 +27,8 @@ macro_rules! parts {
         impl Part {
             const ALL: &'static [Part] = &[$(Part::$name,)*];
 
-            fn name(self) -> &'static str {
+            /// Its name, which its streams are derived from.
+            pub fn name(self) -> &'static str {
                 match self { $(Part::$name => $text,)* }
             }
         }
@@ -253,7 +254,8 @@ impl Stream {
         Stream(ChaCha8Rng::from_seed(key.0))
     }
 
-    fn word(&mut self) -> Word {
+    /// The next 64 bits.
+    pub fn word(&mut self) -> Word {
         Word(self.0.next_u64())
     }
 

@@ -12,3 +12,4 @@ mod tables;
 mod undiscovered;
 mod wiring;
 mod xray;
+mod xray_views;

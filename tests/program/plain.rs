@@ -357,3 +357,84 @@ fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
         assert_eq!(said[at]["error"], said[said.len() - 2]["error"]);
     }
 }
+
+#[test]
+fn the_views_of_the_xray_answer_in_words_and_as_data() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let views = [
+        "xray quality S1",
+        "xray satisfaction s1 7",
+        "xray reputation S1 6",
+        "xray spillover",
+        "xray rivals 7",
+        "xray drift",
+        "xray streams service 3",
+        "xray qualty S1",
+        "xray quality S9",
+        "xray quality S1 2 3",
+        "xray drift soon",
+        "xray streams servce",
+        "xray streams leads 2000",
+        "xray rivals 8",
+        "xray spillover R=1",
+        "xray reputation R=S1",
+        "xray streams part=leads",
+    ];
+    let lines = format!("{EXAMPLE}\n{}\n", views.join("\n"));
+    let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
+    let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
+    let said = objects(&said);
+    // The last line tells of the end of the input.
+    let answer = |at: usize| &said[said.len() - views.len() - 1 + at];
+    let data = |at: usize| &answer(at)["data"];
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let quality = data(0);
+    let sum = number(&quality["base"]) + number(&quality["shared"]) + number(&quality["own"]);
+    for plan in quality["plans"].as_array().expect("plans") {
+        assert_eq!(sum * number(&plan["multiplier"]), number(&plan["delivered"]));
+    }
+    let terms = data(1)["terms"].as_object().expect("terms");
+    let felt: f64 = terms.values().map(number).sum();
+    assert!((felt - number(&data(1)["felt"])).abs() < 1e-12 && terms.len() == 9);
+    assert_eq!((&data(2)["group"], &data(2)["day"]), (&"S1".into(), &6.into()));
+    assert_eq!(data(3)["own"]["S1"]["subscribers"], data(1)["felt_by"]);
+    assert_eq!(
+        (&data(4)["moves"], &data(5)["groups"][25]["group"]),
+        (&serde_json::json!([]), &"D_E10".into())
+    );
+    assert_eq!(data(6)["streams"][0]["uniform"].as_array().map(Vec::len), Some(3));
+    assert_eq!(data(6)["streams"][0]["key"], serde_json::json!({"day": 8}));
+    for (at, told) in [
+        (7, "xray has no view qualty; did you mean quality?"),
+        (8, "there is no group S9; did you mean S1 or S2 or S3?"),
+        (9, "name a group, and a day or none: xray quality S2 84"),
+        (10, "a whole number is expected"),
+        (11, "no draws of servce can be told; did you mean service or surge?"),
+        (12, "choose a number of draws from 1 to 1000"),
+        (13, "there is no day 8; choose a day from 1 to 7"),
+        (14, "a whole number is expected"),
+        (15, "name a group, and a day or none: xray reputation S2 84"),
+    ] {
+        assert_eq!(answer(at)["error"], told, "{}", views[at]);
+    }
+    assert_eq!(answer(16)["code"], "usage");
+    let (said, _) = play(runs.path(), &debug, &lines);
+    for part in [
+        "quality delivered to S1 on day 7",
+        "= after ",
+        "reputation of S1 on day 6",
+        "rows are sources, columns are targets",
+        "next move on day ",
+        "next drift on day ",
+        "next draws of service, day 8",
+    ] {
+        assert!(said.contains(part), "{part} is missing in\n{said}");
+    }
+    // In a sandbox run nothing that is asked makes a difference.
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
+    let said = objects(&said);
+    let answers = &said[said.len() - views.len() - 1..said.len() - 1];
+    for answer in answers {
+        assert_eq!((&answer["code"], &answer["error"]), (&"not_in_this_mode".into(), &answers[0]["error"]));
+    }
+}

@@ -1,20 +1,35 @@
 //! `xray …`: hidden state of debug runs and of runs that are over, in words (docs/debugging.md).
 
-use serde_json::{Value, json};
+mod data;
+mod view_data;
+mod views;
+
+use serde_json::Value;
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::notation::nearest;
 use crate::report::xray::{company_in_words, customer_in_words, leads_in_words};
-use crate::session::{
-    CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, Lens, PlanTerms, Refusal,
-    Weighed,
-};
-use crate::world::identifiers::{Group, Plan};
+use crate::session::{LeadFactor, Lens, Refusal};
+use crate::world::identifiers::Group;
+use data::{company_as_data, customer_as_data, leads_as_data};
 
 /// What can be shown.
-const VIEWS: [&str; 1] = ["leads"];
+const VIEWS: [&str; 8] =
+    ["leads", "quality", "satisfaction", "reputation", "spillover", "rivals", "drift", "streams"];
+
+/// `help xray`
+pub(super) const IN_FULL: &str = "\
+xray leads GROUP [DAY] [R=1 …]   the equation of a group's leads; R=1 holds a factor
+xray quality GROUP [DAY]         what is delivered to a group on each plan: base, shared and own improvements, model tier
+xray satisfaction GROUP [DAY]    what moved the mean satisfaction of a group, term by term
+xray reputation GROUP [DAY]      what moved the reputation of a group: departures, its subscribers, other groups, bounds
+xray spillover [DAY]             how changes of reputation spilled over between groups, and what was dropped
+xray rivals [DAY]                what rivals could copy, what they did, and the move that is decided next
+xray drift [DAY]                 what the market has added to expectations and budgets, and when it adds the next time
+xray streams PART [N]            the first N draws that the next day makes of a part, and what follows
+Debug runs and runs that are over. DAY is any day that has run, the last one if none is named.";
 
 impl Interpreter {
     pub(super) fn xray(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
@@ -25,7 +40,14 @@ impl Interpreter {
         let (view, rest) = view_of(arguments)?;
         let shown = match view {
             "leads" => self.lead_equation(rest)?,
-            _ => return Err(problem(arguments, &views())),
+            "quality" => self.quality(rest)?,
+            "satisfaction" => self.satisfaction(rest)?,
+            "reputation" => self.reputation(rest)?,
+            "spillover" => self.spillover(rest)?,
+            "rivals" => self.rivals(rest)?,
+            "drift" => self.drift(rest)?,
+            "streams" => self.streams(rest)?,
+            _ => return Err(unknown_view(view, &arguments[0])),
         };
         Ok(shown.unwrap_or_else(|refusal| Answer::refused("xray", refusal)))
     }
@@ -34,7 +56,7 @@ impl Interpreter {
         let held = arguments.iter().filter(|own| own.key.is_some()).map(held_factor);
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
         let plain: Vec<&Argument> = arguments.iter().filter(|own| own.key.is_none()).collect();
-        let (group, day) = group_and_day(&plain)?;
+        let (group, day) = group_and_day("leads", &plain)?;
         Ok(self.session.lead_equations(group, day).map(|days| {
             let data = days.last().map_or(Value::Null, |own| leads_as_data(own, &held));
             Answer::done("xray", leads_in_words(&days, &held).join("\n"), data)
@@ -78,17 +100,25 @@ fn view_of(arguments: &[Argument]) -> Result<(&str, &[Argument]), Problem> {
     }
 }
 
-/// A group, and a day or none.
-fn group_and_day(arguments: &[&Argument]) -> Result<(Group, Option<u32>), Problem> {
+fn unknown_view(view: &str, argument: &Argument) -> Problem {
+    let text = match nearest(view, VIEWS.into_iter())[..] {
+        [] => views(),
+        ref near => format!("xray has no view {view}; did you mean {}?", near.join(" or ")),
+    };
+    Problem { text, column: argument.column }
+}
+
+/// A group, and a day or none, for a view.
+fn group_and_day(view: &str, arguments: &[&Argument]) -> Result<(Group, Option<u32>), Problem> {
     let at = |argument: &Argument, text: String| Problem { text, column: argument.column };
-    let usage =
-        || Problem { text: "name a group, and a day or none: xray leads S2 84".to_owned(), column: 1 };
+    let column = arguments.get(2).map_or(1, |argument| argument.column);
+    let usage = || Problem { text: format!("name a group, and a day or none: xray {view} S2 84"), column };
     let (first, day) = match arguments {
         [first] => (first, None),
         [first, day] => (first, Some(day)),
         _ => return Err(usage()),
     };
-    let id = first.value.as_str().ok_or_else(usage)?;
+    let id = first.value.as_str().filter(|_| first.key.is_none()).ok_or_else(usage)?;
     let group = Group::all().find(|group| group.id().eq_ignore_ascii_case(id)).ok_or_else(|| {
         let near = nearest(id, Group::all().map(Group::id));
         let help =
@@ -117,85 +147,4 @@ fn held_factor(argument: &Argument) -> Result<(LeadFactor, f64), Problem> {
     value
         .map(|value| (factor, value))
         .ok_or_else(|| wrong(format!("{factor} is held at a number of at least 0")))
-}
-
-fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
-    let factors = LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(own.factor(factor))));
-    let channels = own.channels().map(|(channel, leads)| (channel.id().to_owned(), json!(leads)));
-    let word_of_mouth = own.word_of_mouth.iter().map(|(group, leads)| (group.id().to_owned(), json!(leads)));
-    json!({
-        "group": own.group.id(),
-        "day": own.day,
-        "known": own.is_known,
-        "factors": Value::Object(factors.into_iter().collect()),
-        "channels": Value::Object(channels.collect()),
-        "word_of_mouth": Value::Object(word_of_mouth.collect()),
-        "expected": own.expected(),
-        "came": own.came,
-        "p": own.p_value(),
-        "held": (!held.is_empty()).then(|| own.holding(held)),
-    })
-}
-
-fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
-    let plan = |weighed: &Weighed, plan: Plan| {
-        let PlanTerms { price, experience, quality, required, surplus, within_budget } = weighed.plans[plan];
-        json!({
-            "plan": plan.id(), "price": price, "delivered": experience.delivered,
-            "relationship": experience.relationship, "tenure": experience.tenure, "quota": experience.quota,
-            "issues": experience.issues, "ads": experience.ads, "quality": quality, "required": required,
-            "surplus": surplus, "within_budget": within_budget,
-        })
-    };
-    let day = |own: &CustomerDay| {
-        json!({
-            "day": own.day,
-            "plan": own.plan.id(),
-            "price": own.price,
-            "billing_day": own.is_due,
-            "satisfaction": own.satisfaction,
-            "relationship": own.relationship,
-            "open_issue_days": own.open_issue_days,
-            "choice": own.weighed.choice.map(Plan::id),
-            "plans": Plan::ALL.map(|own_plan| plan(&own.weighed, own_plan)),
-        })
-    };
-    json!({
-        "customer_id": lens.customer,
-        "group": lens.group.id(),
-        "headline": headline,
-        "came": lens.first.day,
-        "signed_up": lens.first.signed_up,
-        "shown": lens.shown().map(day),
-        "last_bill": lens.last_bill().map(day),
-    })
-}
-
-fn company_as_data(lens: &CompanyLens) -> Value {
-    let thread = |own: &CompanyDay| {
-        let plan = |plan: Plan| {
-            let judged = own.plans[plan];
-            json!({
-                "plan": plan.id(), "quality": judged.quality, "quality_if_answered": judged.quality_if_answered,
-                "accepts_below": judged.accepts_below, "accepts_any_price": judged.accepts_any_price,
-                "would_name": judged.counter,
-            })
-        };
-        json!({
-            "thread": own.thread,
-            "kind": own.kind.id(),
-            "budget": own.budget,
-            "turns_left": own.turns_left,
-            "relationship": own.relationship,
-            "late_penalty": own.late_penalty,
-            "reply_day": own.reply_day,
-            "plans": Plan::ALL.map(plan),
-        })
-    };
-    json!({
-        "customer_id": lens.customer,
-        "group": lens.group.id(),
-        "day": lens.day,
-        "threads": lens.shown().map(thread).collect::<Vec<Value>>(),
-    })
 }

@@ -3,10 +3,20 @@
 mod company;
 mod customer;
 mod leads;
+mod market;
+mod quality;
+mod reputation;
+mod satisfaction;
+mod streams;
 
 pub use company::company_in_words;
 pub use customer::customer_in_words;
 pub use leads::leads_in_words;
+pub use market::{drift_in_words, rivals_in_words};
+pub use quality::quality_in_words;
+pub use reputation::{reputation_in_words, spillover_in_words};
+pub use satisfaction::satisfaction_in_words;
+pub use streams::streams_in_words;
 
 /// A table, indented.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {

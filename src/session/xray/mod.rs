@@ -6,10 +6,20 @@
 pub(in crate::session) mod company_lens;
 pub(in crate::session) mod customer_diary;
 pub(in crate::session) mod customer_lens;
+pub(in crate::session) mod drift_state;
+pub(in crate::session) mod group_views;
 pub(in crate::session) mod hidden_day;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;
+pub(in crate::session) mod next_draws;
 pub(in crate::session) mod permission;
+pub(in crate::session) mod quality_equation;
+pub(in crate::session) mod reputation_equation;
+pub(in crate::session) mod rival_state;
+pub(in crate::session) mod satisfaction_equation;
 pub(in crate::session) mod shadow;
 pub(in crate::session) mod weighed;
+
+#[cfg(test)]
+mod tests;

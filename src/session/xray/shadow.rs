@@ -31,6 +31,15 @@ impl Session {
         Ok(days.into_iter().filter_map(|day| self.diary.day(day)).collect())
     }
 
+    /// A day that is over, as it was seen from within.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn hidden_day(&mut self, day: u32) -> Result<HiddenDay, Refusal> {
+        let seen = self.hidden_days([day])?.pop();
+        seen.ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be simulated again")))
+    }
+
     /// Shows somebody the days of the run up to one of them, and at most to the end of its week.
     ///
     /// # Errors

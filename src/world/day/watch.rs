@@ -1,18 +1,43 @@
 //! Seeing a day from within: what it sees it cannot change, so a day that is watched ends as one that is not.
 
+use crate::context::DayContext;
 use crate::customers::Customers;
 use crate::customers::columns::Block;
-use crate::enterprise::{Enterprise, Negotiation};
+use crate::enterprise::{CompanyLost, Enterprise, Negotiation};
 use crate::events::Facts;
 use crate::identifiers::{ByGroup, Group};
+use crate::market::Market;
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
+use crate::market::social::crowd::GaveUp;
+use crate::morning::Morning;
 use crate::params::Params;
 use crate::retention::renewal::RenewalContext;
+use crate::retention::satisfaction::Mood;
 use crate::state::World;
+
+/// What moved reputations on a day, once all of it has been written.
+pub struct SettledReputation<'a> {
+    /// The day.
+    pub day: &'a DayContext<'a>,
+    /// Individuals who found nothing acceptable, in the order in which they harmed their group.
+    pub gave_up: &'a [GaveUp],
+    /// Companies that were lost, in that order; after the individuals.
+    pub lost: &'a [CompanyLost],
+    /// What subscribers contributed; after both.
+    pub moods: &'a ByGroup<Mood>,
+    /// The market, with the reputations as they are now.
+    pub market: &'a Market,
+}
 
 /// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.
 pub trait DayWatch: Send + Sync {
+    /// The morning has come: the world as it finds it, and what is frozen of it for the day.
+    fn morning_came(&self, _world: &World, _morning: &Morning, _params: &Params) {}
+
+    /// The satisfaction of a block is about to move.
+    fn before_moods(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
+
     /// The subscribers of a block are about to decide: issues are settled, satisfaction has moved, nobody has left yet.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
@@ -24,6 +49,9 @@ pub trait DayWatch: Send + Sync {
         _talks: &Negotiation<'_>,
     ) {
     }
+
+    /// Reputations have moved for the last time today.
+    fn reputation_settled(&self, _settled: &SettledReputation<'_>) {}
 
     /// The leads of the day are about to come: the market, the active subscriptions, the factors of each group.
     fn leads_expected(

@@ -3,7 +3,7 @@
 use super::drift::DriftTotals;
 use crate::canonical::canonical;
 use crate::events::Severity;
-use crate::identifiers::Group;
+use crate::identifiers::{ByGroup, Group};
 use crate::params::{Competitor, Params};
 use crate::product::Product;
 use crate::random::{Part, Stream, Streams};
@@ -86,7 +86,63 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, law: &Compe
     Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
 }
 
-/// Rolls the event of the day; `v` of each group with a targeted bank is drawn in alphabetical order.
+/// What rivals will do on a day, before anything of theirs or ours changes it.
+#[derive(Debug, Clone)]
+pub struct RivalMove {
+    /// The day.
+    pub day: u32,
+    /// Size that was drawn, after the growth over the run.
+    pub sampled: f64,
+    /// Share of the shared bank that they can copy.
+    pub u: f64,
+    /// What is left of the stream: the shares of the targeted banks.
+    shares: Stream,
+}
+
+impl RivalMove {
+    /// The share of each targeted bank that they copy, of the groups that have one, in alphabetical order.
+    pub fn shares(&self, group_bank: &ByGroup<f64>, law: &Competitor) -> Vec<(Group, f64)> {
+        let mut stream = self.shares.clone();
+        let mut funded: Vec<Group> = Group::all().filter(|group| group_bank[*group] > 0.0).collect();
+        funded.sort_by_key(|group| group.id());
+        let mut share =
+            || stream.between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max);
+        funded.into_iter().map(|group| (group, share())).collect()
+    }
+}
+
+/// The move of a day that follows the last event, if there is one.
+pub fn move_of(
+    day: u32,
+    total_days: u32,
+    last_event: Option<u32>,
+    params: &Params,
+    streams: &Streams,
+) -> Option<RivalMove> {
+    let law = &params.competitor;
+    let chance = event_probability(day, total_days, last_event, params);
+    let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
+    let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
+        Some(given) => given.filter(|_| events_possible(day, total_days, params)),
+        None => draw_event(chance, law, &mut stream),
+    };
+    let GivenEvent { size, u } = drawn?;
+    Some(RivalMove { day, sampled: sampled_boost(size, day, total_days, law), u, shares: stream })
+}
+
+/// The next move after a day, which is decided already: chance is keyed by the day, and when an event is possible follows
+/// from the last one.
+pub fn next_move(
+    after: u32,
+    total_days: u32,
+    last_event: Option<u32>,
+    params: &Params,
+    streams: &Streams,
+) -> Option<RivalMove> {
+    (after + 1..=total_days).find_map(|day| move_of(day, total_days, last_event, params, streams))
+}
+
+/// Makes the move of the day, if there is one.
 pub fn react(
     day: u32,
     total_days: u32,
@@ -97,20 +153,11 @@ pub fn react(
     streams: &Streams,
 ) {
     let law = &params.competitor;
-    let chance = event_probability(day, total_days, events.last().map(|event| event.day), params);
-    let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
-    let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
-        Some(given) => given.filter(|_| events_possible(day, total_days, params)),
-        None => draw_event(chance, law, &mut stream),
-    };
-    let Some(GivenEvent { size, u }) = drawn else { return };
-    let sampled = sampled_boost(size, day, total_days, law);
-    let event = resolve_event(day, sampled, u, &mut product.shared_bank, law);
+    let last_event = events.last().map(|event| event.day);
+    let Some(made) = move_of(day, total_days, last_event, params, streams) else { return };
+    let event = resolve_event(day, made.sampled, made.u, &mut product.shared_bank, law);
     raise_expectations(event.boost, drift, params);
-    let mut funded: Vec<Group> = Group::all().filter(|group| product.group_bank[*group] > 0.0).collect();
-    funded.sort_by_key(|group| group.id());
-    for group in funded {
-        let v = stream.between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max);
+    for (group, v) in made.shares(&product.group_bank, law) {
         drain_group(group, v, product, drift, law);
     }
     events.push(event);

@@ -48,6 +48,24 @@ pub fn is_drift_day(day: u32, law: &Drift) -> bool {
     day.is_multiple_of(law.interval_days) && day > law.drift_grace_period_days
 }
 
+/// The next day on which drift is applied.
+pub fn next_drift_day(after: u32, law: &Drift) -> u32 {
+    let next = |day: u32| (day / law.interval_days + 1) * law.interval_days;
+    next(after.max(law.drift_grace_period_days))
+}
+
+/// What one application adds to everyone's expectations.
+pub fn step_of_everyone(law: &Drift) -> f64 {
+    f64::from(law.days_per_application) * law.global_q_bias_drift
+}
+
+/// What one application adds to the expectations and budgets of a group.
+pub fn step_of_group(group: Group, params: &Params) -> Expectation {
+    let (own, days) =
+        (&params.group(group).group_drift_per_day, f64::from(params.drift.days_per_application));
+    Expectation { quality: days * own.q_bias_drift, c_max: days * own.c_max_drift }
+}
+
 /// Moves the group totals and every active subscriber's own curve and seats. `seat_multiplier` is the macro
 /// multiplier of seats as it was yesterday. Returns whether anything moved.
 pub fn apply(
@@ -61,12 +79,11 @@ pub fn apply(
     if !is_drift_day(day, law) {
         return false;
     }
-    let days = f64::from(law.days_per_application);
-    totals.global_quality += days * law.global_q_bias_drift;
+    totals.global_quality += step_of_everyone(law);
     for group in Group::all() {
-        let own = &params.group(group).group_drift_per_day;
-        totals.quality[group] += days * own.q_bias_drift;
-        totals.c_max[group] += days * own.c_max_drift;
+        let step = step_of_group(group, params);
+        totals.quality[group] += step.quality;
+        totals.c_max[group] += step.c_max;
     }
     customers.sweep(|group, _, block| {
         drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);

@@ -98,6 +98,17 @@ fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
     }
 }
 
+/// The index of a day, from that of the day before.
+pub fn index_of(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
+    let law = &params.economy;
+    let drawn = || {
+        let target = cycle_target(day, phase_of_run(law, streams), law);
+        let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
+        next_pmi(yesterday, target, z, law)
+    };
+    params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn)
+}
+
 /// Moves the index by a day unless it is held, measures when a month is full, and publishes what has waited long enough.
 pub fn step(
     day: u32,
@@ -108,13 +119,8 @@ pub fn step(
     facts: &mut Facts,
 ) {
     let law = &params.economy;
-    let drawn = || {
-        let target = cycle_target(day, phase_of_run(law, streams), law);
-        let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
-        next_pmi(economy.pmi, target, z, law)
-    };
     if !held {
-        economy.pmi = params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn);
+        economy.pmi = index_of(day, economy.pmi, params, streams);
     }
     economy.started = true;
     economy.history.push(economy.pmi);

@@ -43,12 +43,39 @@ pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
     law.base_rep_per_customer * weight * satisfaction
 }
 
-/// Change of a group's reputation from the contributions of today: (sum / m) log2(m), m = max(count, 2);
-/// nothing when it is too small.
-pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
+/// Change of a group's reputation that the contributions of today call for: (sum / m) log2(m), m = max(count, 2).
+pub fn called_change(mood: &Mood, law: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(law.min_group_size));
-    let change = mood.sum / size * libm::log2(size);
+    mood.sum / size * libm::log2(size)
+}
+
+/// The change that is made; nothing when it is too small.
+pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
+    let change = called_change(mood, law);
     (change.abs() >= law.daily_delta_min_abs).then_some(change)
+}
+
+/// What the change of a group does to another one that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spill {
+    /// The group that changed.
+    pub from: Group,
+    /// The one that hears of it.
+    pub to: Group,
+    /// Weight of the one for the other.
+    pub weight: f64,
+    /// Change of the reputation, if it counts.
+    pub change: f64,
+    /// Whether there is a weight, and the change is large enough.
+    pub counts: bool,
+}
+
+/// What a change of a group does to another one.
+pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
+    let law = &params.reputation;
+    let weight = params.reputation_weight(from, to);
+    let change = change * weight * law.cross_group_spillover_factor;
+    Spill { from, to, weight, change, counts: weight > 0.0 && change.abs() > law.cross_delta_min_abs }
 }
 
 /// Scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
@@ -85,10 +112,9 @@ pub fn contribute(
             continue;
         }
         for other in Group::all().filter(|other| *other != group && is_known(*other)) {
-            let weight = params.reputation_weight(group, other);
-            let spill = change * weight * law.cross_group_spillover_factor;
-            if weight > 0.0 && spill.abs() > law.cross_delta_min_abs {
-                book.move_by(other, spill, law);
+            let spill = spill(change, group, other, params);
+            if spill.counts {
+                book.move_by(other, spill.change, law);
             }
         }
     }

@@ -34,7 +34,7 @@ pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surg
 }
 
 /// The surge of a day: the recorded one where a record is replayed, otherwise drawn.
-fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
+pub fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
     let law = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
         None => draw_surge(day, law, streams),

@@ -21,11 +21,16 @@ pub fn targeted_development_gain(spend: f64, development: &Development) -> f64 {
     development.targeted_dev_improvement_coef * libm::log(1.0 + spend / development.targeted_dev_spend_scale)
 }
 
+/// Noise of the shared quality of a day.
+pub fn daily_noise(day: u32, params: &Params, streams: &Streams) -> f64 {
+    let mut stream = streams.open(Part::QualityNoise, [u64::from(day)]);
+    stream.normal(0.0, params.development.quality_shared_noise_scale)
+}
+
 /// Improves the product by a day. The noise comes every day, with or without spending, and is never banked.
 pub fn improve(day: u32, product: &mut Product, settings: &Settings, params: &Params, streams: &Streams) {
     let gain = development_gain(settings.core.development, &params.development);
-    let mut stream = streams.open(Part::QualityNoise, [u64::from(day)]);
-    product.shared_bonus += gain + stream.normal(0.0, params.development.quality_shared_noise_scale);
+    product.shared_bonus += gain + daily_noise(day, params, streams);
     product.shared_bank += gain;
     for (&group, &spend) in &settings.targeted_development.targeted_spend {
         let gain = targeted_development_gain(spend, &params.development);

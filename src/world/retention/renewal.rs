@@ -101,9 +101,9 @@ pub fn conclude(
     renewals
 }
 
-/// What each of them does to the reputation of their group.
-fn damages(gave_up: &[GaveUp], judgement: &RenewalContext<'_>) -> Vec<f64> {
-    let &DayContext { morning, params, streams, .. } = judgement.day;
+/// What each of those who found nothing acceptable does to the reputation of their group.
+pub fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
+    let &DayContext { morning, params, streams, .. } = day;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
@@ -112,6 +112,14 @@ fn damages(gave_up: &[GaveUp], judgement: &RenewalContext<'_>) -> Vec<f64> {
         cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
     };
     gave_up.iter().zip(rolls).map(damage).collect()
+}
+
+/// The roll of each place of a block, which decides whether a payment of the day fails for good.
+pub fn payment_rolls(group: Group, number: u32, day: u32, streams: &Streams) -> [u32; BLOCK as usize] {
+    let mut words = [0; BLOCK as usize];
+    let keys = [u64::from(day), group.index() as u64, u64::from(number)];
+    streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
+    words
 }
 
 /// Lets the individuals of a block whose billing day it is decide; takes out those who leave.
@@ -125,11 +133,10 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
     if due.is_empty() {
         return outcome;
     }
-    let mut words = [0u32; BLOCK as usize];
-    if rate > 0.0 {
-        let keys = [u64::from(morning.day), group.index() as u64, u64::from(number)];
-        judgement.day.streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
-    }
+    let words = match rate > 0.0 {
+        true => payment_rolls(group, number, morning.day, judgement.day.streams),
+        false => [0; BLOCK as usize],
+    };
     let (mut gone, mut gave_up) = (Vec::new(), Vec::new());
     for at in due {
         let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
@@ -154,7 +161,7 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
         }
     }
     block.remove(&gone);
-    let damages = damages(&gave_up, judgement);
+    let damages = damages(&gave_up, judgement.day);
     outcome.gave_up = gave_up.into_iter().zip(damages).collect();
     outcome
 }

@@ -6,6 +6,7 @@ use crate::context::DayContext;
 use crate::customers::columns::Block;
 use crate::identifiers::{ByGroup, ByPlan, Group};
 use crate::market::reputation::contribution;
+use crate::params::{Params, Quality};
 use crate::product::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
     service_penalty,
@@ -40,6 +41,83 @@ pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
         moods[group] += mood;
     }
     moods
+}
+
+/// A day of one subscriber, as its satisfaction moves by it.
+#[derive(Debug, Clone, Copy)]
+pub struct FeltDay {
+    /// The terms of its perceived quality.
+    pub experience: Experience,
+    /// Quality lost to today's service, contained in what is delivered.
+    pub service_penalty: f64,
+    /// Perceived quality.
+    pub perceived: f64,
+    /// Quality that its price requires, before the market's expectations.
+    pub required: f64,
+    /// What the market adds to that.
+    pub expectation: f64,
+    /// Perceived quality beyond both.
+    pub instant: f64,
+    /// Satisfaction before.
+    pub before: f64,
+    /// Satisfaction afterwards.
+    pub after: f64,
+}
+
+/// What the subscriber at a position of a block feels today, one at a time; the block is as [`update`] finds it.
+pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> FeltDay {
+    let &DayContext { morning, service, ads, tenure, params, .. } = day;
+    let quality = &params.quality;
+    let penalty = service_penalty(service.overload, service.outage, quality);
+    let plan = block.plan[at];
+    let own = Own {
+        usage_rate: block.usage_rate[at],
+        relationship: block.relationship[at],
+        open_issue_days: block.open_issue_days[at],
+        ads_sensitivity: block.ads_quality_sensitivity[at],
+    };
+    let met = Met {
+        delivered: morning.delivered(group, plan) - penalty,
+        quota: morning.quotas[plan],
+        tenure: tenure.bonus(morning.day - block.start_day[at]),
+        ads: ads.for_customer(group, block.customer[at]),
+    };
+    let experience = experienced(own, met, morning.weekday, quality, params);
+    let perceived = perceived_quality(experience, params.fidelity.perceived_quality);
+    let (required, expectation) = (block.required[at], morning.expectations[group].quality);
+    let (before, instant) = (block.satisfaction[at], perceived - (required + expectation));
+    let after = moved_satisfaction(before, instant, params.satisfaction.satisfaction_ema_alpha);
+    FeltDay { experience, service_penalty: penalty, perceived, required, expectation, instant, before, after }
+}
+
+/// What a subscriber brings to a day.
+struct Own {
+    usage_rate: f64,
+    relationship: f64,
+    open_issue_days: u32,
+    ads_sensitivity: f64,
+}
+
+/// What it meets.
+struct Met {
+    delivered: f64,
+    quota: f64,
+    tenure: f64,
+    ads: f64,
+}
+
+// Always inlined: rows are calculated side by side only where this stands among them.
+#[inline(always)]
+fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Params) -> Experience {
+    let demand = quota_demand(own.usage_rate * weekday, own.usage_rate, params);
+    Experience {
+        delivered: met.delivered,
+        relationship: relationship_bonus(relationship_as_read(own.relationship, quality), quality),
+        tenure: met.tenure,
+        quota: quota_factor(met.quota, demand, quality),
+        issues: quality.issue_penalty_per_open_day * f64::from(own.open_issue_days),
+        ads: own.ads_sensitivity * met.ads,
+    }
 }
 
 /// Rows that are worked on together: few enough for what is looked up for them to stay close at hand.
@@ -104,21 +182,19 @@ pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
         let sensitivity = &block.ads_quality_sensitivity[range.clone()];
         let satisfaction = &mut block.satisfaction[range];
         for at in 0..rows {
-            let demand = quota_demand(rate[at] * weekday, rate[at], params);
-            let perceived = perceived_quality(
-                Experience {
-                    delivered: found.delivered[at],
-                    relationship: relationship_bonus(
-                        relationship_as_read(relationship[at], quality),
-                        quality,
-                    ),
-                    tenure: found.tenure[at],
-                    quota: quota_factor(found.quota[at], demand, quality),
-                    issues: quality.issue_penalty_per_open_day * f64::from(open_days[at]),
-                    ads: sensitivity[at] * found.ads[at],
-                },
-                form,
-            );
+            let own = Own {
+                usage_rate: rate[at],
+                relationship: relationship[at],
+                open_issue_days: open_days[at],
+                ads_sensitivity: sensitivity[at],
+            };
+            let met = Met {
+                delivered: found.delivered[at],
+                quota: found.quota[at],
+                tenure: found.tenure[at],
+                ads: found.ads[at],
+            };
+            let perceived = perceived_quality(experienced(own, met, weekday, quality, params), form);
             let instant = perceived - (required[at] + expectation);
             moved[at] = moved_satisfaction(satisfaction[at], instant, alpha);
         }
@@ -139,7 +215,6 @@ mod tests {
     use crate::identifiers::Plan;
     use crate::morning::Morning;
     use crate::morning::tests::morning;
-    use crate::params::Params;
     use crate::random::Streams;
     use crate::retention::{refresh_required, remembered_budget};
     use crate::settings::Settings;
@@ -208,6 +283,7 @@ mod tests {
         for count in [1, 63, 64, 65, 150] {
             let mut together = Block::default();
             (1..=count).for_each(|n| together.push(row(n)));
+            let before = together.clone();
             let mood = update(&mut together);
             let mut moods = Mood::default();
             for n in 1..=count {
@@ -217,6 +293,11 @@ mod tests {
                 assert_eq!(together.row(n as usize - 1), alone.row(0), "row {n} of {count}");
             }
             assert_eq!(mood, moods, "{count} rows");
+            on_day(&day, &settings, &service, (&params, &streams), |day| {
+                for (at, after) in together.satisfaction.iter().enumerate() {
+                    assert_eq!(felt(group(), &before, at, day).after.to_bits(), after.to_bits());
+                }
+            });
         }
     }
 

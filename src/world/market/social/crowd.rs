@@ -286,6 +286,7 @@ mod tests {
             days_subscribed: None,
             kind: ThreadKind::NewLead,
             blame: Blame::Timeout,
+            damage: 0.0,
         }
     }
 

@@ -1,0 +1,89 @@
+//! What the x-ray shows, as data.
+
+use serde_json::{Value, json};
+
+use crate::session::{
+    CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, PlanTerms, Weighed,
+};
+use crate::world::identifiers::Plan;
+
+pub(super) fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
+    let factors = LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(own.factor(factor))));
+    let channels = own.channels().map(|(channel, leads)| (channel.id().to_owned(), json!(leads)));
+    let word_of_mouth = own.word_of_mouth.iter().map(|(group, leads)| (group.id().to_owned(), json!(leads)));
+    json!({
+        "group": own.group.id(),
+        "day": own.day,
+        "known": own.is_known,
+        "factors": Value::Object(factors.into_iter().collect()),
+        "channels": Value::Object(channels.collect()),
+        "word_of_mouth": Value::Object(word_of_mouth.collect()),
+        "expected": own.expected(),
+        "came": own.came,
+        "p": own.p_value(),
+        "held": (!held.is_empty()).then(|| own.holding(held)),
+    })
+}
+
+pub(super) fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
+    let plan = |weighed: &Weighed, plan: Plan| {
+        let PlanTerms { price, experience, quality, required, surplus, within_budget } = weighed.plans[plan];
+        json!({
+            "plan": plan.id(), "price": price, "delivered": experience.delivered,
+            "relationship": experience.relationship, "tenure": experience.tenure, "quota": experience.quota,
+            "issues": experience.issues, "ads": experience.ads, "quality": quality, "required": required,
+            "surplus": surplus, "within_budget": within_budget,
+        })
+    };
+    let day = |own: &CustomerDay| {
+        json!({
+            "day": own.day,
+            "plan": own.plan.id(),
+            "price": own.price,
+            "billing_day": own.is_due,
+            "satisfaction": own.satisfaction,
+            "relationship": own.relationship,
+            "open_issue_days": own.open_issue_days,
+            "choice": own.weighed.choice.map(Plan::id),
+            "plans": Plan::ALL.map(|own_plan| plan(&own.weighed, own_plan)),
+        })
+    };
+    json!({
+        "customer_id": lens.customer,
+        "group": lens.group.id(),
+        "headline": headline,
+        "came": lens.first.day,
+        "signed_up": lens.first.signed_up,
+        "shown": lens.shown().map(day),
+        "last_bill": lens.last_bill().map(day),
+    })
+}
+
+pub(super) fn company_as_data(lens: &CompanyLens) -> Value {
+    let thread = |own: &CompanyDay| {
+        let plan = |plan: Plan| {
+            let judged = own.plans[plan];
+            json!({
+                "plan": plan.id(), "quality": judged.quality, "quality_if_answered": judged.quality_if_answered,
+                "accepts_below": judged.accepts_below, "accepts_any_price": judged.accepts_any_price,
+                "would_name": judged.counter,
+            })
+        };
+        json!({
+            "thread": own.thread,
+            "kind": own.kind.id(),
+            "budget": own.budget,
+            "turns_left": own.turns_left,
+            "relationship": own.relationship,
+            "late_penalty": own.late_penalty,
+            "reply_day": own.reply_day,
+            "plans": Plan::ALL.map(plan),
+        })
+    };
+    json!({
+        "customer_id": lens.customer,
+        "group": lens.group.id(),
+        "day": lens.day,
+        "threads": lens.shown().map(thread).collect::<Vec<Value>>(),
+    })
+}

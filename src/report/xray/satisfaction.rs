@@ -1,0 +1,60 @@
+//! What moved the satisfaction of a group, in words.
+
+use super::table;
+use crate::session::{MoodTerm, SatisfactionEquation};
+
+/// The mean before, each term, the mean after, and what came of it by the evening.
+pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
+    let SatisfactionEquation { group, day, weight, left, came, subscribers, .. } = *own;
+    let mut lines = vec![format!("satisfaction of {group} on day {day}")];
+    match (own.before(), own.after(), own.instant()) {
+        (Some(before), Some(after), Some(instant)) => {
+            lines.push(format!(
+                "  {:.2} × before {before:.4} + {weight:.2} × felt today {instant:.4} = after {after:.4} \
+                 ({:+.4}), mean of {}",
+                1.0 - weight,
+                after - before,
+                subscribers_in_words(own.felt_by())
+            ));
+            lines.extend(terms(own));
+        }
+        _ => lines.push("  nobody felt the day: there were no subscribers in the morning".to_owned()),
+    }
+    let moved = match (own.evening, own.after()) {
+        (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),
+        (Some(evening), None) => format!("mean {evening:.4}"),
+        (None, _) => "no mean".to_owned(),
+    };
+    lines.push(format!(
+        "  evening: {left} left and {came} came, {} stay, {moved}",
+        subscribers_in_words(subscribers)
+    ));
+    lines
+}
+
+fn subscribers_in_words(count: u32) -> String {
+    match count {
+        1 => "1 subscriber".to_owned(),
+        count => format!("{count} subscribers"),
+    }
+}
+
+fn terms(own: &SatisfactionEquation) -> Vec<String> {
+    let head = ["term", "today", "day before", "change", "moved the mean by"];
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:+.4}"));
+    let row = |name: &str, today: Option<f64>, yesterday: Option<f64>| {
+        vec![
+            name.to_owned(),
+            number(today),
+            number(yesterday),
+            number(today.zip(yesterday).map(|(today, yesterday)| today - yesterday)),
+            number(today.map(|today| today * own.weight)),
+        ]
+    };
+    let mut rows: Vec<Vec<String>> =
+        MoodTerm::ALL.map(|term| row(term.id(), own.term(term), own.term_yesterday(term))).to_vec();
+    let forgotten = own.before().map(|before| format!("{:+.4}", 0.0 - own.weight * before));
+    let blank = String::new;
+    rows.push(vec!["forgotten".to_owned(), blank(), blank(), blank(), forgotten.unwrap_or_default()]);
+    table(&head, &rows)
+}

@@ -1,0 +1,67 @@
+//! Groups from within on a day: their quality, satisfaction and reputation.
+
+use super::quality_equation::QualityEquation;
+use super::reputation_equation::{ReputationEquation, Spillover};
+use super::satisfaction_equation::SatisfactionEquation;
+use crate::session::state::Session;
+use crate::tools::Refusal;
+use crate::world::identifiers::Group;
+
+impl Session {
+    /// What was delivered to a group on a day, the last one if none is named. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside("quality", group.id(), day)?;
+        self.hidden_day(day).map(|seen| QualityEquation::of(group, day, &seen.quality))
+    }
+
+    /// What moved the satisfaction of a group on a day, the last one if none is named. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn satisfaction_equation(
+        &mut self,
+        group: Group,
+        day: Option<u32>,
+    ) -> Result<SatisfactionEquation, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside("satisfaction", group.id(), day)?;
+        let own = self.hidden_day(day)?.satisfaction[group];
+        let yesterday = match day {
+            1 => None,
+            day => Some(self.hidden_day(day - 1)?.satisfaction[group]),
+        };
+        Ok(SatisfactionEquation::of(group, day, own, yesterday))
+    }
+
+    /// What moved the reputation of a group on a day, the last one if none is named. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn reputation_equation(
+        &mut self,
+        group: Group,
+        day: Option<u32>,
+    ) -> Result<ReputationEquation, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside("reputation", group.id(), day)?;
+        self.hidden_day(day).map(|seen| ReputationEquation::of(group, day, &seen.reputation))
+    }
+
+    /// How changes of reputation spilled over on a day, the last one if none is named. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside("spillover", "", day)?;
+        self.hidden_day(day).map(|seen| Spillover::of(day, &seen.known, seen.reputation))
+    }
+}

@@ -1,0 +1,156 @@
+//! The views of groups, of the market and of draws: who may look, what a look leaves behind, and what is refused.
+
+use std::path::Path;
+
+use novamind::session::{
+    Activity, Configuration, DrawnPart, Mode, NewRun, Record, Refusal, Session, Storage, Trajectory, Via,
+    lines_afterwards, verify,
+};
+use novamind::world::identifiers::Group;
+use serde_json::json;
+
+use crate::support::company::{open_shop, week, weeks};
+
+fn run_in(folder: &Path, mode: Mode) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(60),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    open_shop(&mut session);
+    session
+}
+
+/// What every view says of a group and a day, refused or shown.
+fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Refusal>> {
+    let group = Group::parse(group).expect("a group");
+    vec![
+        session.quality_equation(group, day).map(drop),
+        session.satisfaction_equation(group, day).map(drop),
+        session.reputation_equation(group, day).map(drop),
+        session.spillover(day).map(drop),
+        session.rival_state(day).map(drop),
+        session.drift_state(day).map(drop),
+    ]
+}
+
+fn looks(lines: &Trajectory) -> Vec<String> {
+    let look = |record: &Record| match record {
+        Record::Activity(Activity::Xray(look)) => {
+            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
+        }
+        _ => None,
+    };
+    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+}
+
+#[test]
+fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode);
+        week(&mut session);
+        let place = session.folder().expect("a folder").to_owned();
+        let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
+        let before = lines();
+        // The refusal is the same whatever is asked for: days that are there, that are not, draws of any number.
+        let mut told = views(&mut session, "S1", None);
+        told.extend(views(&mut session, "D_E10", Some(3)));
+        told.extend(views(&mut session, "S1", Some(9000)));
+        for part in DrawnPart::ALL {
+            told.extend(
+                [None, Some(0), Some(3), Some(usize::MAX)]
+                    .map(|count| session.next_draws(part, count).map(drop)),
+            );
+        }
+        for answer in told {
+            let refusal = answer.expect_err("hidden").to_string();
+            assert_eq!(refusal, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+        }
+        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
+        session.end().expect("it ends");
+        assert!(views(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
+        session.next_draws(DrawnPart::Service, None).expect("a look");
+        drop(session);
+        let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+        assert!(looks(&trajectory).is_empty(), "the end is the last line");
+        let after = lines_afterwards(&place, &trajectory).expect("lines");
+        let expected = [
+            "quality S1 3",
+            "satisfaction S1 3",
+            "reputation S1 3",
+            "spillover  3",
+            "rivals  3",
+            "drift  3",
+            "streams service 8",
+        ];
+        assert_eq!(looks(&after), expected);
+    }
+}
+
+#[test]
+fn looking_at_views_changes_no_hash() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut watched = run_in(folder.path(), Mode::Debug);
+    let mut alone = run_in(folder.path(), Mode::Debug);
+    for _ in 0..4 {
+        for session in [&mut watched, &mut alone] {
+            session.step(3, &mut |_| {}).expect("days");
+            session.call("set_prices", &json!({"A": 10 + session.day()}), Via::Script).expect("a price");
+        }
+        let day = watched.day();
+        for shown in [None, Some(1), Some(day)] {
+            assert!(views(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
+        }
+        for part in DrawnPart::ALL {
+            watched.next_draws(part, Some(5)).expect("a look");
+        }
+        week(&mut watched);
+        week(&mut alone);
+        assert_eq!(watched.state_hash(), alone.state_hash());
+    }
+    for answer in views(&mut watched, "S2", Some(41)) {
+        let refusal = answer.expect_err("not simulated").to_string();
+        assert!(refusal.starts_with("day_unknown (day): there is no day 41"), "{refusal}");
+    }
+    let place = watched.folder().expect("a folder").to_owned();
+    drop(watched);
+    verify(&place).expect("it verifies");
+}
+
+#[test]
+fn before_the_first_day_only_draws_are_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    for answer in views(&mut session, "S1", None) {
+        assert_eq!(answer.expect_err("no day").to_string(), "day_unknown (day): no day has run yet");
+    }
+    for part in DrawnPart::ALL {
+        assert_eq!(session.next_draws(part, None).expect("a look").day, 1);
+    }
+}
+
+#[test]
+fn a_view_of_a_past_day_stays_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    weeks(&mut session, 3);
+    let group = Group::parse("S1").expect("a group");
+    let all = |session: &mut Session| {
+        (
+            session.quality_equation(group, Some(12)).expect("a look"),
+            session.satisfaction_equation(group, Some(12)).expect("a look"),
+            session.reputation_equation(group, Some(12)).expect("a look"),
+            session.spillover(Some(12)).expect("a look"),
+            session.drift_state(Some(12)).expect("a look"),
+        )
+    };
+    let before = all(&mut session);
+    session.call("set_prices", &json!({"A": 90}), Via::Script).expect("a price");
+    weeks(&mut session, 2);
+    assert_eq!(all(&mut session), before);
+}

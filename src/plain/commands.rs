@@ -1,5 +1,6 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
+mod breakpoints;
 mod check;
 mod groups;
 mod help;
@@ -88,6 +89,23 @@ const COMMANDS: &[(&str, &str)] = &[
     (
         "lens",
         "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+    ),
+    (
+        "break",
+        "break [CONDITION]        the same: stop run where a condition becomes true; the list; break clear N|all removes",
+    ),
+    (
+        "run",
+        "run DAYS                 debug: run days, at most to the first on which a breakpoint becomes true",
+    ),
+    (
+        "back",
+        "back [CONDITION|N]       debug runs and runs that are over: since when a condition or a breakpoint is true or false",
+    ),
+    ("find", "find CONDITION           the same: the days on which a condition became true"),
+    (
+        "who",
+        "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
     ),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
@@ -183,6 +201,10 @@ impl Interpreter {
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
             "pause" => self.pause(rest),
+            "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
+            "back" => self.back(rest, column).unwrap_or_else(usage),
+            "find" => self.find_days(rest, column).unwrap_or_else(usage),
+            "who" => self.who(rest, column).unwrap_or_else(usage),
             "resume" => self.resume(rest),
             _ => self.query(&grammar::statement(rest), QuerySource::Typed),
         }
@@ -317,6 +339,7 @@ impl Interpreter {
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
+            "run" => self.run_days(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

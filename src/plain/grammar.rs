@@ -46,8 +46,10 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 11] =
-    ["sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "pause", "resume"];
+const TEXT_COMMANDS: [&str; 15] = [
+    "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "pause", "resume",
+    "break", "back", "find", "who",
+];
 
 /// Reads a line.
 pub fn parse(line: &str) -> Result<Line, Problem> {

@@ -3,10 +3,11 @@
 use crate::customers::Customers;
 use crate::customers::columns::Block;
 use crate::enterprise::{Enterprise, Negotiation};
-use crate::events::Facts;
+use crate::events::{DayFigures, Facts};
 use crate::identifiers::{ByGroup, Group};
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
+use crate::market::reputation::ReputationWrite;
 use crate::params::Params;
 use crate::retention::renewal::RenewalContext;
 use crate::state::World;
@@ -33,6 +34,16 @@ pub trait DayWatch: Send + Sync {
         _factors: &ByGroup<LeadFactors>,
     ) {
     }
+
+    /// A call of the player was applied between two days, with the facts it left.
+    fn called(&self, _facts: &Facts) {}
+
+    /// A mechanism has moved a reputation: individuals of a block who left, a company that was lost, the mood of a
+    /// group, what spills over from another.
+    fn reputation_moved(&self, _write: &ReputationWrite<'_>) {}
+
+    /// The figures of the day, before it is over.
+    fn day_counted(&self, _figures: &DayFigures) {}
 
     /// The day is over: the world and the facts as they stay.
     fn day_over(&self, _world: &World, _params: &Params, _facts: &Facts) {}

@@ -1,0 +1,140 @@
+//! Conditions, why a run stopped, and since when they hold, in words.
+
+use crate::notation::point_number;
+use crate::session::{Breakpoint, Comparison, Condition, Hit, Judged, LookBack, RunUntil};
+
+/// Decimals that a figure is written with at least.
+const DECIMALS: usize = 4;
+/// Decimals at most, where fewer would not tell two numbers apart.
+const MOST_DECIMALS: usize = 12;
+
+/// The breakpoints that are set, one in a line.
+pub fn breakpoints_in_words(set: &[Breakpoint]) -> Vec<String> {
+    match set.is_empty() {
+        true => vec!["no breakpoint is set; for instance: break churn(S1) > 0.05 over 7".to_owned()],
+        false => set.iter().map(|own| format!("{}  {}", own.number, own.condition)).collect(),
+    }
+}
+
+/// Why days stopped: each breakpoint that became true with both sides, or that none did.
+pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String> {
+    let hit = |hit: &Hit| {
+        let Hit { breakpoint, judged } = hit;
+        format!(
+            "stopped on day {day}: {} · breakpoint {}",
+            sides(&breakpoint.condition, judged),
+            breakpoint.number
+        )
+    };
+    let from = run.from + 1;
+    match (run.hits.is_empty(), breakpoints) {
+        (false, _) => run.hits.iter().map(hit).collect(),
+        (true, 0) => vec![format!("ran day {from} to {day}; no breakpoint is set")],
+        (true, 1) => vec![format!("ran day {from} to {day}; the breakpoint did not become true")],
+        (true, count) => {
+            vec![format!("ran day {from} to {day}; none of the {count} breakpoints became true")]
+        }
+    }
+}
+
+/// Since when a condition is what it is today, with both sides of the change.
+pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
+    let LookBack { condition, today, last_true, last_false } = own;
+    let is = if today.is_true { "true" } else { "false" };
+    let mut lines = vec![format!("{condition} is {is} on day {}: {}", today.day, sides(condition, today))];
+    lines.push(match if today.is_true { last_false } else { last_true } {
+        None if today.is_true => "it was true on every day".to_owned(),
+        None => "it was true on no day".to_owned(),
+        Some(other) => format!(
+            "last {} on day {}: {}; {is} since day {}",
+            if today.is_true { "false" } else { "true" },
+            other.day,
+            sides(condition, other),
+            own.since()
+        ),
+    });
+    lines
+}
+
+/// The days on which a condition became true.
+pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) -> Vec<String> {
+    let days = if last_day == 1 { "day".to_owned() } else { format!("{last_day} days") };
+    let head = match found.len() {
+        0 => format!("{condition} became true on no day of {days}"),
+        count => format!("{condition} became true on {count} of {days}"),
+    };
+    let line = |own: &Judged| format!("  day {:<4} {}", own.day, sides(condition, own));
+    std::iter::once(head).chain(found.iter().map(line)).collect()
+}
+
+/// Both sides in numbers: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A comparison that does not hold says so.
+fn sides(condition: &Condition, judged: &Judged) -> String {
+    let value =
+        |value: Option<f64>, others: &[f64]| value.map_or("no value".to_owned(), |own| told(own, others));
+    match condition {
+        Condition::Compared(quantity, comparison, threshold) => {
+            let sign = match (judged.is_true, judged.value) {
+                (true, _) => format!(" {} {threshold}", comparison.sign()),
+                (false, Some(_)) => format!(" {} {threshold}", opposite(*comparison)),
+                (false, None) => String::new(),
+            };
+            let of_value = value(judged.value, &[*threshold]);
+            let of_before = value(judged.before, &[*threshold]);
+            format!("{quantity}{} = {of_value}{sign} (day before {of_before})", quantity.span())
+        }
+        Condition::Moved(quantity, direction) => {
+            let pair: Vec<f64> = [judged.value, judged.before].into_iter().flatten().collect();
+            let moves = match judged.is_true {
+                true => direction.word().to_owned(),
+                false => format!("not {}", direction.word()),
+            };
+            let (of_value, of_before) = (value(judged.value, &pair), value(judged.before, &pair));
+            format!("{quantity}{} = {of_value}, {moves} (day before {of_before})", quantity.span())
+        }
+        Condition::Event(event) => {
+            let said = |happens: bool| if happens { "yes" } else { "no" };
+            let (today, before) = (said(judged.is_true), said(judged.was_true));
+            format!("event {} {today} (day before {before})", event.id())
+        }
+    }
+}
+
+fn opposite(comparison: Comparison) -> &'static str {
+    match comparison {
+        Comparison::Above => Comparison::AtMost.sign(),
+        Comparison::AtLeast => Comparison::Below.sign(),
+        Comparison::Below => Comparison::AtLeast.sign(),
+        Comparison::AtMost => Comparison::Above.sign(),
+    }
+}
+
+/// A number with as few decimals as tell it from others; whole numbers without any.
+fn told(value: f64, others: &[f64]) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e15 {
+        return format!("{value:.0}");
+    }
+    let differs = |written: &String| {
+        let read: f64 = written.parse().unwrap_or(value);
+        others.iter().all(|other| read.partial_cmp(other) == value.partial_cmp(other))
+    };
+    let written = (DECIMALS..=MOST_DECIMALS).map(|decimals| format!("{value:.decimals$}"));
+    written.into_iter().find(differs).unwrap_or_else(|| point_number(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_so_that_they_stay_apart() {
+        for (value, other, written) in [
+            (0.05234, 0.05, "0.0523"),
+            (0.050_000_4, 0.05, "0.0500004"),
+            (0.05, 0.05, "0.0500"),
+            (1200.0, 1000.0, "1200"),
+            (0.049_999_999_999_999_996, 0.05, "0.049999999999999996"),
+        ] {
+            assert_eq!(told(value, &[other]), written);
+        }
+    }
+}

@@ -39,7 +39,11 @@ impl Interpreter {
                 })
             }
             _ => self.session.set_breakpoint(condition(rest, column)?).map(|own| {
-                let text = format!("breakpoint {}: {}; run DAYS stops there", own.number, own.condition);
+                let next = match self.session.ended() {
+                    None => "run DAYS stops there".to_owned(),
+                    Some(_) => format!("back {} says since when it is true or false", own.number),
+                };
+                let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
                 Answer::done("break", text, as_data(&own))
             }),
         };

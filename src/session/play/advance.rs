@@ -137,14 +137,22 @@ impl Session {
         days: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
-        if self.manifest.mode != crate::session::folder::mode::Mode::Debug {
-            return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
-        }
-        self.refuse_if_over(Kind::Time)?;
+        self.refuse_to_step()?;
         let from = self.simulation.world.day;
         let until = self.next_decision_day().min(from.saturating_add(days.max(1)));
         let state = self.run_days_while(goes_on, until, progress);
         Ok(self.close_days(Record::Step, from, state))
+    }
+
+    /// Refuses single days where there are none.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`.
+    pub(in crate::session) fn refuse_to_step(&self) -> Result<(), Refusal> {
+        if self.manifest.mode != crate::session::folder::mode::Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
+        }
+        self.refuse_if_over(Kind::Time)
     }
 
     /// Gives up an unfinished run for good.

@@ -82,6 +82,7 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<RunUntil, Refusal> {
         self.refuse_to_look_inside()?;
+        self.refuse_to_step()?;
         let from = self.day();
         let set = self.breakpoints.all().to_vec();
         if set.is_empty() {

@@ -111,7 +111,7 @@ pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
 
-pub use xray::breakpoint::condition::{Comparison, Condition, Direction, Judged, WorldEvent};
+pub use xray::breakpoint::condition::{Condition, Direction, Judged, Relation, WorldEvent};
 pub use xray::breakpoint::grammar::ConditionProblem;
 pub use xray::breakpoint::list::Breakpoint;
 pub use xray::breakpoint::look_back::LookBack;

@@ -385,7 +385,7 @@ back
         format!("{EXAMPLE}{asked}"),
     );
     let said = objects(&said);
-    let answers = &said[said.len() - count..];
+    let answers = &said[said.len() - count - 1..];
     let data = |at: usize| &answers[at]["data"];
     assert_eq!(data(0)["condition"], "subscribers(S1) >= 20");
     assert_eq!(
@@ -417,7 +417,7 @@ back
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
     let said = objects(&said);
-    let told = &said[said.len() - count..];
+    let told = &said[said.len() - count - 1..said.len() - 1];
     for one in told {
         assert_eq!((&one["code"], &one["error"]), (&"not_in_this_mode".into(), &told[0]["error"]), "{one}");
     }

@@ -1,7 +1,7 @@
 //! Conditions, why a run stopped, and since when they hold, in words.
 
 use crate::notation::point_number;
-use crate::session::{Breakpoint, Comparison, Condition, Hit, Judged, LookBack, RunUntil};
+use crate::session::{Breakpoint, Condition, Hit, Judged, LookBack, Relation, RunUntil};
 
 /// Decimals that a figure is written with at least.
 const DECIMALS: usize = 4;
@@ -72,10 +72,10 @@ fn sides(condition: &Condition, judged: &Judged) -> String {
     let value =
         |value: Option<f64>, others: &[f64]| value.map_or("no value".to_owned(), |own| told(own, others));
     match condition {
-        Condition::Compared(quantity, comparison, threshold) => {
+        Condition::Compared(quantity, relation, threshold) => {
             let sign = match (judged.is_true, judged.value) {
-                (true, _) => format!(" {} {threshold}", comparison.sign()),
-                (false, Some(_)) => format!(" {} {threshold}", opposite(*comparison)),
+                (true, _) => format!(" {} {threshold}", relation.sign()),
+                (false, Some(_)) => format!(" {} {threshold}", opposite(*relation)),
                 (false, None) => String::new(),
             };
             let of_value = value(judged.value, &[*threshold]);
@@ -99,12 +99,12 @@ fn sides(condition: &Condition, judged: &Judged) -> String {
     }
 }
 
-fn opposite(comparison: Comparison) -> &'static str {
-    match comparison {
-        Comparison::Above => Comparison::AtMost.sign(),
-        Comparison::AtLeast => Comparison::Below.sign(),
-        Comparison::Below => Comparison::AtLeast.sign(),
-        Comparison::AtMost => Comparison::Above.sign(),
+fn opposite(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Above => Relation::AtMost.sign(),
+        Relation::AtLeast => Relation::Below.sign(),
+        Relation::Below => Relation::AtLeast.sign(),
+        Relation::AtMost => Relation::Above.sign(),
     }
 }
 

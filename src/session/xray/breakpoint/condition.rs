@@ -7,7 +7,7 @@ use super::series::MeasuredDay;
 
 /// How a figure is compared with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Comparison {
+pub enum Relation {
     /// `>`
     Above,
     /// `>=`
@@ -18,24 +18,24 @@ pub enum Comparison {
     AtMost,
 }
 
-impl Comparison {
+impl Relation {
     /// Its sign.
     pub fn sign(self) -> &'static str {
         match self {
-            Comparison::Above => ">",
-            Comparison::AtLeast => ">=",
-            Comparison::Below => "<",
-            Comparison::AtMost => "<=",
+            Relation::Above => ">",
+            Relation::AtLeast => ">=",
+            Relation::Below => "<",
+            Relation::AtMost => "<=",
         }
     }
 
     /// Whether it holds.
     pub fn holds(self, value: f64, threshold: f64) -> bool {
         match self {
-            Comparison::Above => value > threshold,
-            Comparison::AtLeast => value >= threshold,
-            Comparison::Below => value < threshold,
-            Comparison::AtMost => value <= threshold,
+            Relation::Above => value > threshold,
+            Relation::AtLeast => value >= threshold,
+            Relation::Below => value < threshold,
+            Relation::AtMost => value <= threshold,
         }
     }
 }
@@ -96,7 +96,7 @@ impl WorldEvent {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
     /// A figure is beyond a number.
-    Compared(Quantity, Comparison, f64),
+    Compared(Quantity, Relation, f64),
     /// A figure is not what it was on the day before.
     Moved(Quantity, Direction),
     /// Something happens.
@@ -130,8 +130,8 @@ impl Condition {
     fn holds(&self, days: &[MeasuredDay], day: u32) -> bool {
         let at = |quantity: &Quantity, day: u32| quantity.value(days, day);
         match self {
-            Condition::Compared(quantity, comparison, threshold) => {
-                at(quantity, day).is_some_and(|value| comparison.holds(value, *threshold))
+            Condition::Compared(quantity, relation, threshold) => {
+                at(quantity, day).is_some_and(|value| relation.holds(value, *threshold))
             }
             Condition::Moved(quantity, direction) => {
                 let pair = at(quantity, day).zip(at(quantity, day.saturating_sub(1)));
@@ -152,8 +152,8 @@ impl Condition {
 impl fmt::Display for Condition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Condition::Compared(quantity, comparison, threshold) => {
-                write!(formatter, "{quantity} {} {threshold}{}", comparison.sign(), quantity.span())
+            Condition::Compared(quantity, relation, threshold) => {
+                write!(formatter, "{quantity} {} {threshold}{}", relation.sign(), quantity.span())
             }
             Condition::Moved(quantity, direction) => {
                 write!(formatter, "{quantity} {}{}", direction.word(), quantity.span())

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::condition::{Comparison, Condition, Direction, WorldEvent};
+use super::condition::{Condition, Direction, Relation, WorldEvent};
 use super::measure::{Measure, NoQuantity, Quantity};
 use crate::notation::nearest;
 use crate::world::identifiers::Group;
@@ -184,7 +184,7 @@ impl FromStr for Condition {
 
 /// What a figure is judged by.
 enum Judgement {
-    Compared(Comparison, f64),
+    Compared(Relation, f64),
     Moved(Direction),
 }
 
@@ -206,7 +206,7 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
         ConditionProblem { message: why_not(measure, no), column }
     })?;
     Ok(match judgement {
-        Judgement::Compared(comparison, threshold) => Condition::Compared(quantity, comparison, threshold),
+        Judgement::Compared(relation, threshold) => Condition::Compared(quantity, relation, threshold),
         Judgement::Moved(direction) => Condition::Moved(quantity, direction),
     })
 }
@@ -225,11 +225,11 @@ fn why_not(measure: Measure, no: NoQuantity) -> String {
 
 fn judgement(words: &mut Words<'_>) -> Result<Judgement, ConditionProblem> {
     let token = words.next();
-    let comparison = match token.map(|token| token.text) {
-        Some(">") => Comparison::Above,
-        Some(">=") => Comparison::AtLeast,
-        Some("<") => Comparison::Below,
-        Some("<=") => Comparison::AtMost,
+    let relation = match token.map(|token| token.text) {
+        Some(">") => Relation::Above,
+        Some(">=") => Relation::AtLeast,
+        Some("<") => Relation::Below,
+        Some("<=") => Relation::AtMost,
         Some(word) if word.eq_ignore_ascii_case("rises") => return Ok(Judgement::Moved(Direction::Rises)),
         Some(word) if word.eq_ignore_ascii_case("falls") => return Ok(Judgement::Moved(Direction::Falls)),
         other => {
@@ -238,5 +238,5 @@ fn judgement(words: &mut Words<'_>) -> Result<Judgement, ConditionProblem> {
             return Err(words.problem_at(token, message));
         }
     };
-    words.number().map(|threshold| Judgement::Compared(comparison, threshold))
+    words.number().map(|threshold| Judgement::Compared(relation, threshold))
 }

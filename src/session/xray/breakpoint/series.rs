@@ -90,11 +90,11 @@ fn measured_group(group: Group, counted: &GroupWeek, world: &World) -> MeasuredG
 /// Keeps the figures of days, without a gap from day 1.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Series {
-    pages: Mutex<Pages>,
+    pages: Mutex<SeriesPages>,
 }
 
 #[derive(Debug, Default)]
-struct Pages {
+struct SeriesPages {
     days: Vec<MeasuredDay>,
     /// Figures of the day that is simulated.
     today: DayFigures,
@@ -111,7 +111,7 @@ impl Series {
         self.pages().days.len() as u32
     }
 
-    fn pages(&self) -> MutexGuard<'_, Pages> {
+    fn pages(&self) -> MutexGuard<'_, SeriesPages> {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -17,10 +17,10 @@ use crate::world::state::World;
 pub(super) struct WriteDiary {
     target: WriteTarget,
     day: u32,
-    pages: Mutex<Pages>,
+    pages: Mutex<WritePages>,
 }
 
-struct Pages {
+struct WritePages {
     /// The figure at the end of the day before.
     first: f64,
     /// What was written since.
@@ -31,7 +31,7 @@ struct Pages {
     kept: Option<WhoWrites>,
 }
 
-impl Pages {
+impl WritePages {
     /// The figure as it stands after what was written.
     fn now(&self) -> f64 {
         self.writes.last().map_or(self.first, |write| write.after)
@@ -58,7 +58,8 @@ impl Pages {
 impl WriteDiary {
     /// Of a figure on a day; with what it was before day 1.
     pub(super) fn of(target: WriteTarget, day: u32, opening: f64) -> WriteDiary {
-        let pages = Pages { first: opening, writes: Vec::new(), figures: DayFigures::default(), kept: None };
+        let pages =
+            WritePages { first: opening, writes: Vec::new(), figures: DayFigures::default(), kept: None };
         WriteDiary { target, day, pages: Mutex::new(pages) }
     }
 
@@ -67,7 +68,7 @@ impl WriteDiary {
         self.pages().kept.take()
     }
 
-    fn pages(&self) -> MutexGuard<'_, Pages> {
+    fn pages(&self) -> MutexGuard<'_, WritePages> {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -128,7 +129,7 @@ impl DayWatch for WriteDiary {
 }
 
 /// Cash moves in this order: leads are paid, subscribers pay, then the ledger of the day.
-fn book_day(pages: &mut Pages, params: &Params, facts: &Facts) {
+fn book_day(pages: &mut WritePages, params: &Params, facts: &Facts) {
     let DayFigures { new_leads, payments_received, .. } = pages.figures;
     let leads = f64::from(new_leads) * params.leads.lead_acquisition_cost;
     pages.add(WrittenBy::Booked(Category::LeadAcquisitionCost), -leads);
@@ -137,7 +138,7 @@ fn book_day(pages: &mut Pages, params: &Params, facts: &Facts) {
 }
 
 /// Those who left, by why, and those who came, by how.
-fn count_day(pages: &mut Pages, group: Group, world: &World, facts: &Facts) {
+fn count_day(pages: &mut WritePages, group: Group, world: &World, facts: &Facts) {
     let has_left =
         |own: &&SubscriptionEnded| own.group == group && own.status == SubscriptionStatus::Cancelled;
     let mut left: Vec<_> = facts.endings.iter().filter(has_left).collect();

@@ -1,7 +1,8 @@
 //! Conditions, why a run stopped, and since when they hold, in words.
 
 use crate::notation::point_number;
-use crate::session::{Breakpoint, Condition, Hit, Judged, LookBack, Relation, RunUntil};
+use crate::report::words::count;
+use crate::session::{Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil};
 
 /// Decimals that a figure is written with at least.
 const DECIMALS: usize = 4;
@@ -58,10 +59,10 @@ pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
 
 /// The days on which a condition became true.
 pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) -> Vec<String> {
-    let days = if last_day == 1 { "day".to_owned() } else { format!("{last_day} days") };
+    let days = count(last_day, "day");
     let head = match found.len() {
-        0 => format!("{condition} became true on no day of {days}"),
-        count => format!("{condition} became true on {count} of {days}"),
+        0 => format!("{condition} became true on none of {days}"),
+        often => format!("{condition} became true on {often} of {days}"),
     };
     let line = |own: &Judged| format!("  day {:<4} {}", own.day, sides(condition, own));
     std::iter::once(head).chain(found.iter().map(line)).collect()
@@ -83,12 +84,13 @@ fn sides(condition: &Condition, judged: &Judged) -> String {
             format!("{quantity}{} = {of_value}{sign} (day before {of_before})", quantity.span())
         }
         Condition::Moved(quantity, direction) => {
-            let pair: Vec<f64> = [judged.value, judged.before].into_iter().flatten().collect();
-            let moves = match judged.is_true {
-                true => direction.word().to_owned(),
-                false => format!("not {}", direction.word()),
+            let moves = match (judged.is_true, direction) {
+                (true, direction) => direction.word(),
+                (false, Direction::Rises) => "does not rise",
+                (false, Direction::Falls) => "does not fall",
             };
-            let (of_value, of_before) = (value(judged.value, &pair), value(judged.before, &pair));
+            let of_value = value(judged.value, judged.before.as_slice());
+            let of_before = value(judged.before, judged.value.as_slice());
             format!("{quantity}{} = {of_value}, {moves} (day before {of_before})", quantity.span())
         }
         Condition::Event(event) => {
@@ -113,17 +115,32 @@ fn told(value: f64, others: &[f64]) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 {
         return format!("{value:.0}");
     }
-    let differs = |written: &String| {
-        let read: f64 = written.parse().unwrap_or(value);
-        others.iter().all(|other| read.partial_cmp(other) == value.partial_cmp(other))
+    let rounded = |value: f64, decimals: usize| format!("{value:.decimals$}").parse::<f64>().unwrap_or(value);
+    let differs = |decimals: &usize| {
+        let order = |other: f64| rounded(value, *decimals).partial_cmp(&rounded(other, *decimals));
+        others.iter().all(|other| order(*other) == value.partial_cmp(other))
     };
-    let written = (DECIMALS..=MOST_DECIMALS).map(|decimals| format!("{value:.decimals$}"));
-    written.into_iter().find(differs).unwrap_or_else(|| point_number(value))
+    let decimals = (DECIMALS..=MOST_DECIMALS).find(differs);
+    decimals.map_or_else(|| point_number(value), |decimals| format!("{value:.decimals$}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_sides_of_a_fall_are_told_apart_and_no_finer() {
+        let condition: Condition = "reputation(S3) falls".parse().expect("a condition");
+        let mut judged =
+            Judged { day: 39, value: Some(0.507881), before: Some(0.507912), is_true: true, was_true: false };
+        let said = sides(&condition, &judged);
+        assert_eq!(said, "reputation(S3) = 0.50788, falls (day before 0.50791)");
+        (judged.before, judged.is_true) = (None, false);
+        assert_eq!(
+            sides(&condition, &judged),
+            "reputation(S3) = 0.5079, does not fall (day before no value)"
+        );
+    }
 
     #[test]
     fn numbers_are_written_so_that_they_stay_apart() {

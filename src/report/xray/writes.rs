@@ -88,7 +88,7 @@ fn value_of(target: WriteTarget, value: f64) -> String {
 fn amount_of(target: WriteTarget, amount: f64) -> String {
     match target {
         WriteTarget::Reputation(_) => format!("{amount:+.9}"),
-        WriteTarget::Cash if amount < 0.0 => cents(amount),
+        WriteTarget::Cash if amount <= 0.0 => cents(amount),
         WriteTarget::Cash => format!("+{}", cents(amount)),
         WriteTarget::Subscribers(_) => format!("{amount:+}"),
     }

@@ -97,7 +97,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "run",
-        "run DAYS                 debug: run days, at most to the first on which a breakpoint becomes true",
+        "run DAYS [until …]       debug: run days, at most to the first on which a breakpoint or the condition becomes true",
     ),
     (
         "back",
@@ -203,6 +203,7 @@ impl Interpreter {
             "rules" => self.rules(rest, column),
             "pause" => self.pause(rest),
             "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
+            "run" => self.run_days(rest, column).unwrap_or_else(usage),
             "back" => self.back(rest, column).unwrap_or_else(usage),
             "find" => self.find_days(rest, column).unwrap_or_else(usage),
             "who" => self.who(rest, column).unwrap_or_else(usage),
@@ -291,7 +292,6 @@ impl Interpreter {
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
-            "run" => self.run_days(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

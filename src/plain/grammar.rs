@@ -46,9 +46,9 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 15] = [
+const TEXT_COMMANDS: [&str; 16] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "pause", "resume",
-    "break", "back", "find", "who",
+    "break", "run", "back", "find", "who",
 ];
 
 /// Reads a line.

@@ -377,6 +377,9 @@ who cash 3
 who cash yesterday
 break clear all
 back
+run soon
+run 3 until cash <
+run 3 until subscribers(S1) < 0   # never
 ";
     let count = asked.lines().count();
     let (said, _) = play(
@@ -413,6 +416,9 @@ back
     assert_eq!(answers[12]["error"], "a whole number is expected, not yesterday");
     assert_eq!(data(13)["removed"].as_array().map(Vec::len), Some(2));
     assert_eq!(answers[14]["code"], "usage");
+    assert_eq!(answers[15]["error"], "run needs a number of days, for instance run 28");
+    assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
+    assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
     // In a run that may not be looked into, every one of them is refused alike before anything of it is read.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, count, problem};
+use super::super::grammar::Problem;
+use super::Interpreter;
 use crate::notation::json_number;
 use crate::report::xray::{
     breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words, writes_in_words, written_by,
@@ -50,13 +50,24 @@ impl Interpreter {
         Ok(shown.unwrap_or_else(|refusal| Answer::refused("break", refusal)))
     }
 
-    /// `run DAYS`
-    pub(super) fn run_days(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+    /// `run DAYS`, `run DAYS until CONDITION`, which sets the condition as `break` does.
+    pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
         if let Err(refusal) = self.session.refuse_to_look_inside() {
             return Ok(Answer::refused("run", refusal));
         }
-        let days = count(arguments)?
-            .ok_or_else(|| problem(arguments, "run needs a number of days, for instance run 28"))?;
+        let (number, until) =
+            without_comment(rest).split_once("until").unwrap_or((without_comment(rest), ""));
+        let days = number.trim().parse().ok().filter(|days| *days > 0).ok_or_else(|| Problem {
+            text: "run needs a number of days, for instance run 28".to_owned(),
+            column,
+        })?;
+        if number.len() < without_comment(rest).len() {
+            let begins = column + number.chars().count() + "until".len();
+            let condition = condition(until, begins)?;
+            if let Err(refusal) = self.session.set_breakpoint(condition) {
+                return Ok(Answer::refused("run", refusal));
+            }
+        }
         let set = self.session.breakpoints().map_or(0, <[Breakpoint]>::len);
         Ok(match self.session.run_until_breakpoint(days, &mut |_| {}) {
             Ok(run) => {

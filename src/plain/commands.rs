@@ -1,9 +1,12 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
+mod breakpoints;
 mod check;
 mod groups;
 mod help;
 mod inbox;
+mod memo;
+mod queries;
 mod readings;
 mod report;
 mod rules;
@@ -28,11 +31,9 @@ use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::research::late_in_words;
-use crate::session::library::NamedQuery;
 use crate::session::record::{Help, Select};
 use crate::session::{
-    Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Refusal, Session, Via, WhatIf,
-    rows_as_json,
+    Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
 };
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
 
@@ -97,6 +98,23 @@ const COMMANDS: &[(&str, &str)] = &[
     (
         "lens",
         "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+    ),
+    (
+        "break",
+        "break [CONDITION]        the same: stop run where a condition becomes true; the list; break clear N|all removes",
+    ),
+    (
+        "run",
+        "run DAYS [until …]       debug: run days, at most to the first on which a breakpoint or the condition becomes true",
+    ),
+    (
+        "back",
+        "back [CONDITION|N]       debug runs and runs that are over: since when a condition or a breakpoint is true or false",
+    ),
+    ("find", "find CONDITION           the same: the days on which a condition became true"),
+    (
+        "who",
+        "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
     ),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
@@ -200,6 +218,11 @@ impl Interpreter {
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
             "pause" => self.pause(rest),
+            "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
+            "run" => self.run_days(rest, column).unwrap_or_else(usage),
+            "back" => self.back(rest, column).unwrap_or_else(usage),
+            "find" => self.find_days(rest, column).unwrap_or_else(usage),
+            "who" => self.who(rest, column).unwrap_or_else(usage),
             "resume" => self.resume(rest),
             _ => self.query(&grammar::statement(rest), QuerySource::Typed),
         }
@@ -216,55 +239,6 @@ impl Interpreter {
         match answer {
             Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
             Err(refusal) => Answer::refused("sql", refusal),
-        }
-    }
-
-    fn queries(&self) -> Answer {
-        let queries = self.library.queries();
-        let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
-        let line = |query: &NamedQuery| format!("{:<width$}  {}", query.name, query.title);
-        let lines: Vec<String> = queries.iter().map(line).collect();
-        let one =
-            |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.what });
-        let data: Vec<Value> = queries.iter().map(one).collect();
-        let text = format!("{}\nqueries NAME runs one of them", lines.join("\n"));
-        Answer::done("queries", text, json!({ "queries": data }))
-    }
-
-    fn named_query(&mut self, name: &str, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let Some(query) = self.library.find(name) else {
-            let near = self.library.near(name);
-            let help = if near.is_empty() {
-                "queries lists them".to_owned()
-            } else {
-                format!("did you mean {}?", near.join(" or "))
-            };
-            return Err(problem(arguments, &format!("there is no query {name}; {help}")));
-        };
-        let sql = query.sql.clone();
-        Ok(self.query(&sql, QuerySource::Library))
-    }
-
-    fn show_memo(&self) -> Answer {
-        match self.session.memo() {
-            Ok(memo) if memo.is_empty() => {
-                Answer::done("memo", "no notes yet".to_owned(), json!({ "memo": "" }))
-            }
-            Ok(memo) => Answer::done("memo", memo.clone(), json!({ "memo": memo })),
-            Err(error) => Answer::refused("memo", Refusal::new("not_readable", error.to_string())),
-        }
-    }
-
-    fn add_to_memo(&mut self, line: &str) -> Answer {
-        let memo = match self.session.memo() {
-            Ok(memo) => memo,
-            Err(error) => return Answer::refused("memo", Refusal::new("not_readable", error.to_string())),
-        };
-        let gap = if memo.is_empty() || memo.ends_with('\n') { "" } else { "\n" };
-        let memo = format!("{memo}{gap}{line}\n");
-        match self.session.set_memo(&memo) {
-            Ok(()) => Answer::done("memo", "noted".to_owned(), json!({ "memo": memo })),
-            Err(refusal) => Answer::refused("memo", refusal),
         }
     }
 

@@ -46,9 +46,9 @@ pub struct Problem {
 }
 
 /// Commands whose text is the rest of the line as it stands.
-const TEXT_COMMANDS: [&str; 12] = [
+const TEXT_COMMANDS: [&str; 17] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "whatif", "pause",
-    "resume",
+    "resume", "break", "run", "back", "find", "who",
 ];
 
 /// Reads a line.

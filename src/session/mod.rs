@@ -118,6 +118,12 @@ pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
 
+pub use xray::breakpoint::condition::{Condition, Direction, Judged, Relation, WorldEvent};
+pub use xray::breakpoint::grammar::ConditionProblem;
+pub use xray::breakpoint::list::Breakpoint;
+pub use xray::breakpoint::look_back::LookBack;
+pub use xray::breakpoint::measure::{Measure, MeasureKind, Quantity};
+pub use xray::breakpoint::run::{Hit, RunUntil};
 pub use xray::company_lens::{CompanyDay, CompanyLens, JudgedPlan};
 pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
 pub use xray::customer_lens::CustomerLens;
@@ -131,15 +137,17 @@ pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, Reputat
 pub use xray::rival_state::{NextRivalMove, RivalState};
 pub use xray::satisfaction_equation::{MoodTerm, SatisfactionEquation};
 pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
+pub use xray::writes::target::WriteTarget;
+pub use xray::writes::{WhoWrites, Write, WrittenBy};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
 pub use crate::world::enterprise::Answer as CompanyAnswer;
-pub use crate::world::events::{Category, EndCause, Severity};
+pub use crate::world::events::{Category, EndCause, Severity, Source};
 pub use crate::world::market::competitors::Event as RivalEvent;
 pub use crate::world::market::drift::Expectation;
-pub use crate::world::market::reputation::Spill;
+pub use crate::world::market::reputation::{ReputationCause, Spill, SpillOver};
 pub use crate::world::market::surges::Surge;
 pub use crate::world::settings::{CoreSettings, Settings};

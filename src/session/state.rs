@@ -23,6 +23,7 @@ use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::session::witness::code_words;
+use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::session::xray::hidden_day::Diary;
 use crate::tools::Numbers;
 use crate::voice::CompanyNames;
@@ -63,6 +64,8 @@ pub struct Session {
     pub(super) shadow: Option<Box<Session>>,
     /// What was seen of its days.
     pub(super) diary: Arc<Diary>,
+    /// Conditions at which it stops.
+    pub(super) breakpoints: Breakpoints,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

@@ -15,6 +15,7 @@ use super::held::Held;
 use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
+use super::market::reputation::ReputationWrite;
 use super::market::social::crowd::{self, Voices};
 use super::market::social::opinions::Scene;
 use super::market::social::press;
@@ -120,13 +121,15 @@ pub fn step_day_watched(
     };
     let decided = decide(customers, felt.calls, &judgement, watch);
     issues::record(decided.settled, facts);
-    let renewals = renewal::conclude(decided.decisions, &mut market.reputation, params, facts);
+    let mut told = |write: &ReputationWrite<'_>| watch.reputation_moved(write);
+    let renewals = renewal::conclude(decided.decisions, &mut market.reputation, params, facts, &mut told);
     let talks = Negotiation { day: &today, product, drift: &market.drift };
     watch.before_negotiations(enterprise, customers, &talks);
-    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts);
+    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut told);
     let knowledge = market.knowledge;
     let moods = satisfaction::by_group(felt.moods);
-    reputation::contribute(&mut market.reputation, &moods, |group| knowledge[group].level >= 1, params);
+    let is_known = |group: Group| knowledge[group].level >= 1;
+    reputation::contribute(&mut market.reputation, &moods, is_known, params, &mut told);
     let (gave_up, lost) = (&renewals.gave_up, &negotiated.lost);
     watch.reputation_settled(&SettledReputation { day: &today, gave_up, lost, moods: &moods, market });
 
@@ -174,6 +177,7 @@ pub fn step_day_watched(
         total_costs: costs,
         ..closing_figures(world)
     };
+    watch.day_counted(&figures);
     watch.day_over(world, params, facts);
     (figures, DayTrace { leads: factors })
 }

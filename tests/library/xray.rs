@@ -229,7 +229,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
 }
 
 /// A debug run that courts companies and offers each what it asked for, or a little less.
-fn courted(folder: &Path, count: u32) -> Session {
+pub fn courted(folder: &Path, count: u32) -> Session {
     let new = NewRun {
         seed: Some(11),
         cash: Some(20_000_000.0),

@@ -438,3 +438,88 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         assert_eq!((&answer["code"], &answer["error"]), (&"not_in_this_mode".into(), &answers[0]["error"]));
     }
 }
+
+#[test]
+fn breakpoints_stop_debug_runs_and_refuse_others_whatever_is_asked() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let asked = "\
+break subscribers(S1) >= 20   # a group
+break reputation(S3) falls
+break chrun(S1) > 5%
+break clear two
+break
+run 70
+back 1
+back 9
+back churn(S1) > 5% over 7
+find leads(S1) > 0
+who reputation(S1)
+who cash 3
+who cash yesterday
+break clear all
+back
+run soon
+run 3 until cash <
+run 3 until subscribers(S1) < 0   # never
+";
+    let count = asked.lines().count();
+    let (said, _) = play(
+        runs.path(),
+        &["--seed", "7", "--days", "70", "--mode", "debug", "--json"],
+        format!("{EXAMPLE}{asked}"),
+    );
+    let said = objects(&said);
+    let answers = &said[said.len() - count - 1..];
+    let data = |at: usize| &answers[at]["data"];
+    assert_eq!(data(0)["condition"], "subscribers(S1) >= 20");
+    assert_eq!(
+        (&answers[2]["error"], &answers[2]["column"]),
+        (&"chrun is not a figure; did you mean churn?".into(), &7.into())
+    );
+    assert_eq!(answers[3]["column"], 13);
+    assert_eq!(data(4)["breakpoints"].as_array().map(Vec::len), Some(2));
+    let day = data(5)["day"].as_u64().expect("a day");
+    let stop = &data(5)["stopped_by"][0];
+    assert_eq!(
+        (&stop["day"], &stop["true"], &stop["true_before"]),
+        (&day.into(), &true.into(), &false.into())
+    );
+    assert_eq!(data(6)["conditions"].as_array().map(Vec::len), Some(1));
+    assert_eq!(answers[7]["code"], "breakpoint_unknown");
+    assert_eq!(data(8)["conditions"][0]["condition"], "churn(S1) > 0.05 over 7");
+    assert!(!data(9)["days"].as_array().expect("days").is_empty());
+    let number = |value: &Value| value.as_f64().expect("a number");
+    for at in [10, 11] {
+        let writes = data(at)["writes"].as_array().expect("writes");
+        let sum: f64 = writes.iter().map(|write| number(&write["amount"])).sum();
+        assert!((number(&data(at)["first"]) + sum - number(&data(at)["last"])).abs() < 1e-9, "{}", data(at));
+    }
+    assert_eq!(answers[12]["error"], "a whole number is expected, not yesterday");
+    assert_eq!(data(13)["removed"].as_array().map(Vec::len), Some(2));
+    assert_eq!(answers[14]["code"], "usage");
+    assert_eq!(answers[15]["error"], "run needs a number of days, for instance run 28");
+    assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
+    assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
+    // In a run that may not be looked into, every one of them is refused alike before anything of it is read.
+    let (said, _) =
+        play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
+    let said = objects(&said);
+    let told = &said[said.len() - count - 1..said.len() - 1];
+    for one in told {
+        assert_eq!((&one["code"], &one["error"]), (&"not_in_this_mode".into(), &told[0]["error"]), "{one}");
+    }
+    let (text, _) = play(
+        runs.path(),
+        &["--seed", "7", "--days", "70", "--mode", "debug"],
+        format!("{EXAMPLE}break subscribers(S1) >= 20\nrun 70\nwho reputation(S1)\nback 1\n"),
+    );
+    for part in [
+        "breakpoint 1: subscribers(S1) >= 20; run DAYS stops there",
+        "\nstopped on day ",
+        " >= 20 (day before ",
+        "mood of ",
+        "last false on day ",
+    ] {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+}

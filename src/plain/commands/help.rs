@@ -42,6 +42,21 @@ pause                     stops the clock for a break; until resume, only resume
 pause REASON              the same with a reason, which is recorded, for instance pause lunch
 Time that the clock stands counts as no playing time.";
 
+const BREAK: &str = "\
+break                     the breakpoints with their numbers
+break CONDITION           sets one; run DAYS stops on the first day on which it becomes true. For instance
+                          break churn(S1) > 5% over 7
+                          break reputation(S3) falls
+                          break leads(S1) rises over 7
+                          break event rival
+break clear N             removes one; break clear all removes all of them
+A condition is FIGURE > NUMBER, with >, >=, < or <=, FIGURE rises, FIGURE falls, or event rival, drift, surge or outage.
+over DAYS sums what adds up, and takes shares over so many days. Figures of a group, as in subscribers(S1): subscribers,
+leads, new_subscribers, conversion, cancellations, churn, usage, open_issues, reputation, satisfaction, relationship.
+Figures of the company: cash, recurring_revenue, payments, running_costs, subscribers, seats, leads, individual_leads,
+new_subscribers, new_seats, conversion, cancellations, churn, upgrades, downgrades, usage, overload, downtime_minutes,
+open_issues.";
+
 /// The explanation of a command that has one of its own.
 fn in_full(name: &str, led: bool) -> Option<String> {
     let text = match name {
@@ -53,6 +68,7 @@ fn in_full(name: &str, led: bool) -> Option<String> {
         "check" => CHECK,
         "xray" if !led => xray::IN_FULL,
         "pause" => PAUSE,
+        "break" => BREAK,
         _ if NEXT.contains(&name) => return Some(next_in_full(led)),
         _ => return None,
     };
@@ -63,7 +79,7 @@ fn in_full(name: &str, led: bool) -> Option<String> {
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
 /// Not for participants of a study: refused in their runs.
-const NOT_LED: [&str; 3] = ["branch", "step", "xray"];
+const NOT_LED: [&str; 8] = ["branch", "step", "xray", "break", "run", "back", "find", "who"];
 
 /// The commands, for participants of a study or others.
 fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -1,5 +1,6 @@
 //! What the x-ray shows, in words: the same lines for plain mode and for the console.
 
+mod breakpoints;
 mod company;
 mod customer;
 mod leads;
@@ -8,7 +9,9 @@ mod quality;
 mod reputation;
 mod satisfaction;
 mod streams;
+mod writes;
 
+pub use breakpoints::{breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words};
 pub use company::company_in_words;
 pub use customer::customer_in_words;
 pub use leads::leads_in_words;
@@ -17,6 +20,7 @@ pub use quality::quality_in_words;
 pub use reputation::{reputation_in_words, spillover_in_words};
 pub use satisfaction::satisfaction_in_words;
 pub use streams::streams_in_words;
+pub use writes::{writes_in_words, written_by};
 
 /// A table, indented.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {

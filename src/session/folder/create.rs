@@ -24,6 +24,7 @@ use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::now;
+use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::world::MECHANICS;
 use crate::world::params::Params;
 
@@ -164,6 +165,7 @@ impl Session {
             seal_key: SealKey::default(),
             shadow: None,
             diary: Arc::default(),
+            breakpoints: Breakpoints::default(),
             clock: PersonalClock::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),

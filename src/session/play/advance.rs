@@ -124,14 +124,35 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_saved`.
     pub fn step(&mut self, days: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
+        self.step_while(&|_| true, days, progress)
+    }
+
+    /// As [`Session::step`], as long as it is to go on after a day.
+    ///
+    /// # Errors
+    /// The same.
+    pub(in crate::session) fn step_while(
+        &mut self,
+        goes_on: &dyn Fn(u32) -> bool,
+        days: u32,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        self.refuse_to_step()?;
+        let from = self.simulation.world.day;
+        let until = self.next_decision_day().min(from.saturating_add(days.max(1)));
+        let state = self.run_days_while(goes_on, until, progress);
+        Ok(self.close_days(Record::Step, from, state))
+    }
+
+    /// Refuses single days where there are none.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`.
+    pub(in crate::session) fn refuse_to_step(&self) -> Result<(), Refusal> {
         if self.manifest.mode != crate::session::folder::mode::Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
-        self.refuse_if_over(Kind::Time)?;
-        let until = self.next_decision_day().min(self.simulation.world.day + days.max(1));
-        let from = self.simulation.world.day;
-        let state = self.run_days(until, progress);
-        Ok(self.close_days(Record::Step, from, state))
+        self.refuse_if_over(Kind::Time)
     }
 
     /// Gives up an unfinished run for good.
@@ -163,10 +184,25 @@ impl Session {
         until: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> StateHash {
+        self.run_days_while(&|_| true, until, progress)
+    }
+
+    /// As [`Session::run_days`], as long as it is to go on after a day.
+    fn run_days_while(
+        &mut self,
+        goes_on: &dyn Fn(u32) -> bool,
+        until: u32,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> StateHash {
+        let from = self.simulation.world.day;
         let week_end = self.next_decision_day();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
+            let day = self.simulation.world.day;
+            if day > from && !goes_on(day) {
+                break;
+            }
             let figures =
                 self.simulation.simulate_day(&nothing, self.projection.entries(), day_before.take());
             self.simulation.judge_own_posts(self.projection.entries());

@@ -95,9 +95,7 @@ impl Simulation {
 
     /// Active subscribers with an open issue.
     pub(in crate::session) fn open_issues(&self) -> u32 {
-        let open = |days: &&u32| **days > 0;
-        let blocks = self.world.customers.blocks();
-        blocks.map(|(_, block)| block.open_issue_days.iter().filter(open).count() as u32).sum()
+        self.world.customers.blocks().map(|(_, block)| block.open_issues()).sum()
     }
 
     /// Hash of the whole state with one hash per part, by name.
@@ -113,6 +111,7 @@ impl Simulation {
     /// Does what a command does.
     pub(in crate::session) fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
         self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
+        self.watch.called(&self.facts);
     }
 
     /// The world, and facts to be filled, for what happens between two days.

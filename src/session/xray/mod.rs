@@ -3,6 +3,7 @@
 //! Past days are simulated again beside the run, and watched on the way: what is shown is what the functions of the
 //! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
 
+pub(in crate::session) mod breakpoint;
 pub(in crate::session) mod company_lens;
 pub(in crate::session) mod customer_diary;
 pub(in crate::session) mod customer_lens;
@@ -12,6 +13,7 @@ pub(in crate::session) mod hidden_day;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;
+pub(in crate::session) mod mood;
 pub(in crate::session) mod next_draws;
 pub(in crate::session) mod permission;
 pub(in crate::session) mod quality_equation;
@@ -20,6 +22,7 @@ pub(in crate::session) mod rival_state;
 pub(in crate::session) mod satisfaction_equation;
 pub(in crate::session) mod shadow;
 pub(in crate::session) mod weighed;
+pub(in crate::session) mod writes;
 
 #[cfg(test)]
 mod tests;

@@ -67,9 +67,9 @@ impl ReputationDay {
             least: LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs },
             ..ReputationDay::default()
         };
-        let damages = damages(settled.gave_up, settled.day);
-        for (person, damage) in settled.gave_up.iter().zip(damages) {
-            writing.count(person.group, -damage, &mut seen.gave_up);
+        let changes = damages(settled.gave_up, settled.day);
+        for (person, change) in settled.gave_up.iter().zip(changes) {
+            writing.count(person.group, change, &mut seen.gave_up);
         }
         for company in settled.lost {
             writing.count(company.group, -company.damage, &mut seen.lost);

@@ -182,6 +182,11 @@ impl Block {
         self.n.is_empty()
     }
 
+    /// How many have an open issue.
+    pub fn open_issues(&self) -> u32 {
+        self.open_issue_days.iter().filter(|days| **days > 0).count() as u32
+    }
+
     /// Position of the customer with this running number.
     pub fn position(&self, n: u32) -> Option<usize> {
         self.n.binary_search(&n).ok()

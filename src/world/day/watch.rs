@@ -4,11 +4,12 @@ use crate::context::DayContext;
 use crate::customers::Customers;
 use crate::customers::columns::Block;
 use crate::enterprise::{CompanyLost, Enterprise, Negotiation};
-use crate::events::Facts;
+use crate::events::{DayFigures, Facts};
 use crate::identifiers::{ByGroup, Group};
 use crate::market::Market;
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
+use crate::market::reputation::ReputationWrite;
 use crate::market::social::crowd::GaveUp;
 use crate::morning::Morning;
 use crate::params::Params;
@@ -61,6 +62,16 @@ pub trait DayWatch: Send + Sync {
         _factors: &ByGroup<LeadFactors>,
     ) {
     }
+
+    /// A call of the player was applied between two days, with the facts it left.
+    fn called(&self, _facts: &Facts) {}
+
+    /// A mechanism has moved a reputation: individuals of a block who left, a company that was lost, the mood of a
+    /// group, what spills over from another.
+    fn reputation_moved(&self, _write: &ReputationWrite<'_>) {}
+
+    /// The figures of the day, before it is over.
+    fn day_counted(&self, _figures: &DayFigures) {}
 
     /// The day is over: the world and the facts as they stay.
     fn day_over(&self, _world: &World, _params: &Params, _facts: &Facts) {}

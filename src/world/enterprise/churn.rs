@@ -5,7 +5,7 @@ use super::{Standing, Step};
 use crate::customers::columns::Subscriber;
 use crate::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
 use crate::identifiers::Group;
-use crate::market::reputation::event_damage;
+use crate::market::reputation::{ReputationCause, event_damage};
 use crate::params::Params;
 use crate::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
 use crate::random::Part;
@@ -152,7 +152,7 @@ impl Step<'_> {
         let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
         let law = &self.day.params.reputation;
         let damage = event_damage(self.day.morning.subscribers[group], u, law);
-        self.reputation.move_by(group, -damage, law);
+        self.reputation.write((group, ReputationCause::LostCompany), &[-damage], law, self.told);
         damage
     }
 }

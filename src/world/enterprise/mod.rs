@@ -33,7 +33,7 @@ use super::context::DayContext;
 use super::customers::Customers;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
 use super::market::drift::DriftTotals;
-use super::market::reputation::ReputationBook;
+use super::market::reputation::{OnWrite, ReputationBook};
 use super::product::Product;
 
 /// Negotiations with companies.
@@ -99,6 +99,7 @@ impl Enterprise {
         reputation: &mut ReputationBook,
         talks: &Negotiation<'_>,
         facts: &mut Facts,
+        told: &mut OnWrite<'_>,
     ) -> EnterpriseDay {
         let day = talks.day;
         let view = self.live_view(day.params.fidelity.reappearing_threads);
@@ -107,6 +108,7 @@ impl Enterprise {
             enterprise: self,
             customers,
             reputation,
+            told,
             day,
             talks,
             facts,
@@ -227,6 +229,8 @@ struct Step<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
+    /// Who is told of what moves reputations.
+    told: &'a mut OnWrite<'a>,
     day: &'a DayContext<'a>,
     talks: &'a Negotiation<'a>,
     facts: &'a mut Facts,

@@ -134,7 +134,8 @@ impl Kit {
         let mut customers = std::mem::take(&mut self.customers);
         let mut reputation = self.reputation.clone();
         let mut facts = std::mem::take(&mut self.facts);
-        let result = self.with(|day| enterprise.step(&mut customers, &mut reputation, day, &mut facts));
+        let result =
+            self.with(|day| enterprise.step(&mut customers, &mut reputation, day, &mut facts, &mut |_| {}));
         (self.enterprise, self.customers, self.facts) = (enterprise, customers, facts);
         self.reputation = reputation;
         result

@@ -13,6 +13,50 @@ pub struct ReputationBook {
 
 canonical! { ReputationBook { values } }
 
+/// What moved a reputation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ReputationCause {
+    /// Individuals found nothing acceptable and left.
+    Departures,
+    /// A company was lost.
+    LostCompany,
+    /// What the group's own subscribers say: their contributions today.
+    Mood(Mood),
+    /// What subscribers of another group say.
+    SpillOver(SpillOver),
+}
+
+/// The share of a group's change that reaches another: change × weight × factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpillOver {
+    /// Where it comes from.
+    pub source: Group,
+    /// Change of the source by the mood of its own subscribers.
+    pub change: f64,
+    /// Weight of the source on the group.
+    pub weight: f64,
+    /// What all spill-over is multiplied by.
+    pub factor: f64,
+}
+
+/// Changes that one mechanism made to a reputation, one after the other, and what they came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReputationWrite<'a> {
+    /// Whose reputation it is.
+    pub group: Group,
+    /// Which mechanism it was.
+    pub cause: ReputationCause,
+    /// What was added, before limits.
+    pub changes: &'a [f64],
+    /// Reputation before the first of them.
+    pub before: f64,
+    /// Reputation after the last of them.
+    pub after: f64,
+}
+
+/// Who is told of each write.
+pub type OnWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
+
 impl ReputationBook {
     /// Everybody starts with the same reputation; groups without a stored one read as it too.
     pub fn opening(params: &Params) -> ReputationBook {
@@ -33,6 +77,19 @@ impl ReputationBook {
     pub fn move_by(&mut self, group: Group, change: f64, law: &Reputation) {
         let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
         self.values[group] = moved.max(law.reputation_floor);
+    }
+
+    /// Adds changes, one after the other, and tells what they came to.
+    pub fn write(
+        &mut self,
+        (group, cause): (Group, ReputationCause),
+        changes: &[f64],
+        law: &Reputation,
+        told: &mut OnWrite<'_>,
+    ) {
+        let before = self.of(group);
+        changes.iter().for_each(|change| self.move_by(group, *change, law));
+        told(&ReputationWrite { group, cause, changes, before, after: self.of(group) });
     }
 }
 
@@ -103,18 +160,21 @@ pub fn contribute(
     moods: &ByGroup<Mood>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
+    told: &mut OnWrite<'_>,
 ) {
     let law = &params.reputation;
     for group in Group::all().filter(|group| moods[*group].count > 0) {
         let Some(change) = daily_change(&moods[group], law) else { continue };
-        book.move_by(group, change, law);
+        book.write((group, ReputationCause::Mood(moods[group])), &[change], law, told);
         if !is_known(group) {
             continue;
         }
         for other in Group::all().filter(|other| *other != group && is_known(*other)) {
             let spill = spill(change, group, other, params);
             if spill.counts {
-                book.move_by(other, spill.change, law);
+                let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
+                let cause = ReputationCause::SpillOver(SpillOver { source: group, change, weight, factor });
+                book.write((other, cause), &[spill.change], law, told);
             }
         }
     }
@@ -142,7 +202,7 @@ mod tests {
             }
         }
         let known = |group: Group| group.initially_known() || discovered.contains(&group.id());
-        contribute(&mut book, &by_group, known, &params);
+        contribute(&mut book, &by_group, known, &params, &mut |_| {});
         book
     }
 

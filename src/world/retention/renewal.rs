@@ -4,7 +4,7 @@ use crate::context::DayContext;
 use crate::customers::columns::{BLOCK, Block};
 use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::identifiers::{ByGroup, Group, Plan};
-use crate::market::reputation::{ReputationBook, cancel_damage};
+use crate::market::reputation::{OnWrite, ReputationBook, ReputationCause, cancel_damage};
 use crate::market::social::crowd::GaveUp;
 use crate::params::{DriftCounted, InvoluntaryChurn, Params};
 use crate::random::{Part, Streams, Word, word_below};
@@ -68,8 +68,10 @@ pub struct RenewalContext<'a> {
 #[derive(Default)]
 pub struct Decisions {
     endings: Vec<SubscriptionEnded>,
-    /// Those who found nothing acceptable, with the damage to their group's reputation.
-    gave_up: Vec<(GaveUp, f64)>,
+    /// Those who found nothing acceptable.
+    gave_up: Vec<GaveUp>,
+    /// What each of them does to the reputation of their group.
+    damages: Vec<f64>,
     switches: Vec<(bool, TermsChanged)>,
 }
 
@@ -80,6 +82,7 @@ pub fn conclude(
     reputation: &mut ReputationBook,
     params: &Params,
     facts: &mut Facts,
+    told: &mut OnWrite<'_>,
 ) -> Renewals {
     let mut renewals = Renewals::default();
     for decided in by_block {
@@ -93,15 +96,16 @@ pub fn conclude(
         }
         renewals.cancellations += decided.endings.len() as u32;
         facts.endings.extend(decided.endings);
-        for (person, damage) in decided.gave_up {
-            reputation.move_by(person.group, -damage, &params.reputation);
-            renewals.gave_up.push(person);
+        if let Some(person) = decided.gave_up.first() {
+            let write = (person.group, ReputationCause::Departures);
+            reputation.write(write, &decided.damages, &params.reputation, told);
         }
+        renewals.gave_up.extend(decided.gave_up);
     }
     renewals
 }
 
-/// What each of those who found nothing acceptable does to the reputation of their group.
+/// By how much each of those who found nothing acceptable changes the reputation of their group: negative.
 pub fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
@@ -109,7 +113,7 @@ pub fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
     let damage = |(person, roll): (&GaveUp, Word)| {
         let subscribers = morning.subscribers[person.group];
-        cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
+        -cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
     };
     gave_up.iter().zip(rolls).map(damage).collect()
 }
@@ -137,7 +141,7 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
         true => payment_rolls(group, number, morning.day, judgement.day.streams),
         false => [0; BLOCK as usize],
     };
-    let (mut gone, mut gave_up) = (Vec::new(), Vec::new());
+    let mut gone = Vec::new();
     for at in due {
         let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
             Some(EndCause::Involuntary)
@@ -156,13 +160,12 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
             gone.push(at);
             outcome.endings.push(ending(group, block, at, cause, morning.day));
             if cause != EndCause::Involuntary {
-                gave_up.push(person(group, block, at, morning.day));
+                outcome.gave_up.push(person(group, block, at, morning.day));
             }
         }
     }
     block.remove(&gone);
-    let damages = damages(&gave_up, judgement.day);
-    outcome.gave_up = gave_up.into_iter().zip(damages).collect();
+    outcome.damages = damages(&outcome.gave_up, judgement.day);
     outcome
 }
 
@@ -356,7 +359,7 @@ mod tests {
         let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
         let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
             let decided = customers.sweep(|group, number, block| decide(group, number, block, judgement));
-            conclude(decided, &mut reputation, judgement.day.params, &mut facts)
+            conclude(decided, &mut reputation, judgement.day.params, &mut facts, &mut |_| {})
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
         assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));

@@ -1,0 +1,39 @@
+//! `queries`: the library of queries, and what one of them answers.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Interpreter, problem};
+use crate::session::QuerySource;
+use crate::session::library::NamedQuery;
+
+impl Interpreter {
+    /// `queries`
+    pub(super) fn queries(&self) -> Answer {
+        let queries = self.library.queries();
+        let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
+        let line = |query: &NamedQuery| format!("{:<width$}  {}", query.name, query.title);
+        let lines: Vec<String> = queries.iter().map(line).collect();
+        let one =
+            |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.what });
+        let data: Vec<Value> = queries.iter().map(one).collect();
+        let text = format!("{}\nqueries NAME runs one of them", lines.join("\n"));
+        Answer::done("queries", text, json!({ "queries": data }))
+    }
+
+    /// `queries NAME`
+    pub(super) fn named_query(&mut self, name: &str, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let Some(query) = self.library.find(name) else {
+            let near = self.library.near(name);
+            let help = if near.is_empty() {
+                "queries lists them".to_owned()
+            } else {
+                format!("did you mean {}?", near.join(" or "))
+            };
+            return Err(problem(arguments, &format!("there is no query {name}; {help}")));
+        };
+        let sql = query.sql.clone();
+        Ok(self.query(&sql, QuerySource::Library))
+    }
+}

@@ -1,0 +1,157 @@
+//! Conditions, why a run stopped, and since when they hold, in words.
+
+use crate::notation::point_number;
+use crate::report::words::count;
+use crate::session::{Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil};
+
+/// Decimals that a figure is written with at least.
+const DECIMALS: usize = 4;
+/// Decimals at most, where fewer would not tell two numbers apart.
+const MOST_DECIMALS: usize = 12;
+
+/// The breakpoints that are set, one in a line.
+pub fn breakpoints_in_words(set: &[Breakpoint]) -> Vec<String> {
+    match set.is_empty() {
+        true => vec!["no breakpoint is set; for instance: break churn(S1) > 0.05 over 7".to_owned()],
+        false => set.iter().map(|own| format!("{}  {}", own.number, own.condition)).collect(),
+    }
+}
+
+/// Why days stopped: each breakpoint that became true with both sides, or that none did.
+pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String> {
+    let hit = |hit: &Hit| {
+        let Hit { breakpoint, judged } = hit;
+        format!(
+            "stopped on day {day}: {} · breakpoint {}",
+            sides(&breakpoint.condition, judged),
+            breakpoint.number
+        )
+    };
+    let from = run.from + 1;
+    match (run.hits.is_empty(), breakpoints) {
+        (false, _) => run.hits.iter().map(hit).collect(),
+        (true, 0) => vec![format!("ran day {from} to {day}; no breakpoint is set")],
+        (true, 1) => vec![format!("ran day {from} to {day}; the breakpoint did not become true")],
+        (true, count) => {
+            vec![format!("ran day {from} to {day}; none of the {count} breakpoints became true")]
+        }
+    }
+}
+
+/// Since when a condition is what it is today, with both sides of the change.
+pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
+    let LookBack { condition, today, last_true, last_false } = own;
+    let is = if today.is_true { "true" } else { "false" };
+    let mut lines = vec![format!("{condition} is {is} on day {}: {}", today.day, sides(condition, today))];
+    lines.push(match if today.is_true { last_false } else { last_true } {
+        None if today.is_true => "it was true on every day".to_owned(),
+        None => "it was true on no day".to_owned(),
+        Some(other) => format!(
+            "last {} on day {}: {}; {is} since day {}",
+            if today.is_true { "false" } else { "true" },
+            other.day,
+            sides(condition, other),
+            own.since()
+        ),
+    });
+    lines
+}
+
+/// The days on which a condition became true.
+pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) -> Vec<String> {
+    let days = count(last_day, "day");
+    let head = match found.len() {
+        0 => format!("{condition} became true on none of {days}"),
+        often => format!("{condition} became true on {often} of {days}"),
+    };
+    let line = |own: &Judged| format!("  day {:<4} {}", own.day, sides(condition, own));
+    std::iter::once(head).chain(found.iter().map(line)).collect()
+}
+
+/// Both sides in numbers: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A comparison that does not hold says so.
+fn sides(condition: &Condition, judged: &Judged) -> String {
+    let value =
+        |value: Option<f64>, others: &[f64]| value.map_or("no value".to_owned(), |own| told(own, others));
+    match condition {
+        Condition::Compared(quantity, relation, threshold) => {
+            let sign = match (judged.is_true, judged.value) {
+                (true, _) => format!(" {} {threshold}", relation.sign()),
+                (false, Some(_)) => format!(" {} {threshold}", opposite(*relation)),
+                (false, None) => String::new(),
+            };
+            let of_value = value(judged.value, &[*threshold]);
+            let of_before = value(judged.before, &[*threshold]);
+            format!("{quantity}{} = {of_value}{sign} (day before {of_before})", quantity.span())
+        }
+        Condition::Moved(quantity, direction) => {
+            let moves = match (judged.is_true, direction) {
+                (true, direction) => direction.word(),
+                (false, Direction::Rises) => "does not rise",
+                (false, Direction::Falls) => "does not fall",
+            };
+            let of_value = value(judged.value, judged.before.as_slice());
+            let of_before = value(judged.before, judged.value.as_slice());
+            format!("{quantity}{} = {of_value}, {moves} (day before {of_before})", quantity.span())
+        }
+        Condition::Event(event) => {
+            let said = |happens: bool| if happens { "yes" } else { "no" };
+            let (today, before) = (said(judged.is_true), said(judged.was_true));
+            format!("event {} {today} (day before {before})", event.id())
+        }
+    }
+}
+
+fn opposite(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Above => Relation::AtMost.sign(),
+        Relation::AtLeast => Relation::Below.sign(),
+        Relation::Below => Relation::AtLeast.sign(),
+        Relation::AtMost => Relation::Above.sign(),
+    }
+}
+
+/// A number with as few decimals as tell it from others; whole numbers without any.
+fn told(value: f64, others: &[f64]) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e15 {
+        return format!("{value:.0}");
+    }
+    let rounded = |value: f64, decimals: usize| format!("{value:.decimals$}").parse::<f64>().unwrap_or(value);
+    let differs = |decimals: &usize| {
+        let order = |other: f64| rounded(value, *decimals).partial_cmp(&rounded(other, *decimals));
+        others.iter().all(|other| order(*other) == value.partial_cmp(other))
+    };
+    let decimals = (DECIMALS..=MOST_DECIMALS).find(differs);
+    decimals.map_or_else(|| point_number(value), |decimals| format!("{value:.decimals$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_sides_of_a_fall_are_told_apart_and_no_finer() {
+        let condition: Condition = "reputation(S3) falls".parse().expect("a condition");
+        let mut judged =
+            Judged { day: 39, value: Some(0.507881), before: Some(0.507912), is_true: true, was_true: false };
+        let said = sides(&condition, &judged);
+        assert_eq!(said, "reputation(S3) = 0.50788, falls (day before 0.50791)");
+        (judged.before, judged.is_true) = (None, false);
+        assert_eq!(
+            sides(&condition, &judged),
+            "reputation(S3) = 0.5079, does not fall (day before no value)"
+        );
+    }
+
+    #[test]
+    fn numbers_are_written_so_that_they_stay_apart() {
+        for (value, other, written) in [
+            (0.05234, 0.05, "0.0523"),
+            (0.050_000_4, 0.05, "0.0500004"),
+            (0.05, 0.05, "0.0500"),
+            (1200.0, 1000.0, "1200"),
+            (0.049_999_999_999_999_996, 0.05, "0.049999999999999996"),
+        ] {
+            assert_eq!(told(value, &[other]), written);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Who wrote a figure on a day, in words.
+
+use super::table;
+use crate::notation::{cents, grouped};
+use crate::report::words::category_name;
+use crate::session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
+
+/// The figure before and after the day, and each write with its amount and what the figure was after it.
+pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
+    let WhoWrites { target, day, first, last, writes } = own;
+    let value = |value: f64| value_of(*target, value);
+    let change = amount_of(*target, last - first);
+    let mut lines =
+        vec![format!("{target} on day {day}: {} → {}, change {change}", value(*first), value(*last))];
+    if writes.is_empty() {
+        lines.push("nothing wrote to it".to_owned());
+        return lines;
+    }
+    let row = |write: &Write| {
+        let amount = amount_of(*target, write.amount());
+        vec![written_by(write), amount, value(write.after), notes(*target, write)]
+    };
+    lines.extend(table(&["by", "amount", "after", ""], &writes.iter().map(row).collect::<Vec<_>>()));
+    lines
+}
+
+/// What wrote, in words: `departures (17)`, `spill-over from S1`, `payments`.
+pub fn written_by(write: &Write) -> String {
+    let count = write.changes.len();
+    match write.by {
+        WrittenBy::Reputation(ReputationCause::Departures) => format!("departures ({count})"),
+        WrittenBy::Reputation(ReputationCause::LostCompany) => format!("lost companies ({count})"),
+        WrittenBy::Reputation(ReputationCause::Mood(mood)) => format!("mood of {} subscribers", mood.count),
+        WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
+            format!("spill-over from {}", spill.source)
+        }
+        WrittenBy::Booked(category) => category_name(category).to_owned(),
+        WrittenBy::Left(cause) => format!("left: {}", why_left(cause)),
+        WrittenBy::SignedUp(source) => format!("signed up: {}", source.id()),
+        WrittenBy::FirstDeals => "first deals".to_owned(),
+    }
+}
+
+/// Why subscribers left.
+fn why_left(cause: EndCause) -> &'static str {
+    match cause {
+        EndCause::Involuntary => "payment failed",
+        EndCause::Quality => "no plan clears, unhappy",
+        EndCause::Price => "no plan clears",
+        EndCause::ExtendedIssue => "an issue stayed open",
+        EndCause::QualityChange => "quality",
+        EndCause::QuotaChange => "quota",
+        EndCause::PriceSensitivity => "price",
+        EndCause::LeadTimeout | EndCause::LeadSilent | EndCause::LeadRejected => {
+            "a lead that came to nothing"
+        }
+    }
+}
+
+/// How the amount came about, and whether a limit held it.
+fn notes(target: WriteTarget, write: &Write) -> String {
+    let how = match write.by {
+        WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
+            format!("{:+.9} of {} × {} × {}", spill.change, spill.source, spill.weight, spill.factor)
+        }
+        WrittenBy::Reputation(ReputationCause::Mood(mood)) => {
+            format!("contributions {:+.6}", mood.sum)
+        }
+        _ => String::new(),
+    };
+    match write.is_limited() {
+        true => {
+            let asked = amount_of(target, write.asked());
+            format!("{how} limited: {asked} without limits").trim().to_owned()
+        }
+        false => how,
+    }
+}
+
+fn value_of(target: WriteTarget, value: f64) -> String {
+    match target {
+        WriteTarget::Reputation(_) => format!("{value:.9}"),
+        WriteTarget::Cash => cents(value),
+        WriteTarget::Subscribers(_) => grouped(value, 0),
+    }
+}
+
+fn amount_of(target: WriteTarget, amount: f64) -> String {
+    match target {
+        WriteTarget::Reputation(_) => format!("{amount:+.9}"),
+        WriteTarget::Cash if amount <= 0.0 => cents(amount),
+        WriteTarget::Cash => format!("+{}", cents(amount)),
+        WriteTarget::Subscribers(_) => format!("{amount:+}"),
+    }
+}

@@ -1,0 +1,242 @@
+//! How conditions are written (docs/debugging.md#breakpoints).
+
+use std::str::FromStr;
+
+use super::condition::{Condition, Direction, Relation, WorldEvent};
+use super::measure::{Measure, NoQuantity, Quantity};
+use crate::notation::nearest;
+use crate::world::identifiers::Group;
+
+/// What is wrong with a text, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ConditionProblem {
+    /// What is wrong and what would be right.
+    pub message: String,
+    /// Column in the text, from 1, in characters.
+    pub column: usize,
+}
+
+/// A word, or a sign that stands for itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Token<'a> {
+    text: &'a str,
+    column: usize,
+}
+
+/// Reads words and signs one after the other; a # begins a comment.
+pub(in crate::session) struct Words<'a> {
+    tokens: Vec<Token<'a>>,
+    at: usize,
+    end: usize,
+}
+
+impl<'a> Words<'a> {
+    /// Those of a text.
+    pub(in crate::session) fn of(text: &'a str) -> Words<'a> {
+        let text = text.split('#').next().unwrap_or_default().trim_end();
+        let (mut tokens, mut rest, mut column) = (Vec::new(), text, 1);
+        while let Some(first) = rest.chars().next() {
+            let length = length_of_token(rest, first);
+            let (token, behind) = rest.split_at(length);
+            if !first.is_whitespace() {
+                tokens.push(Token { text: token, column });
+            }
+            column += token.chars().count();
+            rest = behind;
+        }
+        Words { tokens, at: 0, end: column }
+    }
+
+    fn next(&mut self) -> Option<Token<'a>> {
+        let token = self.tokens.get(self.at).copied();
+        self.at += usize::from(token.is_some());
+        token
+    }
+
+    fn next_if(&mut self, text: &str) -> bool {
+        let fits = self.tokens.get(self.at).is_some_and(|token| token.text.eq_ignore_ascii_case(text));
+        self.at += usize::from(fits);
+        fits
+    }
+
+    fn problem_at(&self, token: Option<Token<'_>>, message: impl Into<String>) -> ConditionProblem {
+        ConditionProblem { message: message.into(), column: token.map_or(self.end, |token| token.column) }
+    }
+
+    /// The next word, of a list; what it should be is said with what is near.
+    fn one_of<T: Copy>(
+        &mut self,
+        known: &[T],
+        id: impl Fn(T) -> &'static str,
+        what: &str,
+    ) -> Result<(T, Token<'a>), ConditionProblem> {
+        let token = self.next();
+        let Some(word) = token else {
+            let ids: Vec<&str> = known.iter().map(|own| id(*own)).collect();
+            return Err(self.problem_at(None, format!("{what} is missing: {}", ids.join(", "))));
+        };
+        let name = word.text.to_lowercase().replace('-', "_");
+        let found = known.iter().find(|own| id(**own).eq_ignore_ascii_case(&name));
+        found.map(|found| (*found, word)).ok_or_else(|| {
+            let ids: Vec<&str> = known.iter().map(|own| id(*own)).collect();
+            let near = nearest(&name, ids.iter().copied());
+            let help = match near.is_empty() {
+                true => format!("choose one of {}", ids.join(", ")),
+                false => format!("did you mean {}?", near.join(" or ")),
+            };
+            self.problem_at(token, format!("{} is not {what}; {help}", word.text))
+        })
+    }
+
+    /// `(S1)`, if a bracket is opened.
+    pub(in crate::session) fn group(&mut self) -> Result<Option<Group>, ConditionProblem> {
+        if !self.next_if("(") {
+            return Ok(None);
+        }
+        let groups: Vec<Group> = Group::all().collect();
+        let (group, _) = self.one_of(&groups, Group::id, "a group")?;
+        match self.next_if(")") {
+            true => Ok(Some(group)),
+            false => Err(self.problem_at(self.tokens.get(self.at).copied(), "a closing bracket is missing")),
+        }
+    }
+
+    /// A name of a list, with the column it stands in.
+    pub(in crate::session) fn name<T: Copy>(
+        &mut self,
+        known: &[T],
+        id: impl Fn(T) -> &'static str,
+        what: &str,
+    ) -> Result<(T, usize), ConditionProblem> {
+        self.one_of(known, id, what).map(|(found, token)| (found, token.column))
+    }
+
+    /// A whole number, if any word is left.
+    pub(in crate::session) fn whole_number(&mut self) -> Result<Option<u32>, ConditionProblem> {
+        let Some(token) = self.next() else { return Ok(None) };
+        let number = token.text.parse().map(Some);
+        number.map_err(|_| {
+            self.problem_at(Some(token), format!("a whole number is expected, not {}", token.text))
+        })
+    }
+
+    /// Nothing is left.
+    pub(in crate::session) fn end(&mut self) -> Result<(), ConditionProblem> {
+        match self.next() {
+            None => Ok(()),
+            Some(token) => Err(self.problem_at(Some(token), format!("{} is one word too many", token.text))),
+        }
+    }
+
+    /// ` over 7`, if it stands here.
+    fn days(&mut self) -> Result<Option<(u32, usize)>, ConditionProblem> {
+        let column = self.tokens.get(self.at).map_or(self.end, |token| token.column);
+        if !self.next_if("over") {
+            return Ok(None);
+        }
+        let days = self.whole_number()?;
+        let days =
+            days.ok_or_else(|| self.problem_at(None, "over needs a number of days, for instance over 7"))?;
+        let _ = self.next_if("days") || self.next_if("day");
+        Ok(Some((days, column)))
+    }
+
+    /// A number: `0.05`, `5%`, `1_000_000`.
+    fn number(&mut self) -> Result<f64, ConditionProblem> {
+        let token = self.next();
+        let Some(word) = token else { return Err(self.problem_at(None, "a number is missing")) };
+        let plain = word.text.replace('_', "");
+        let (digits, unit) = plain.strip_suffix('%').map_or((plain.as_str(), 1.0), |digits| (digits, 100.0));
+        let number = digits.parse::<f64>().ok().filter(|number| number.is_finite());
+        number
+            .map(|number| number / unit)
+            .ok_or_else(|| self.problem_at(token, format!("a number is expected, not {}", word.text)))
+    }
+}
+
+/// Bytes of the word or sign with which a text begins.
+fn length_of_token(text: &str, first: char) -> usize {
+    let is_word = |letter: char| letter.is_alphanumeric() || "_.-+%".contains(letter);
+    let is_sign = |letter: char| "<>=".contains(letter);
+    let of = |belongs: &dyn Fn(char) -> bool| text.find(|letter| !belongs(letter)).unwrap_or(text.len());
+    match first {
+        _ if first.is_whitespace() => of(&char::is_whitespace),
+        _ if is_word(first) => of(&is_word),
+        _ if is_sign(first) => of(&is_sign),
+        _ => first.len_utf8(),
+    }
+}
+
+impl FromStr for Condition {
+    type Err = ConditionProblem;
+
+    /// `churn(S1) > 0.05 over 7`, `reputation(S3) falls`, `event rival`.
+    fn from_str(text: &str) -> Result<Condition, ConditionProblem> {
+        let mut words = Words::of(text);
+        let condition = match words.next_if("event") {
+            true => Condition::Event(words.name(&WorldEvent::ALL, WorldEvent::id, "an event")?.0),
+            false => about_a_figure(&mut words)?,
+        };
+        words.end()?;
+        Ok(condition)
+    }
+}
+
+/// What a figure is judged by.
+enum Judgement {
+    Compared(Relation, f64),
+    Moved(Direction),
+}
+
+/// The days of a figure may stand behind it or at the end.
+fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> {
+    let (measure, column) = words.name(Measure::ALL, Measure::id, "a figure")?;
+    let group = words.group()?;
+    let early = words.days()?;
+    let judgement = judgement(words)?;
+    let days = match early {
+        Some(days) => Some(days),
+        None => words.days()?,
+    };
+    let quantity = Quantity::new(measure, group, days.map(|(days, _)| days)).map_err(|no| {
+        let column = match no {
+            NoQuantity::OfCompany | NoQuantity::OfGroup => column,
+            NoQuantity::OfADay | NoQuantity::Days => days.map_or(column, |(_, column)| column),
+        };
+        ConditionProblem { message: why_not(measure, no), column }
+    })?;
+    Ok(match judgement {
+        Judgement::Compared(relation, threshold) => Condition::Compared(quantity, relation, threshold),
+        Judgement::Moved(direction) => Condition::Moved(quantity, direction),
+    })
+}
+
+fn why_not(measure: Measure, no: NoQuantity) -> String {
+    let id = measure.id();
+    match no {
+        NoQuantity::OfCompany => format!("{id} is a figure of the whole company; write {id} without a group"),
+        NoQuantity::OfGroup => format!("{id} is a figure of a group; write for instance {id}(S1)"),
+        NoQuantity::OfADay => {
+            format!("{id} is read on one day; over works with what adds up and with shares")
+        }
+        NoQuantity::Days => format!("over takes 1 to {} days", Quantity::MOST_DAYS),
+    }
+}
+
+fn judgement(words: &mut Words<'_>) -> Result<Judgement, ConditionProblem> {
+    let token = words.next();
+    let relation = match token.map(|token| token.text) {
+        Some(">") => Relation::Above,
+        Some(">=") => Relation::AtLeast,
+        Some("<") => Relation::Below,
+        Some("<=") => Relation::AtMost,
+        Some(word) if word.eq_ignore_ascii_case("rises") => return Ok(Judgement::Moved(Direction::Rises)),
+        Some(word) if word.eq_ignore_ascii_case("falls") => return Ok(Judgement::Moved(Direction::Falls)),
+        other => {
+            let not = other.map_or(String::new(), |word| format!(", not {word}"));
+            let message = format!("one of > >= < <= rises falls is expected{not}");
+            return Err(words.problem_at(token, message));
+        }
+    };
+    words.number().map(|threshold| Judgement::Compared(relation, threshold))
+}

@@ -1,0 +1,142 @@
+//! Breakpoints of a debug run, and running to the first of them.
+
+use std::sync::Arc;
+
+use super::condition::{Condition, Judged};
+use super::list::Breakpoint;
+use super::series::Series;
+use crate::session::play::advance::{DayReport, Week};
+use crate::session::state::Session;
+use crate::tools::Refusal;
+use crate::world::day::watch::Unwatched;
+
+/// A breakpoint that became true.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The breakpoint.
+    pub breakpoint: Breakpoint,
+    /// How its condition stands.
+    pub judged: Judged,
+}
+
+/// Days that were run, and why they stopped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunUntil {
+    /// Day on which they began.
+    pub from: u32,
+    /// The figures of the last of the weeks, and the notices of all days.
+    pub week: Week,
+    /// The breakpoints that became true on the last day; none if it stopped for another reason.
+    pub hits: Vec<Hit>,
+}
+
+impl Session {
+    /// The breakpoints that are set.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn breakpoints(&self) -> Result<&[Breakpoint], Refusal> {
+        self.refuse_to_look_inside()?;
+        Ok(self.breakpoints.all())
+    }
+
+    /// Sets a breakpoint. Nothing is shown by it, so nothing is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn set_breakpoint(&mut self, condition: Condition) -> Result<Breakpoint, Refusal> {
+        self.refuse_to_look_inside()?;
+        Ok(self.breakpoints.set(condition))
+    }
+
+    /// Removes a breakpoint, or all of them; returns what was removed.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `breakpoint_unknown`.
+    pub fn clear_breakpoints(&mut self, number: Option<u32>) -> Result<Vec<Breakpoint>, Refusal> {
+        self.refuse_to_look_inside()?;
+        let Some(number) = number else { return Ok(self.breakpoints.clear_all()) };
+        match self.breakpoints.clear(number) {
+            Some(breakpoint) => Ok(vec![breakpoint]),
+            None => Err(self.unknown_breakpoint(number)),
+        }
+    }
+
+    pub(in crate::session) fn unknown_breakpoint(&self, number: u32) -> Refusal {
+        let numbers: Vec<String> = self.breakpoints.all().iter().map(|own| own.number.to_string()).collect();
+        let message = match numbers.is_empty() {
+            true => format!("there is no breakpoint {number}; none is set"),
+            false => format!("there is no breakpoint {number}; there are {}", numbers.join(", ")),
+        };
+        Refusal::at("number", "breakpoint_unknown", message)
+    }
+
+    /// Simulates days of a debug run, and stops after the first on which a breakpoint becomes true. Each breakpoint is a look
+    /// of the last day: that a run goes on says as much as that it stops.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
+    pub fn run_until_breakpoint(
+        &mut self,
+        days: u32,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<RunUntil, Refusal> {
+        self.refuse_to_look_inside()?;
+        self.refuse_to_step()?;
+        let from = self.day();
+        let set = self.breakpoints.all().to_vec();
+        if set.is_empty() {
+            let week = self.step_on(from.saturating_add(days.max(1)), &|_| true, progress)?;
+            return Ok(RunUntil { from, week, hits: Vec::new() });
+        }
+        let series = self.measured_up_to(from)?;
+        self.simulation.watch = series.clone();
+        let goes_on = |day: u32| hits_on(day, &set, &series).is_empty();
+        let week = self.step_on(from.saturating_add(days.max(1)), &goes_on, progress);
+        self.simulation.watch = Arc::new(Unwatched);
+        let week = week?;
+        let hits = hits_on(self.day(), &set, &series);
+        for breakpoint in &set {
+            self.record_look_inside("breakpoint", &breakpoint.condition.to_string(), self.day())?;
+        }
+        Ok(RunUntil { from, week, hits })
+    }
+
+    /// Steps over as many weeks as it takes to a day, as long as it is to go on.
+    fn step_on(
+        &mut self,
+        until: u32,
+        goes_on: &dyn Fn(u32) -> bool,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let mut notices = Vec::new();
+        loop {
+            let mut week = self.step_while(goes_on, until - self.day(), progress)?;
+            notices.append(&mut week.notices);
+            if self.day() >= until || week.ended.is_some() || week.remark.is_some() || !goes_on(self.day()) {
+                return Ok(Week { notices, ..week });
+            }
+        }
+    }
+
+    /// The figures of all days up to one that is over: those that were seen, or else the days are simulated again.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn measured_up_to(&mut self, day: u32) -> Result<Arc<Series>, Refusal> {
+        if self.breakpoints.series.last_day() < day {
+            let series = Arc::new(Series::default());
+            self.watch_up_to(day, series.clone())?;
+            self.breakpoints.series = series;
+        }
+        Ok(self.breakpoints.series.clone())
+    }
+}
+
+/// The breakpoints that became true on a day.
+fn hits_on(day: u32, set: &[Breakpoint], series: &Series) -> Vec<Hit> {
+    series.read(|days| {
+        let judged = set.iter().map(|own| Hit { breakpoint: *own, judged: own.condition.judged(days, day) });
+        judged.filter(|hit| hit.judged.becomes_true()).collect()
+    })
+}

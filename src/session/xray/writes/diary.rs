@@ -1,0 +1,159 @@
+//! Keeps what is written to a figure on one day.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::target::WriteTarget;
+use super::{WhoWrites, Write, WrittenBy};
+use crate::world::day::watch::DayWatch;
+use crate::world::events::{
+    Category, DayFigures, Facts, LedgerEntry, Source, SubscriptionEnded, SubscriptionStatus,
+};
+use crate::world::identifiers::Group;
+use crate::world::market::reputation::ReputationWrite;
+use crate::world::params::Params;
+use crate::world::state::World;
+
+/// Keeps what is written to a figure on one day.
+pub(super) struct WriteDiary {
+    target: WriteTarget,
+    day: u32,
+    pages: Mutex<WritePages>,
+}
+
+struct WritePages {
+    /// The figure at the end of the day before.
+    first: f64,
+    /// What was written since.
+    writes: Vec<Write>,
+    /// The figures of the day, once they are counted.
+    figures: DayFigures,
+    /// The day that was asked for.
+    kept: Option<WhoWrites>,
+}
+
+impl WritePages {
+    /// The figure as it stands after what was written.
+    fn now(&self) -> f64 {
+        self.writes.last().map_or(self.first, |write| write.after)
+    }
+
+    /// Adds an amount as the world did; neighbours by one mechanism are one write.
+    fn add(&mut self, by: WrittenBy, amount: f64) {
+        let before = self.now();
+        let after = before + amount;
+        match self.writes.last_mut().filter(|write| write.by == by) {
+            Some(write) => {
+                write.changes.push(amount);
+                write.after = after;
+            }
+            None => self.writes.push(Write { by, changes: vec![amount], before, after }),
+        }
+    }
+
+    fn book(&mut self, entries: &[LedgerEntry]) {
+        entries.iter().for_each(|entry| self.add(WrittenBy::Booked(entry.category), entry.amount));
+    }
+}
+
+impl WriteDiary {
+    /// Of a figure on a day; with what it was before day 1.
+    pub(super) fn of(target: WriteTarget, day: u32, opening: f64) -> WriteDiary {
+        let pages =
+            WritePages { first: opening, writes: Vec::new(), figures: DayFigures::default(), kept: None };
+        WriteDiary { target, day, pages: Mutex::new(pages) }
+    }
+
+    /// What was written on the day; none if it was not simulated.
+    pub(super) fn take(&self) -> Option<WhoWrites> {
+        self.pages().kept.take()
+    }
+
+    fn pages(&self) -> MutexGuard<'_, WritePages> {
+        self.pages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The figure as it stands in a world.
+    fn read(&self, world: &World) -> f64 {
+        match self.target {
+            WriteTarget::Reputation(group) => world.market.reputation.of(group),
+            WriteTarget::Cash => world.finance.cash,
+            WriteTarget::Subscribers(group) => world.customers.groups[group].active().into(),
+        }
+    }
+}
+
+impl DayWatch for WriteDiary {
+    fn called(&self, facts: &Facts) {
+        if self.target == WriteTarget::Cash {
+            self.pages().book(&facts.ledger);
+        }
+    }
+
+    fn reputation_moved(&self, write: &ReputationWrite<'_>) {
+        if self.target != WriteTarget::Reputation(write.group) {
+            return;
+        }
+        let by = WrittenBy::Reputation(write.cause);
+        let mut pages = self.pages();
+        match pages.writes.last_mut().filter(|own| own.by == by) {
+            Some(own) => {
+                own.changes.extend_from_slice(write.changes);
+                own.after = write.after;
+            }
+            None => {
+                let (changes, ReputationWrite { before, after, .. }) = (write.changes.to_vec(), *write);
+                pages.writes.push(Write { by, changes, before, after });
+            }
+        }
+    }
+
+    fn day_counted(&self, figures: &DayFigures) {
+        self.pages().figures = *figures;
+    }
+
+    fn day_over(&self, world: &World, params: &Params, facts: &Facts) {
+        let mut pages = self.pages();
+        let last = self.read(world);
+        if world.day == self.day {
+            match self.target {
+                WriteTarget::Reputation(_) => {}
+                WriteTarget::Cash => book_day(&mut pages, params, facts),
+                WriteTarget::Subscribers(group) => count_day(&mut pages, group, world, facts),
+            }
+            let (first, writes) = (pages.first, std::mem::take(&mut pages.writes));
+            pages.kept = Some(WhoWrites { target: self.target, day: self.day, first, last, writes });
+        }
+        pages.writes.clear();
+        pages.first = last;
+    }
+}
+
+/// Cash moves in this order: leads are paid, subscribers pay, then the ledger of the day.
+fn book_day(pages: &mut WritePages, params: &Params, facts: &Facts) {
+    let DayFigures { new_leads, payments_received, .. } = pages.figures;
+    let leads = f64::from(new_leads) * params.leads.lead_acquisition_cost;
+    pages.add(WrittenBy::Booked(Category::LeadAcquisitionCost), -leads);
+    pages.add(WrittenBy::Booked(Category::SubscriptionPayment), payments_received);
+    pages.book(&facts.ledger);
+}
+
+/// Those who left, by why, and those who came, by how.
+fn count_day(pages: &mut WritePages, group: Group, world: &World, facts: &Facts) {
+    let has_left =
+        |own: &&SubscriptionEnded| own.group == group && own.status == SubscriptionStatus::Cancelled;
+    let mut left: Vec<_> = facts.endings.iter().filter(has_left).collect();
+    left.sort_by_key(|own| own.cause as u8);
+    left.into_iter().for_each(|own| pages.add(WrittenBy::Left(own.cause), -1.0));
+    for source in Source::ALL {
+        let came = facts.arrivals.iter().filter(|own| own.group == group && own.source == source);
+        let signed = |customer: u32| {
+            let mut own = facts.openings.iter().filter(|opening| opening.customer == customer);
+            own.any(|opening| opening.status == SubscriptionStatus::Subscribed)
+        };
+        let count = came.filter(|own| signed(own.customer)).count();
+        (0..count).for_each(|_| pages.add(WrittenBy::SignedUp(source), 1.0));
+    }
+    let of_group = |customer: u32| world.enterprise.company(customer).is_some_and(|own| own.group == group);
+    let deals = facts.deals.iter().filter(|deal| deal.activated && of_group(deal.customer));
+    deals.for_each(|_| pages.add(WrittenBy::FirstDeals, 1.0));
+}

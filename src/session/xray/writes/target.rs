@@ -1,0 +1,69 @@
+//! Of which figure the writes of a day are asked for.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::session::xray::breakpoint::grammar::{ConditionProblem, Words};
+use crate::world::identifiers::Group;
+
+/// A figure of which every write can be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WriteTarget {
+    /// Reputation of a group.
+    Reputation(Group),
+    /// Cash of the company.
+    Cash,
+    /// Active subscriptions of a group.
+    Subscribers(Group),
+}
+
+/// The figures, before their groups.
+const NAMES: [&str; 3] = ["reputation", "cash", "subscribers"];
+
+impl WriteTarget {
+    /// A figure and a day or none: `reputation(S3) 84`.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn parse_with_day(text: &str) -> Result<(WriteTarget, Option<u32>), ConditionProblem> {
+        let mut words = Words::of(text);
+        let (name, column) = words.name(&NAMES, |name| name, "a figure whose writes are known")?;
+        let group = words.group()?;
+        let day = words.whole_number()?;
+        words.end()?;
+        let problem = |message: String| Err(ConditionProblem { message, column });
+        let target = match (name, group) {
+            ("cash", None) => WriteTarget::Cash,
+            ("cash", Some(_)) => {
+                return problem(
+                    "cash is a figure of the whole company; write cash without a group".to_owned(),
+                );
+            }
+            ("reputation", Some(group)) => WriteTarget::Reputation(group),
+            (_, Some(group)) => WriteTarget::Subscribers(group),
+            (name, None) => {
+                return problem(format!("{name} is a figure of a group; write for instance {name}(S1)"));
+            }
+        };
+        Ok((target, day))
+    }
+}
+
+impl FromStr for WriteTarget {
+    type Err = ConditionProblem;
+
+    fn from_str(text: &str) -> Result<WriteTarget, ConditionProblem> {
+        WriteTarget::parse_with_day(text).map(|(target, _)| target)
+    }
+}
+
+/// `reputation(S3)`, `cash`.
+impl fmt::Display for WriteTarget {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            WriteTarget::Reputation(group) => write!(formatter, "reputation({group})"),
+            WriteTarget::Cash => formatter.write_str("cash"),
+            WriteTarget::Subscribers(group) => write!(formatter, "subscribers({group})"),
+        }
+    }
+}

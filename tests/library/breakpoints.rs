@@ -1,0 +1,541 @@
+//! Breakpoints stop where a scan of the recorded days says they should, and every write of a figure is accounted for.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use novamind::session::{
+    Access, Activity, Condition, Configuration, Hit, Mode, NewRun, Record, ReputationCause, Session, Storage,
+    Trajectory, Via, WriteTarget, WrittenBy, lines_afterwards, verify,
+};
+use novamind::world::identifiers::{ByGroup, Group};
+use proptest::prelude::*;
+use serde_json::json;
+
+use crate::support::company::{call, column, open_shop, week, weeks};
+use crate::xray::courted;
+
+const DAYS: u32 = 126;
+
+fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
+    run_with(folder, mode, days, 1_000_000.0)
+}
+
+fn run_with(folder: &Path, mode: Mode, days: u32, cash: f64) -> Session {
+    let new = NewRun {
+        cash: (mode == Mode::Debug).then_some(cash),
+        seed: Some(7),
+        days: Some(days),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    open_shop(&mut session);
+    let spend = json!({"targeted_spend": {"content_marketing": {"S1": 900, "S2": 400, "S3": 400}}});
+    call(&mut session, "set_targeted_ad_spend", spend);
+    session
+}
+
+fn group(id: &str) -> Group {
+    Group::parse(id).expect("a group")
+}
+
+fn condition(text: &str) -> Condition {
+    text.parse().unwrap_or_else(|problem| panic!("{text}: {problem:?}"))
+}
+
+/// What is recorded of a day, straight from the state and the facts.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    cash: f64,
+    overload: f64,
+    outage: bool,
+    rival: bool,
+    leads: ByGroup<u32>,
+    signed: ByGroup<u32>,
+    left: ByGroup<u32>,
+    subscribers: ByGroup<u32>,
+    satisfaction: ByGroup<f64>,
+    reputation: ByGroup<f64>,
+}
+
+/// Simulates days without breakpoints; day 1 first.
+fn recorded(session: &mut Session) -> Vec<Seen> {
+    let mut all = Vec::new();
+    while session.day() < DAYS {
+        let mut keep = |report: &novamind::session::DayReport<'_>| {
+            let xray = report.xray.expect("a debug run");
+            let facts = xray.facts();
+            let mut seen = Seen {
+                cash: report.figures.cash,
+                overload: report.figures.overload,
+                outage: report.figures.outage,
+                rival: xray.world().market.competitors.iter().any(|event| event.day == report.figures.day),
+                ..Seen::default()
+            };
+            let groups: BTreeMap<u32, Group> =
+                facts.arrivals.iter().map(|own| (own.customer, own.group)).collect();
+            groups.values().for_each(|own| seen.leads[*own] += 1);
+            for opening in facts.openings.iter().filter(|own| format!("{:?}", own.status) == "Subscribed") {
+                seen.signed[groups[&opening.customer]] += 1;
+            }
+            for ending in facts.endings.iter().filter(|own| format!("{:?}", own.status) == "Cancelled") {
+                seen.left[ending.group] += 1;
+            }
+            for own in Group::all() {
+                let moods: Vec<f64> =
+                    xray.blocks(own).flat_map(|block| block.satisfaction.iter().copied()).collect();
+                seen.subscribers[own] = moods.len() as u32;
+                seen.satisfaction[own] = moods.iter().sum::<f64>() / moods.len() as f64;
+                seen.reputation[own] = xray.reputation(own);
+            }
+            all.push(seen);
+        };
+        session.step(7, &mut keep).expect("days");
+    }
+    all
+}
+
+/// What decides of each condition, written once more: whether it holds on a day, from 1, of what was recorded.
+type Holds = fn(&[Seen], usize) -> bool;
+
+fn churn_7(days: &[Seen], day: usize) -> Option<f64> {
+    let (last, s1) = (day - 1, group("S1"));
+    let beginning = last.checked_sub(7)?;
+    let left: u32 = days[beginning + 1..=last].iter().map(|seen| seen.left[s1]).sum();
+    (days[beginning].subscribers[s1] > 0)
+        .then(|| f64::from(left) / f64::from(days[beginning].subscribers[s1]))
+}
+
+fn leads_7(days: &[Seen], day: usize) -> Option<u32> {
+    let first = day.checked_sub(7)?;
+    Some(days[first..day].iter().map(|seen| seen.leads[group("S2")]).sum())
+}
+
+const CONDITIONS: [(&str, Holds); 12] = [
+    ("churn(S1) > 0.05 over 7", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
+    ("churn(S1) over 7 > 5%", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
+    ("reputation(S3) falls", |days, day| {
+        day > 1 && days[day - 1].reputation[group("S3")] < days[day - 2].reputation[group("S3")]
+    }),
+    ("reputation(S1) > 0.52", |days, day| days[day - 1].reputation[group("S1")] > 0.52),
+    ("event rival", |days, day| days[day - 1].rival),
+    ("event outage", |days, day| days[day - 1].outage),
+    ("cash < 800000", |days, day| days[day - 1].cash < 800_000.0),
+    ("subscribers(S1) >= 200", |days, day| days[day - 1].subscribers[group("S1")] >= 200),
+    ("satisfaction(S1) < 0.1", |days, day| days[day - 1].satisfaction[group("S1")] < 0.1),
+    ("leads(S2) rises over 7", |days, day| {
+        leads_7(days, day).zip(leads_7(days, day - 1)).is_some_and(|(now, before)| now > before)
+    }),
+    ("overload > 0", |days, day| days[day - 1].overload > 0.0),
+    ("conversion(S1) <= 0.3 over 14", |days, day| {
+        day >= 14 && {
+            let sum = |of: fn(&Seen) -> u32| days[day - 14..day].iter().map(of).sum::<u32>();
+            let leads = sum(|seen| seen.leads[group("S1")]);
+            leads > 0 && f64::from(sum(|seen| seen.signed[group("S1")])) / f64::from(leads) <= 0.3
+        }
+    }),
+];
+
+/// Every day on which each condition becomes true, by a loop over what was recorded.
+fn scanned(days: &[Seen]) -> Vec<(u32, String)> {
+    let mut found = Vec::new();
+    for day in 1..=days.len() {
+        for (text, holds) in CONDITIONS {
+            if holds(days, day) && !(day > 1 && holds(days, day - 1)) {
+                found.push((day as u32, condition(text).to_string()));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn breakpoints_equal_a_scan() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut alone = run_in(folder.path(), Mode::Debug, DAYS);
+    let days = recorded(&mut alone);
+    let mut expected = scanned(&days);
+    expected.dedup();
+    let mut stopping = run_in(folder.path(), Mode::Debug, DAYS);
+    for (text, _) in CONDITIONS {
+        stopping.set_breakpoint(condition(text)).expect("a breakpoint");
+    }
+    assert_eq!(stopping.breakpoints().expect("a look").len(), CONDITIONS.len() - 1, "two are the same");
+    let mut stops: Vec<(u32, String)> = Vec::new();
+    while stopping.day() < DAYS {
+        let from = stopping.day();
+        let run = stopping.run_until_breakpoint(1000, &mut |_| {}).expect("days");
+        assert_eq!(run.from, from);
+        assert!(
+            !run.hits.is_empty() || stopping.day() == DAYS,
+            "it stops for nothing on day {}",
+            stopping.day()
+        );
+        for Hit { breakpoint, judged } in run.hits {
+            assert_eq!(judged.day, stopping.day());
+            stops.push((judged.day, breakpoint.condition.to_string()));
+            if breakpoint.condition.to_string() == "churn(S1) > 0.05 over 7" {
+                let [now, before] = [judged.day, judged.day - 1].map(|day| churn_7(&days, day as usize));
+                assert_eq!((judged.value, judged.before), (now, before));
+            }
+        }
+    }
+    assert_eq!(stops, expected);
+    let kinds: std::collections::BTreeSet<&str> = stops.iter().map(|(_, text)| text.as_str()).collect();
+    assert!(kinds.len() >= 9 && stops.len() > 30, "{kinds:?} {}", stops.len());
+    // The hash of the facts goes by lines, and a stop ends one.
+    let parts = |session: &Session| {
+        let (_, mut parts) = session.state_hash();
+        parts.remove("facts").expect("a part");
+        parts
+    };
+    assert_eq!(parts(&stopping), parts(&alone), "stopping changes nothing");
+    // What was found looking forward is found looking back, in the run that had no breakpoints and is over.
+    for (text, holds) in CONDITIONS {
+        let own = condition(text);
+        let found: Vec<u32> = alone.find_days(own).expect("a look").iter().map(|own| own.day).collect();
+        let of_it = expected.iter().filter(|(_, text)| *text == own.to_string());
+        assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
+        let back = alone.look_back(own).expect("a look");
+        let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
+        assert_eq!(back.last_true.map(|own| own.day as usize), last(true), "{text}");
+        assert_eq!(back.last_false.map(|own| own.day as usize), last(false), "{text}");
+        let since = if back.today.is_true { last(false) } else { last(true) };
+        assert_eq!(back.since() as usize, since.map_or(1, |day| day + 1), "{text}");
+    }
+}
+
+#[test]
+fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 60);
+    week(&mut session);
+    let mut other = run_in(folder.path(), Mode::Debug, 60);
+    week(&mut other);
+    other.step(7, &mut |_| {}).expect("days");
+    other.step(3, &mut |_| {}).expect("days");
+    // Days that nobody watched are simulated again first.
+    session.set_breakpoint(condition("subscribers(S1) < 0")).expect("a breakpoint");
+    let run = session.run_until_breakpoint(10, &mut |_| {}).expect("days");
+    assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
+    assert_eq!(session.state_hash(), other.state_hash());
+    let leads = session.find_days(condition("leads > 0")).expect("a look");
+    assert!(!leads.is_empty());
+    let removed = session.clear_breakpoints(Some(1)).expect("it is set");
+    assert_eq!(removed[0].condition.to_string(), "subscribers(S1) < 0");
+    assert_eq!(
+        session.clear_breakpoints(Some(1)).expect_err("it is gone").to_string(),
+        "breakpoint_unknown (number): there is no breakpoint 1; none is set"
+    );
+    session.run_until_breakpoint(2, &mut |_| {}).expect("days without breakpoints");
+    let place = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+    let kinds: Vec<String> = lines
+        .lines
+        .iter()
+        .filter_map(|line| match &line.record {
+            Record::Step(closing) => Some(format!("step {}", closing.days_run)),
+            Record::Activity(Activity::Xray(look)) => {
+                Some(format!("{} {} {}", look.what, look.which, look.shown_day))
+            }
+            _ => None,
+        })
+        .collect();
+    let expected = ["step 7", "step 3", "breakpoint subscribers(S1) < 0 17", "find leads > 0 17", "step 2"];
+    assert_eq!(kinds, expected);
+    assert_eq!(verify(&place).expect("it verifies").day, 19);
+    Session::open(&place, Access::Write, false).expect("it opens");
+}
+
+#[test]
+fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, DAYS);
+    session.set_breakpoint(condition("churn(S1) >= 0")).expect("a breakpoint");
+    session.run_until_breakpoint(DAYS, &mut |_| {}).expect("days");
+    session.clear_breakpoints(None).expect("removed");
+    session.run_until_breakpoint(40, &mut |_| {}).expect("days");
+    let churn = session.look_back(condition("churn(S1) >= 0")).expect("a look").today.value.expect("a share");
+    let now = session.day();
+    let sql = format!(
+        "SELECT 1.0 * sum(status = 'cancelled' AND end_day <= {now}) / count(*) FROM subscriptions \
+         JOIN customers USING (customer_id) WHERE group_id = 'S1' AND start_day <= {now} - 30 \
+         AND status IN ('subscribed', 'cancelled') AND (status = 'subscribed' OR end_day > {now} - 30)"
+    );
+    let of_the_tables = column(&mut session, &sql)[0];
+    assert!(churn > 0.0 && (churn - of_the_tables).abs() < 1e-12, "{churn} {of_the_tables}");
+}
+
+/// What a reputation would be after changes, by the rule of the world: each is clamped to 0..=1 and floored.
+fn moved(from: f64, changes: &[f64], floor: f64) -> f64 {
+    changes.iter().fold(from, |value, change| (value + change).clamp(0.0, 1.0).max(floor))
+}
+
+/// How often each mechanism wrote figures on days, where every write begins with what the one before it left and adds
+/// what it says, bit for bit, from what was recorded of the day before to what was recorded of the day.
+fn accounted(
+    session: &mut Session,
+    targets: &[WriteTarget],
+    days: &[u32],
+    recorded: &dyn Fn(WriteTarget, u32) -> Option<f64>,
+) -> BTreeMap<String, u32> {
+    let floor = session.params().reputation.reputation_floor;
+    let mut causes: BTreeMap<String, u32> = BTreeMap::new();
+    for (target, day) in targets.iter().flat_map(|target| days.iter().map(move |day| (*target, *day))) {
+        let own = session.who_writes(target, Some(day)).expect("a look");
+        for (value, day) in [(own.first, day - 1), (own.last, day)] {
+            assert!(
+                recorded(target, day).is_none_or(|known| known == value),
+                "{target} on day {day}: {value}"
+            );
+        }
+        let mut now = own.first;
+        for write in &own.writes {
+            assert_eq!(write.before.to_bits(), now.to_bits(), "{target} on day {day}: {write:?}");
+            now = match target {
+                WriteTarget::Reputation(_) => moved(now, &write.changes, floor),
+                _ => write.changes.iter().fold(now, |value, change| value + change),
+            };
+            assert_eq!(write.after.to_bits(), now.to_bits(), "{target} on day {day}: {write:?}");
+            let cause = format!("{:?}", write.by);
+            let cause = cause.split(['{', ' ']).next().unwrap_or_default().to_owned();
+            *causes.entry(cause).or_default() += 1;
+        }
+        assert_eq!(now.to_bits(), own.last.to_bits(), "{target} on day {day}: {:?}", own.writes);
+    }
+    causes
+}
+
+fn all_of(groups: &[&str]) -> Vec<WriteTarget> {
+    let of = |id: &&str| [WriteTarget::Reputation(group(id)), WriteTarget::Subscribers(group(id))];
+    groups.iter().flat_map(of).collect()
+}
+
+fn assert_seen(causes: &BTreeMap<String, u32>, expected: &[&str]) {
+    for cause in expected {
+        assert!(causes.contains_key(*cause), "{cause}: {causes:?}");
+    }
+}
+
+#[test]
+fn who_adds_up_to_the_change_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_with(folder.path(), Mode::Debug, DAYS, 5_000_000.0);
+    let spend =
+        json!({"targeted_spend": {"linkedin": {"E1": 6000}, "content_marketing": {"S1": 900, "S3": 900}}});
+    call(&mut session, "set_targeted_ad_spend", spend);
+    let mut days = recorded_up_to(&mut session, 70);
+    call(&mut session, "set_prices", json!({"A": 19, "B": 60}));
+    call(&mut session, "research_group", json!({"group_id": "S2"}));
+    days.extend(recorded_up_to(&mut session, DAYS));
+    let recorded = |target: WriteTarget, day: u32| {
+        let seen = day.checked_sub(1).map(|at| days[at as usize]);
+        Some(match (target, seen) {
+            (WriteTarget::Reputation(group), Some(seen)) => seen.reputation[group],
+            (WriteTarget::Reputation(_), None) => 0.5,
+            (WriteTarget::Cash, Some(seen)) => seen.cash,
+            (WriteTarget::Cash, None) => 5_000_000.0,
+            (WriteTarget::Subscribers(group), Some(seen)) => seen.subscribers[group].into(),
+            (WriteTarget::Subscribers(_), None) => 0.0,
+        })
+    };
+    let targets = [all_of(&["S1", "S3", "E1"]), vec![WriteTarget::Cash]].concat();
+    let causes = accounted(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
+    let expected = [
+        "Reputation(Departures)",
+        "Reputation(Mood(Mood",
+        "Reputation(SpillOver(SpillOver",
+        "Booked(GroupResearch)",
+        "Booked(Compute)",
+        "Left(Quality)",
+        "SignedUp(ContentMarketing)",
+    ];
+    assert_seen(&causes, &expected);
+}
+
+#[test]
+fn who_accounts_for_companies_that_sign_and_that_are_lost() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = courted(folder.path(), 6);
+    // From here on nobody answers them.
+    weeks(&mut session, 6);
+    let sql = |what: &str| {
+        format!(
+            "SELECT DISTINCT {what} AS day FROM subscriptions JOIN customers USING (customer_id) \
+                 WHERE group_id IN ('E1', 'E2', 'E3') AND status IN ('subscribed', 'cancelled') AND day > 1 \
+                 AND day <= 84 ORDER BY day"
+        )
+    };
+    let began = column(&mut session, &sql("start_day"));
+    let ended = column(&mut session, &sql("end_day"));
+    let days: Vec<u32> = began.iter().take(2).chain(ended.iter().take(3)).map(|day| *day as u32).collect();
+    let causes = accounted(&mut session, &all_of(&["E1", "E2", "E3"]), &days, &|_, _| None);
+    assert_seen(&causes, &["Reputation(LostCompany)", "FirstDeals"]);
+}
+
+fn recorded_up_to(session: &mut Session, day: u32) -> Vec<Seen> {
+    let mut all = Vec::new();
+    while session.day() < day {
+        let mut keep = |report: &novamind::session::DayReport<'_>| {
+            let xray = report.xray.expect("a debug run");
+            let mut seen = Seen { cash: report.figures.cash, ..Seen::default() };
+            for own in Group::all() {
+                seen.subscribers[own] = xray.subscribers(own);
+                seen.reputation[own] = xray.reputation(own);
+            }
+            all.push(seen);
+        };
+        let days = day - session.day();
+        session.step(days, &mut keep).expect("days");
+    }
+    all
+}
+
+#[test]
+fn what_spills_over_has_the_sign_of_the_mood_that_it_comes_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, DAYS);
+    recorded_up_to(&mut session, 60);
+    call(&mut session, "set_model_tiers", json!({"A": 1, "B": 1, "C": 1}));
+    call(&mut session, "set_prices", json!({"A": 28, "B": 45}));
+    recorded_up_to(&mut session, 110);
+    let mut spilled = 0;
+    for day in (61..=110).step_by(3) {
+        let of_source = session.who_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
+        let mood = of_source.writes.iter().find_map(|write| match write.by {
+            WrittenBy::Reputation(ReputationCause::Mood(_)) => Some(write.changes[0]),
+            _ => None,
+        });
+        let own = session.who_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
+        for write in own.writes {
+            let WrittenBy::Reputation(ReputationCause::SpillOver(spill)) = write.by else { continue };
+            if spill.source == group("S1") {
+                assert_eq!(Some(spill.change), mood);
+                assert_eq!(write.changes, [spill.change * spill.weight * spill.factor]);
+                assert_eq!(write.asked() < 0.0, spill.change < 0.0);
+                assert!(
+                    write.asked() < 0.0 && write.after <= write.before
+                        || write.asked() > 0.0 && write.after >= write.before
+                );
+                spilled += 1;
+            }
+        }
+    }
+    assert!(spilled > 3, "{spilled}");
+}
+
+#[test]
+fn hidden_figures_of_runs_that_go_on_stop_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode, 28);
+        week(&mut session);
+        let place = session.folder().expect("a folder").to_owned();
+        let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
+        let (before, own) = (lines(), condition("reputation(S3) falls"));
+        let reputation = WriteTarget::Reputation(group("S3"));
+        let told = [
+            session.set_breakpoint(own).expect_err("hidden"),
+            session.breakpoints().expect_err("hidden"),
+            session.clear_breakpoints(None).expect_err("hidden"),
+            session.clear_breakpoints(Some(99)).expect_err("hidden"),
+            session.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
+            session.look_back(own).expect_err("hidden"),
+            session.look_back_from(Some(99)).expect_err("hidden"),
+            session.find_days(own).expect_err("hidden"),
+            session.who_writes(reputation, None).expect_err("hidden"),
+            session.who_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
+        ];
+        for refusal in told {
+            assert_eq!(
+                refusal.to_string(),
+                "not_in_this_mode: the x-ray works in debug runs and in runs that are over"
+            );
+        }
+        assert_eq!((lines(), session.day()), (before, 7), "nothing is recorded and no day runs");
+        // Whoever gives it up may look back, and cannot go on.
+        session.end().expect("it ends");
+        let number = session.set_breakpoint(own).expect("a breakpoint").number;
+        assert_eq!(session.look_back_from(Some(number)).expect("a look").len(), 1);
+        assert!(session.who_writes(reputation, Some(3)).expect("a look").day == 3);
+        assert_eq!(session.run_until_breakpoint(3, &mut |_| {}).expect_err("over").code, "not_in_this_mode");
+        drop(session);
+        let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+        let after = lines_afterwards(&place, &trajectory).expect("lines");
+        let looks =
+            after.lines.iter().filter(|line| matches!(line.record, Record::Activity(Activity::Xray(_))));
+        assert_eq!(looks.count(), 2);
+    }
+}
+
+#[test]
+fn a_run_in_memory_stops_as_long_as_all_its_days_were_watched() {
+    let new = NewRun { seed: Some(7), days: Some(40), mode: Mode::Debug, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    open_shop(&mut session);
+    session.set_breakpoint(condition("new_subscribers >= 1")).expect("a breakpoint");
+    let run = session.run_until_breakpoint(30, &mut |_| {}).expect("days");
+    assert_eq!(run.hits.len(), 1);
+    let forecasts = session.naive_forecasts();
+    session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    assert_eq!(session.run_until_breakpoint(3, &mut |_| {}).expect_err("a gap").code, "not_possible");
+}
+
+#[test]
+fn conditions_that_cannot_be_read_say_where_and_what_is_near() {
+    for (text, column, said) in [
+        ("", 1, "a figure is missing: cash, recurring_revenue"),
+        ("chrun(S1) > 0.05", 1, "chrun is not a figure; did you mean churn"),
+        ("churn(S11) > 0.05", 7, "S11 is not a group; did you mean S1"),
+        ("churn(S1 > 0.05", 10, "a closing bracket is missing"),
+        ("churn(S1)", 10, "one of > >= < <= rises falls is expected"),
+        ("churn(S1) = 0.05", 11, "one of > >= < <= rises falls is expected, not ="),
+        ("churn(S1) > many", 13, "a number is expected, not many"),
+        ("churn(S1) > 1e400", 13, "a number is expected, not 1e400"),
+        ("churn(S1) > 0.05 over", 22, "over needs a number of days"),
+        ("churn(S1) > 0.05 over 0", 18, "over takes 1 to 1000 days"),
+        ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
+        ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
+        ("reputation falls", 1, "reputation is a figure of a group"),
+        ("reputation(S1) falls over 7", 22, "reputation is read on one day"),
+        ("event comet", 7, "comet is not an event; "),
+        ("event rival tomorrow", 13, "tomorrow is one word too many"),
+    ] {
+        let problem = text.parse::<Condition>().expect_err(text);
+        assert!(problem.message.contains(said), "{text}: {}", problem.message);
+        assert_eq!(problem.column, column, "{text}: {}", problem.message);
+    }
+    for (text, written) in [
+        ("Churn(s1)>5%  # a comment", "churn(S1) > 0.05 over 30"),
+        ("new-subscribers over 7 days falls", "new_subscribers falls over 7"),
+        ("cash < 1_000_000", "cash < 1000000"),
+        ("leads(D_S01) rises over 1 day", "leads(D_S01) rises"),
+    ] {
+        assert_eq!(condition(text).to_string(), written);
+        assert_eq!(condition(&condition(text).to_string()), condition(text), "{text}");
+    }
+    let said = |text: &str| WriteTarget::parse_with_day(text).expect_err(text).message;
+    assert!(said("reputatoin(S1)").contains("did you mean reputation?"));
+    assert!(said("reputation").starts_with("reputation is a figure of a group"));
+    assert!(said("cash(S1)").starts_with("cash is a figure of the whole company"));
+    assert!(said("cash yesterday").contains("a whole number is expected"));
+    assert_eq!(
+        WriteTarget::parse_with_day("subscribers(s2) 84"),
+        Ok((WriteTarget::Subscribers(group("S2")), Some(84)))
+    );
+}
+
+proptest! {
+    #[test]
+    fn no_condition_panics(text in "\\PC{0,60}", wild in "[a-z(S1)<>=0-9.%_ #-]{0,40}") {
+        for text in [text, wild] {
+            if let Ok(own) = text.parse::<Condition>() {
+                prop_assert_eq!(own.to_string().parse(), Ok(own));
+            }
+            let _ = WriteTarget::parse_with_day(&text);
+        }
+    }
+}

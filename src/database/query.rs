@@ -15,10 +15,12 @@ use rusqlite::{Connection, ffi};
 
 use super::block_table;
 use super::blocks::{BlockStore, Seen};
+use super::catalogue::Scope;
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
+use super::hidden;
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::loading::BlockSource;
 use super::location::Location;
@@ -116,13 +118,15 @@ const MOST_TEXT: usize = 64 << 20;
 
 /// A place to ask questions.
 pub struct QueryConnection {
-    released: Released,
-    connection: Connection,
+    pub(super) released: Released,
+    pub(super) connection: Connection,
+    /// What statements may name.
+    scope: Scope,
     objections: Objections,
     views: Option<InnerViews>,
     /// Set while the program itself works on the connection.
     trusted: Arc<AtomicBool>,
-    interrupt: Interrupt,
+    pub(super) interrupt: Interrupt,
     source: BlockSource,
     /// The blocks that the running query sees.
     seen: Arc<Seen>,
@@ -130,14 +134,21 @@ pub struct QueryConnection {
 
 impl QueryConnection {
     /// Opens a guarded connection.
-    pub(super) fn open(location: &Location, source: BlockSource) -> rusqlite::Result<QueryConnection> {
-        let released = Released::open()?;
+    pub(super) fn open(
+        location: &Location,
+        source: BlockSource,
+        scope: Scope,
+    ) -> rusqlite::Result<QueryConnection> {
+        let released = Released::open(scope)?;
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
-        let guard = Guard::set_up(&connection)?;
+        if scope == Scope::Hidden {
+            hidden::attach(&connection)?;
+        }
+        let guard = Guard::set_up(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
         // Virtual tables connect at their first use, which the authorizer would refuse.
@@ -156,7 +167,17 @@ impl QueryConnection {
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
-        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, source, seen })
+        Ok(QueryConnection {
+            released,
+            connection,
+            scope,
+            objections,
+            views,
+            trusted,
+            interrupt,
+            source,
+            seen,
+        })
     }
 
     /// A handle that stops the queries of this connection.
@@ -275,7 +296,7 @@ impl QueryConnection {
         }
     }
 
-    fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
+    pub(super) fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
         self.trusted.store(true, Ordering::Relaxed);
         let done = work(&self.connection);
         self.trusted.store(false, Ordering::Relaxed);
@@ -291,7 +312,7 @@ impl QueryConnection {
         self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
-    fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
+    pub(super) fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
         self.trusting(|connection| connection.execute_batch(sql))
     }
 
@@ -350,14 +371,14 @@ impl QueryConnection {
         }
         let warning = truncated
             .then(|| format!("only the first {} rows are shown; more exist: aggregate in SQL", limits.rows));
-        let hint = if rows.is_empty() { hints(sql) } else { None };
+        let hint = if rows.is_empty() { hints(sql, self.scope) } else { None };
         if is_plan {
             plan::mask(&mut rows, sql);
         }
         Ok(Rows { columns, rows, truncated, warning, hint })
     }
 
-    fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
+    pub(super) fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
         let objection = match self.released.objections().last() {
             Objection::None => self.objections.last(),
             objection => objection,
@@ -424,7 +445,7 @@ impl QueryConnection {
                 return refusal("sql_schema", SCHEMA_WORDS);
             }
         }
-        QueryError { code: "sql_error", message: explain_error(&text, sql), position }
+        QueryError { code: "sql_error", message: explain_error(&text, sql, self.scope), position }
     }
 }
 

@@ -83,7 +83,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("step", "step [DAYS]              debug: run single days (1)"),
     (
         "xray",
-        "xray leads GROUP [DAY]   debug runs and runs that are over: the equation of a group's leads; R=1 holds a factor",
+        "xray VIEW …              debug runs and runs that are over: hidden state; help xray names the views",
     ),
     (
         "lens",
@@ -182,6 +182,7 @@ impl Interpreter {
             "explain" | "what" => self.explain(word, rest),
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
+            "xray" => self.hidden_tables(rest, column),
             "pause" => self.pause(rest),
             "resume" => self.resume(rest),
             _ => self.query(&grammar::statement(rest), QuerySource::Typed),

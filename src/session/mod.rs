@@ -111,7 +111,8 @@ pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
 
-pub use xray::company_lens::{CompanyDay, CompanyLens, JudgedPlan};
+pub use xray::company_day::{CompanyDay, JudgedPlan};
+pub use xray::company_lens::CompanyLens;
 pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
 pub use xray::customer_lens::CustomerLens;
 pub use xray::last_day::Xray;

@@ -24,6 +24,7 @@ use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
 use crate::session::witness::code_words;
 use crate::session::xray::hidden_day::Diary;
+use crate::session::xray::hidden_tables::HiddenTables;
 use crate::tools::Numbers;
 use crate::voice::CompanyNames;
 use crate::world::identifiers::ByGroup;
@@ -63,6 +64,8 @@ pub struct Session {
     pub(super) shadow: Option<Box<Session>>,
     /// What was seen of its days.
     pub(super) diary: Arc<Diary>,
+    /// The hidden tables; none before somebody asks them.
+    pub(super) hidden_tables: Option<HiddenTables>,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{COMMANDS, NEXT, inbox, problem, readings, rules, tool_called, words};
+use super::{COMMANDS, NEXT, inbox, problem, readings, rules, tool_called, words, xray};
 use crate::database;
 use crate::glossary;
 use crate::notation::nearest;
@@ -52,6 +52,7 @@ fn in_full(name: &str, led: bool) -> Option<String> {
         "leads" => LEADS,
         "check" => CHECK,
         "pause" => PAUSE,
+        "xray" if !led => xray::IN_FULL,
         _ if NEXT.contains(&name) => return Some(next_in_full(led)),
         _ => return None,
     };

@@ -3,18 +3,30 @@
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
+use super::super::grammar::{Argument, Problem, statement_of_xray};
+use super::super::signals::Phase;
+use super::{Interpreter, problem, usage};
+use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::xray::{company_in_words, customer_in_words, leads_in_words};
 use crate::session::{
     CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, Lens, PlanTerms, Refusal,
-    Weighed,
+    Weighed, rows_as_json,
 };
 use crate::world::identifiers::{Group, Plan};
 
 /// What can be shown.
-const VIEWS: [&str; 1] = ["leads"];
+const VIEWS: [&str; 2] = ["leads", "sql"];
+
+/// `help xray`.
+pub(super) const IN_FULL: &str = "\
+xray leads GROUP [DAY]    the equation of a group's leads, the last day if none is named; R=1 holds a factor, for instance
+                          xray leads S2 84 C=1
+xray sql [DAY] SELECT …   asks the database and the tables hidden.groups, hidden.customers, hidden.threads,
+                          hidden.competitors, hidden.drift, hidden.pmi and hidden.factors, for instance
+                          xray sql SELECT day, reputation FROM hidden.groups WHERE group_id = 'S1'
+                          hidden.customers shows DAY, the last one if none is named; all others have every day
+Debug runs, and runs that are over. Each look is recorded.";
 
 impl Interpreter {
     pub(super) fn xray(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
@@ -28,6 +40,26 @@ impl Interpreter {
             _ => return Err(problem(arguments, &views())),
         };
         Ok(shown.unwrap_or_else(|refusal| Answer::refused("xray", refusal)))
+    }
+
+    /// `xray sql [DAY] STATEMENT`
+    pub(super) fn hidden_tables(&mut self, rest: &str, column: usize) -> Answer {
+        let asked = self.session.xray_interrupt().and_then(|interrupt| {
+            let (day, sql) = match day_and_statement(rest) {
+                Ok(asked) => asked,
+                Err(text) => return Ok(Err(Problem { text: text.to_owned(), column })),
+            };
+            // What is stopped from here on is this query, though it has not begun.
+            let ticket = interrupt.ticket();
+            self.watch.enter_query(interrupt);
+            self.session.xray_query_as(ticket, sql, day).map(Ok)
+        });
+        self.watch.enter(Phase::Working);
+        match asked {
+            Ok(Ok(rows)) => Answer::done("xray", table(&rows), Value::Object(rows_as_json(&rows))),
+            Ok(Err(problem)) => usage(problem),
+            Err(refusal) => Answer::refused("xray", refusal),
+        }
     }
 
     fn lead_equation(&mut self, arguments: &[Argument]) -> Result<Result<Answer, Refusal>, Problem> {
@@ -63,6 +95,21 @@ impl Interpreter {
             }
             Err(refusal) => Answer::refused("lens", refusal),
         })
+    }
+}
+
+/// The day that is asked for, if one is, and the statement.
+fn day_and_statement(rest: &str) -> Result<(Option<u32>, &str), &'static str> {
+    let rest = statement_of_xray(rest).unwrap_or_default();
+    let digits = rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
+    let (day, sql) = rest.split_at(digits);
+    let day = match day {
+        "" => None,
+        day => Some(day.parse().map_err(|_| "no run has so many days")?),
+    };
+    match sql.trim() {
+        "" => Err("write a statement: xray sql SELECT day, pmi FROM hidden.pmi"),
+        sql => Ok((day, sql)),
     }
 }
 

@@ -164,6 +164,7 @@ impl Session {
             seal_key: SealKey::default(),
             shadow: None,
             diary: Arc::default(),
+            hidden_tables: None,
             clock: PersonalClock::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),

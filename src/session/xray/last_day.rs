@@ -1,5 +1,6 @@
 //! The hidden state after the last day, as it stands: for policies and figures of debug runs.
 
+use super::hidden_day::mood_of;
 use crate::session::folder::mode::Mode;
 use crate::session::play::simulation::Simulation;
 use crate::session::state::Session;
@@ -86,11 +87,7 @@ impl<'a> Xray<'a> {
 
     /// Mean satisfaction and relationship of a group's active subscribers; none without any.
     pub fn mood(&self, group: Group) -> Option<(f64, f64)> {
-        let blocks = || self.blocks(group);
-        let count: usize = blocks().map(Block::len).sum();
-        let satisfaction: f64 = blocks().flat_map(|block| &block.satisfaction).sum();
-        let relationship: f64 = blocks().flat_map(|block| &block.relationship).sum();
-        (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
+        mood_of(self.blocks(group))
     }
 
     /// Active subscriptions of a group.

@@ -3,13 +3,17 @@
 //! Past days are simulated again beside the run, and watched on the way: what is shown is what the functions of the
 //! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
 
+pub(in crate::session) mod company_day;
 pub(in crate::session) mod company_lens;
 pub(in crate::session) mod customer_diary;
 pub(in crate::session) mod customer_lens;
 pub(in crate::session) mod hidden_day;
+pub(in crate::session) mod hidden_rows;
+pub(in crate::session) mod hidden_tables;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;
 pub(in crate::session) mod permission;
 pub(in crate::session) mod shadow;
+pub(in crate::session) mod sql;
 pub(in crate::session) mod weighed;

@@ -1,6 +1,6 @@
 //! The days of a run, simulated again beside it and watched.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::hidden_day::{Diary, HiddenDay};
 use crate::session::error::RunError;
@@ -8,6 +8,9 @@ use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 use crate::tools::Refusal;
 use crate::world::day::watch::DayWatch;
+use crate::world::events::Facts;
+use crate::world::params::Params;
+use crate::world::state::World;
 
 impl Session {
     /// Days that are over, as they were seen from within, the first one first.
@@ -21,7 +24,9 @@ impl Session {
         let mut shadow = match self.shadow.take() {
             Some(shadow) => shadow,
             None => {
-                self.diary = Arc::new(Diary::default());
+                // Threads that were kept once are kept on.
+                let keeps = self.diary.keeps_threads();
+                self.diary = Arc::new(if keeps { Diary::with_threads() } else { Diary::default() });
                 self.new_shadow(self.diary.clone())?
             }
         };
@@ -29,6 +34,32 @@ impl Session {
         self.lead(&mut shadow, |_| true)?;
         self.shadow = Some(shadow);
         Ok(days.into_iter().filter_map(|day| self.diary.day(day)).collect())
+    }
+
+    /// The same with the threads of each day. A shadow that was led so far without keeping them begins anew.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn hidden_days_with_threads(
+        &mut self,
+        days: impl IntoIterator<Item = u32>,
+    ) -> Result<Vec<HiddenDay>, Refusal> {
+        if self.shadow.is_none() || !self.diary.keeps_threads() {
+            self.diary = Arc::new(Diary::with_threads());
+            self.shadow = Some(self.new_shadow(self.diary.clone())?);
+        }
+        self.hidden_days(days)
+    }
+
+    /// The world on the evening of a day that is over.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn world_on(&self, day: u32) -> Result<World, Refusal> {
+        let evening = Arc::new(Evening { day, world: Mutex::default() });
+        self.watch_up_to(day, evening.clone())?;
+        let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
+        world.ok_or_else(|| Refusal::new("not_readable", format!("the record does not lead to day {day}")))
     }
 
     /// Shows somebody the days of the run up to one of them, and at most to the end of its week.
@@ -77,6 +108,20 @@ impl Session {
             shadow.apply_line(&path, line).map_err(not_readable)?;
         }
         Ok(())
+    }
+}
+
+/// Keeps the world as one day leaves it.
+struct Evening {
+    day: u32,
+    world: Mutex<Option<World>>,
+}
+
+impl DayWatch for Evening {
+    fn day_over(&self, world: &World, _: &Params, _: &Facts) {
+        if world.day == self.day {
+            *self.world.lock().unwrap_or_else(PoisonError::into_inner) = Some(world.clone());
+        }
     }
 }
 

@@ -10,11 +10,13 @@ pub(crate) mod catalogue;
 pub mod query;
 pub(crate) mod text;
 
+mod answer;
 mod block_table;
 mod blocks;
 mod by_customer;
 mod by_text;
 mod day_table;
+mod filling;
 mod guard;
 mod help;
 mod hidden;
@@ -37,6 +39,7 @@ mod tokens;
 #[cfg(test)]
 mod tests;
 
+pub use answer::{Cell, Rows, number_at, text_at};
 pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};
 pub use hidden::HiddenValue;
 pub use interrupt::{Interrupt, Ticket};
@@ -46,5 +49,5 @@ pub use projector::{
     Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,
     position_of, query_connection,
 };
-pub use query::{Cell, QueryConnection, QueryError, Rows, ScriptError, number_at, text_at};
+pub use query::{QueryConnection, QueryError, ScriptError};
 pub use rows::{Entry, ForecastRow};

@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rusqlite::hooks::{AuthContext, Authorization};
-use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ffi};
 
+use super::answer::{Cell, Rows};
 use super::block_table;
 use super::blocks::{BlockStore, Seen};
 use super::catalogue::Scope;
@@ -28,60 +28,6 @@ use super::packed_tables;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
 use super::tokens::tokens;
-
-/// One value of a result.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// SQL NULL.
-    Null,
-    /// A whole number.
-    Integer(i64),
-    /// A number.
-    Real(f64),
-    /// Text; blobs arrive as text too.
-    Text(String),
-}
-
-impl Cell {
-    fn text_length(&self) -> usize {
-        match self {
-            Cell::Text(text) => text.len(),
-            _ => 0,
-        }
-    }
-}
-
-/// A result.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Rows {
-    /// Names of the columns; they may repeat.
-    pub columns: Vec<String>,
-    /// Rows, each with one cell per column.
-    pub rows: Vec<Vec<Cell>>,
-    /// Whether more rows exist than were fetched.
-    pub truncated: bool,
-    /// What to know about the result, when it was cut.
-    pub warning: Option<String>,
-    /// Why an empty result may be empty.
-    pub hint: Option<String>,
-}
-
-/// A cell of a row as a number; 0 if it holds none.
-pub fn number_at(row: &[Cell], at: usize) -> f64 {
-    match row.get(at) {
-        Some(Cell::Integer(number)) => *number as f64,
-        Some(Cell::Real(number)) => *number,
-        _ => 0.0,
-    }
-}
-
-/// A cell of a row as text; empty if it holds none.
-pub fn text_at(row: &[Cell], at: usize) -> &str {
-    match row.get(at) {
-        Some(Cell::Text(text)) => text,
-        _ => "",
-    }
-}
 
 /// Why a query was not answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -361,7 +307,7 @@ impl QueryConnection {
                 truncated = true;
                 break;
             }
-            let cells = (0..width).map(|at| row.get_ref(at).map(cell)).collect::<Result<Vec<_>, _>>()?;
+            let cells = (0..width).map(|at| row.get_ref(at).map(Cell::of)).collect::<Result<Vec<_>, _>>()?;
             text += cells.iter().map(Cell::text_length).sum::<usize>();
             if text > MOST_TEXT {
                 return Err(Fault::TooLarge);
@@ -506,16 +452,5 @@ fn hidden_refusal(table: Option<&str>) -> QueryError {
     match table {
         Some(table) => refusal("sql_hidden_table", &format!("table {table} is not accessible")),
         None => refusal("sql_hidden_table", "that table is not accessible; the 19 tables of the browser are"),
-    }
-}
-
-fn cell(value: ValueRef<'_>) -> Cell {
-    match value {
-        ValueRef::Null => Cell::Null,
-        ValueRef::Integer(number) => Cell::Integer(number),
-        ValueRef::Real(number) => Cell::Real(number),
-        ValueRef::Text(bytes) | ValueRef::Blob(bytes) => {
-            Cell::Text(String::from_utf8_lossy(bytes).into_owned())
-        }
     }
 }

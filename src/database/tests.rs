@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::query::Limits;
 use super::{
-    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, number_at, text_at,
+    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, Scope, number_at, text_at,
 };
 use crate::world::day::step_day;
 use crate::world::events::{
@@ -499,7 +499,7 @@ fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
     let mut stopped = 0;
     for steps in (250..60_000).step_by(1250) {
         match connection.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
-            Ok(rows) => assert_eq!(super::query::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
+            Ok(rows) => assert_eq!(super::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
             Err(error) => {
                 assert_eq!(error.code, "sql_timeout", "after {steps} steps: {}", error.message);
                 stopped += 1;

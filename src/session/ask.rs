@@ -137,11 +137,15 @@ impl Session {
 
     /// The connection of this thread, to a database that holds everything up to now.
     pub(super) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
-        if let Err(problem) = self.wait_for_database() {
-            // There may be room again.
-            self.mend_database().map_err(|_| problem)?;
-        }
+        self.complete_database()?;
         self.projection.connection()
+    }
+
+    /// Waits until the database holds everything up to now, and mends it where it could not be written.
+    pub(super) fn complete_database(&mut self) -> Result<(), Refusal> {
+        let Err(problem) = self.wait_for_database() else { return Ok(()) };
+        // There may be room again.
+        self.mend_database().map_err(|_| problem)
     }
 }
 

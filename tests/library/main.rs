@@ -3,6 +3,7 @@
 mod battery;
 mod durability;
 mod enterprise;
+mod hidden;
 mod notebook;
 mod queries;
 mod session;

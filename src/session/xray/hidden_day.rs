@@ -165,7 +165,7 @@ fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
         active: world.customers.groups[group].active(),
         reputation: market.reputation.of(group),
         mood: mood_of(blocks()),
-        open_issues: blocks().map(|block| open_issues(block)).sum(),
+        open_issues: blocks().map(open_issues).sum(),
         product_quality: product.quality(group, params),
         bank: product.group_bank[group],
         willingness_to_pay: multiplier(Dimension::WillingnessToPay),

@@ -50,7 +50,7 @@ impl Session {
 
     fn take_hidden_tables(&mut self) -> Result<HiddenTables, Refusal> {
         // The tables of the company are to hold everything up to now, as they do for any other statement.
-        self.connection()?;
+        self.complete_database()?;
         match self.hidden_tables.take() {
             Some(tables) => Ok(tables),
             None => self.projection.open_connection(Scope::Hidden).map(HiddenTables::behind),
@@ -92,5 +92,46 @@ impl Session {
             _ => self.hidden_days(days)?,
         };
         Ok(tables.append(ticket, table, &seen)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+    use crate::session::folder::mode::Mode;
+    use crate::session::study::rules::{ResultsShown, SessionRules};
+    use crate::session::study::stamp::StudyStamp;
+
+    #[test]
+    fn a_run_of_which_its_study_shows_no_results_stays_closed_once_it_is_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let storage = Storage::Runs(folder.path().to_owned());
+        let new = NewRun { mode: Mode::Baseline, days: Some(28), storage, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let forecasts = session.naive_forecasts();
+        session.advance("wait", &forecasts, crate::session::Via::Script, &mut |_| {}).expect("a week");
+        session.end().expect("it ends");
+        let stamp = StudyStamp {
+            name: "pilot".to_owned(),
+            digest: String::new(),
+            condition: None,
+            order: None,
+            practice: false,
+            refused_labels: 0,
+        };
+        let sql = "SELECT count(*) FROM hidden.groups";
+        for (practice, results, is_shown) in [
+            (false, ResultsShown::Own, true),
+            (true, ResultsShown::Own, false),
+            (false, ResultsShown::None, false),
+        ] {
+            session.manifest.study = Some(StudyStamp { practice, ..stamp.clone() });
+            session.manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
+            let asked = session.xray_query(sql, None).map_err(|refusal| refusal.code);
+            assert_eq!(asked.is_ok(), is_shown, "{practice} {results:?}");
+            assert!(is_shown || asked == Err("not_in_this_mode"));
+        }
     }
 }

@@ -108,6 +108,15 @@ impl Diary {
         self.pages().days.get(day.checked_sub(1)? as usize).cloned()
     }
 
+    /// Hands over the threads of a day: there are many, so they are kept in one place only.
+    pub(in crate::session) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
+        let at = day.checked_sub(1).map(|at| at as usize);
+        let mut pages = self.pages();
+        at.and_then(|at| pages.days.get_mut(at))
+            .map(|day| std::mem::take(&mut day.threads))
+            .unwrap_or_default()
+    }
+
     fn pages(&self) -> MutexGuard<'_, Pages> {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -12,8 +12,8 @@ use crate::world::state::World;
 use HiddenValue::{Null, Whole};
 
 /// `hidden.groups` of a day.
-pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> impl Iterator<Item = [HiddenValue; 15]> {
-    Group::all().map(move |group| {
+pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
+    let rows = Group::all().map(|group| {
         let own: GroupEvening = seen.groups[group];
         let expectation = seen.market.drift.expectation(group);
         [
@@ -33,13 +33,14 @@ pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> impl Iterator<It
             own.deal_velocity.into(),
             own.seat_count.into(),
         ]
-    })
+    });
+    rows.collect()
 }
 
 /// `hidden.drift` of a day.
-pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> impl Iterator<Item = [HiddenValue; 5]> {
+pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     let drift = &seen.market.drift;
-    Group::all().map(move |group| {
+    let rows = Group::all().map(|group| {
         [
             day.into(),
             group.id().into(),
@@ -47,12 +48,13 @@ pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> impl Iterator<Ite
             drift.quality[group].into(),
             drift.c_max[group].into(),
         ]
-    })
+    });
+    rows.collect()
 }
 
 /// `hidden.factors` of a day: the groups that were known.
-pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> impl Iterator<Item = [HiddenValue; 16]> {
-    Group::all().filter(|group| seen.known[*group]).map(move |group| {
+pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
+    let rows = Group::all().filter(|group| seen.known[*group]).map(|group| {
         let own = &seen.leads[group];
         let paid = |channel: Channel| own.paid[channel].into();
         [
@@ -73,7 +75,8 @@ pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> impl Iterator<I
             own.expected().into(),
             seen.came[group].into(),
         ]
-    })
+    });
+    rows.collect()
 }
 
 /// `hidden.competitors` of a day.
@@ -106,12 +109,8 @@ pub(in crate::session) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-/// `hidden.threads` of a day.
-pub(in crate::session) fn threads(seen: &HiddenDay) -> impl Iterator<Item = [HiddenValue; 22]> {
-    seen.threads.iter().map(thread)
-}
-
-fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
+/// A row of `hidden.threads`.
+pub(in crate::session) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
     let accepts = |plan: Plan| {
         let judged = own.plans[plan];
         (!judged.accepts_any_price).then_some(judged.accepts_below).into()

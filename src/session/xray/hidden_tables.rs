@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::hidden_day::HiddenDay;
-use super::hidden_rows;
+use super::hidden_day::Diary;
+use super::hidden_rows::{competitors, customers, drift, factors, groups, pmi, thread};
 use crate::database::{QueryConnection, QueryError, Table, Ticket};
 use crate::world::canonical::hash_of;
 use crate::world::state::World;
@@ -54,9 +54,13 @@ impl HiddenTables {
         &self.connection
     }
 
-    /// The first day that a table lacks.
-    pub(in crate::session) fn lacks_from(&self, table: &Table) -> u32 {
-        self.days.get(table.name.as_str()).copied().unwrap_or(0) + 1
+    /// Whether a table that has every day lacks one.
+    pub(in crate::session) fn lacks(&self, table: &Table, day: u32) -> bool {
+        self.filled_to(table) < day
+    }
+
+    fn filled_to(&self, table: &Table) -> u32 {
+        self.days.get(table.name.as_str()).copied().unwrap_or(0)
     }
 
     /// Whether the table of customers shows this already.
@@ -64,34 +68,37 @@ impl HiddenTables {
         self.shown == Some(wanted)
     }
 
-    /// Appends days to a table that has every day; the first of them is the first it lacks.
-    pub(in crate::session) fn append(
+    /// Continues a table that has every day up to one of them, from a diary. The diary hands its threads over.
+    pub(in crate::session) fn continue_to(
         &mut self,
+        day: u32,
         ticket: Ticket,
         table: &'static Table,
-        days: &[HiddenDay],
+        diary: &Diary,
     ) -> Result<(), QueryError> {
-        use hidden_rows::{competitors, drift, factors, groups, pmi, threads};
-        let first = self.lacks_from(table);
+        let lacking = self.filled_to(table) + 1..=day;
+        let seen = || lacking.clone().filter_map(|day| Some((day, diary.day(day)?)));
         let own = &self.connection;
-        let seen = || (first..).zip(days);
         match table.name.as_str() {
             "hidden.groups" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| groups(day, seen)))
+                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| groups(day, &seen)))
             }
             "hidden.drift" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| drift(day, seen)))
+                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| drift(day, &seen)))
             }
             "hidden.factors" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| factors(day, seen)))
+                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| factors(day, &seen)))
             }
             "hidden.competitors" => {
-                own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| competitors(day, seen)))
+                own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| competitors(day, &seen)))
             }
-            "hidden.pmi" => own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| pmi(day, seen))),
-            _ => own.fill_hidden(ticket, table, false, days.iter().flat_map(threads)),
+            "hidden.pmi" => own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| pmi(day, &seen))),
+            _ => {
+                let threads = lacking.clone().flat_map(|day| diary.take_threads(day));
+                own.fill_hidden(ticket, table, false, threads.map(|own| thread(&own)))
+            }
         }?;
-        self.days.insert(&table.name, first - 1 + days.len() as u32);
+        self.days.insert(&table.name, day);
         Ok(())
     }
 
@@ -103,7 +110,7 @@ impl HiddenTables {
         wanted: ShownCustomers,
         world: &World,
     ) -> Result<(), QueryError> {
-        self.connection.fill_hidden(ticket, table, true, hidden_rows::customers(world))?;
+        self.connection.fill_hidden(ticket, table, true, customers(world))?;
         self.shown = Some(wanted);
         Ok(())
     }

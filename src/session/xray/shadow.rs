@@ -21,34 +21,31 @@ impl Session {
         &mut self,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Refusal> {
-        let mut shadow = match self.shadow.take() {
+        let diary = self.diary_of_all_days(self.diary.keeps_threads())?;
+        Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
+    }
+
+    /// What was seen of every day up to now, with the threads of each if they are to be kept: a shadow that was led without
+    /// keeping them begins anew.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn diary_of_all_days(
+        &mut self,
+        with_threads: bool,
+    ) -> Result<Arc<Diary>, Refusal> {
+        let kept = self.shadow.take().filter(|_| self.diary.keeps_threads() == with_threads);
+        let mut shadow = match kept {
             Some(shadow) => shadow,
             None => {
-                // Threads that were kept once are kept on.
-                let keeps = self.diary.keeps_threads();
-                self.diary = Arc::new(if keeps { Diary::with_threads() } else { Diary::default() });
+                self.diary = Arc::new(if with_threads { Diary::with_threads() } else { Diary::default() });
                 self.new_shadow(self.diary.clone())?
             }
         };
         // A shadow that went wrong is not kept: the next look begins anew.
         self.lead(&mut shadow, |_| true)?;
         self.shadow = Some(shadow);
-        Ok(days.into_iter().filter_map(|day| self.diary.day(day)).collect())
-    }
-
-    /// The same with the threads of each day. A shadow that was led so far without keeping them begins anew.
-    ///
-    /// # Errors
-    /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn hidden_days_with_threads(
-        &mut self,
-        days: impl IntoIterator<Item = u32>,
-    ) -> Result<Vec<HiddenDay>, Refusal> {
-        if self.shadow.is_none() || !self.diary.keeps_threads() {
-            self.diary = Arc::new(Diary::with_threads());
-            self.shadow = Some(self.new_shadow(self.diary.clone())?);
-        }
-        self.hidden_days(days)
+        Ok(self.diary.clone())
     }
 
     /// The world on the evening of a day that is over.

@@ -53,7 +53,14 @@ impl Session {
         self.complete_database()?;
         match self.hidden_tables.take() {
             Some(tables) => Ok(tables),
-            None => self.projection.open_connection(Scope::Hidden).map(HiddenTables::behind),
+            None => {
+                let tables = HiddenTables::behind(self.projection.open_connection(Scope::Hidden)?);
+                if self.diary.keeps_threads() {
+                    // Those of its days were handed over to tables that are gone.
+                    self.shadow = None;
+                }
+                Ok(tables)
+            }
         }
     }
 
@@ -83,15 +90,13 @@ impl Session {
         ticket: Ticket,
         table: &'static Table,
     ) -> Result<(), Refusal> {
-        let days = tables.lacks_from(table)..=self.day();
-        if days.is_empty() {
+        let day = self.day();
+        if !tables.lacks(table, day) {
             return Ok(());
         }
-        let seen = match table.name.as_str() {
-            THREADS => self.hidden_days_with_threads(days)?,
-            _ => self.hidden_days(days)?,
-        };
-        Ok(tables.append(ticket, table, &seen)?)
+        let keeps_threads = self.diary.keeps_threads() || table.name == THREADS;
+        let diary = self.diary_of_all_days(keeps_threads)?;
+        Ok(tables.continue_to(day, ticket, table, &diary)?)
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use novamind::database::query::Limits;
 use novamind::session::{
-    Cell, Configuration, NewRun, QueryConnection, QueryError, Rows, Session, Storage, Via,
+    Cell, Configuration, Mode, NewRun, QueryConnection, QueryError, Rows, Session, Storage, Via,
 };
 use serde_json::json;
 
@@ -231,6 +231,40 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
     }
     assert!(attacks.len() > 700);
     ask_all(&session.open_connection().expect("a connection"), &attacks, &[]);
+}
+
+/// Whoever may look with the x-ray finds the hidden tables, and nothing else that others do not.
+#[test]
+fn the_connection_of_the_xray_withstands_the_same_statements() {
+    let _alone = alone();
+    let runs = tempfile::tempdir().expect("a folder");
+    let storage = Storage::Runs(runs.path().to_owned());
+    let new = NewRun { days: Some(28), mode: Mode::Debug, storage, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    session.step(2, &mut |_| {}).expect("days");
+    let mut problems = Vec::new();
+    let names_hidden = |sql: &str| {
+        let names = ["hidden.", "\"hidden\"", "[hidden]", "groups", "threads", "competitors", "factors"];
+        names.iter().any(|name| sql.to_lowercase().contains(name))
+    };
+    for attack in attacks() {
+        // No number of steps ends these here.
+        let is_endless = attack.head.starts_with("stopped");
+        let is_answered = attack.head.starts_with("answered");
+        if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
+            continue;
+        }
+        let outcome = match session.xray_query(&attack.sql, None) {
+            Err(refusal) => {
+                Err(QueryError { code: refusal.code, message: refusal.message.clone(), position: None })
+            }
+            Ok(rows) => Ok(rows),
+        };
+        // The company of this run is another: that something is answered is enough.
+        let head = if is_answered { "answered".to_owned() } else { attack.head };
+        problems.extend(problem(&Attack { head, sql: attack.sql }, &outcome));
+    }
+    assert!(problems.is_empty(), "{}:\n{}", problems.len(), problems.join("\n"));
 }
 
 #[test]

@@ -22,6 +22,12 @@ pub struct Options {
     // A statement may begin with a comment, which begins with hyphens.
     #[arg(allow_hyphen_values = true)]
     sql: String,
+    /// Serve the hidden tables of a debug run, or of a run that is over, as well; the look is recorded.
+    #[arg(long)]
+    xray: bool,
+    /// Day that hidden.customers shows [default: the last one].
+    #[arg(long, value_name = "DAY", requires = "xray")]
+    day: Option<u32>,
     /// Format of the result.
     #[arg(long, value_enum, default_value = "table")]
     format: RowFormat,
@@ -43,9 +49,13 @@ pub enum RowFormat {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    let statement = statement(&options.sql, context)?;
-    context.look(&folder, "query", &statement)?;
-    let rows = ask(&folder, &statement, &context.seal_key()?)?;
+    let rows = if options.xray {
+        ask_xray(&folder, options, context)?
+    } else {
+        let statement = statement(&options.sql, context)?;
+        context.look(&folder, "query", &statement)?;
+        ask(&folder, &statement, &context.seal_key()?)?
+    };
     match options.format {
         RowFormat::Table => print(&printable(&crate::plain::table(&rows))),
         RowFormat::Csv => print(&as_csv(&rows)?),
@@ -69,6 +79,17 @@ fn statement(given: &str, context: &Context) -> Result<String, Failure> {
         }
         None => Ok(given.to_owned()),
     }
+}
+
+/// Asks the hidden tables too. The look is a line of the run, so it is opened to be written.
+fn ask_xray(folder: &Path, options: &Options, context: &Context) -> Result<Rows, Failure> {
+    context.check_look(folder)?;
+    let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
+    session.refuse_to_look_inside()?;
+    let statement = statement(&options.sql, context)?;
+    let rows = session.xray_query(&statement, options.day)?;
+    session.save()?;
+    Ok(rows)
 }
 
 /// Asks the run's database, which is brought up to date on the disk if it is not complete. Where somebody plays the run,

@@ -1,4 +1,5 @@
-//! The visible tables as data: for the schema browser, the documentation and the help of the SQL prompt.
+//! The tables as data: the visible ones for the schema browser, the documentation and the help of the SQL prompt, the hidden
+//! ones for the connection of the x-ray.
 
 use std::sync::LazyLock;
 
@@ -46,6 +47,50 @@ static CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     toml::from_str::<Catalogue>(text).expect("the shipped catalogue of tables is tested").table
 });
 
+static HIDDEN: LazyLock<Vec<Table>> = LazyLock::new(|| {
+    let text = include_str!("../../assets/hidden_tables.toml");
+    toml::from_str::<Catalogue>(text).expect("the catalogue of hidden tables is tested").table
+});
+
+/// What the statements of a connection may name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// The visible tables.
+    Visible,
+    /// The hidden tables of the x-ray as well.
+    Hidden,
+}
+
+impl Scope {
+    /// The tables, those of the company first.
+    pub(super) fn tables(self) -> impl Iterator<Item = &'static Table> {
+        let hidden = match self {
+            Scope::Visible => &[][..],
+            Scope::Hidden => &HIDDEN,
+        };
+        CATALOGUE.iter().chain(hidden)
+    }
+
+    /// The hidden table that a statement reads, by the schema and the name that the engine reports: it reports the schema as
+    /// it is written where only rows are counted, so that none may be given.
+    pub(super) fn hidden_table(self, schema: Option<&str>, name: &str) -> Option<&'static Table> {
+        let is_there = match schema {
+            Some(schema) => schema.eq_ignore_ascii_case(HIDDEN_SCHEMA),
+            None => table(name).is_none(),
+        };
+        let mut own = self.tables().filter(|_| is_there);
+        own.find(|table| table.hidden_name().is_some_and(|own| own.eq_ignore_ascii_case(name)))
+    }
+}
+
+/// Schema of the hidden tables.
+pub(super) const HIDDEN_SCHEMA: &str = "hidden";
+
+/// The hidden tables of the x-ray; their names have the schema before them.
+pub fn hidden_tables() -> &'static [Table] {
+    &HIDDEN
+}
+
 /// All visible tables.
 pub fn tables() -> &'static [Table] {
     &CATALOGUE
@@ -68,6 +113,11 @@ impl Table {
             parts.push(format!("PRIMARY KEY ({})", self.key.join(", ")));
         }
         format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
+    }
+
+    /// The name of a hidden table within its schema; none of a visible one.
+    fn hidden_name(&self) -> Option<&str> {
+        self.name.strip_prefix(HIDDEN_SCHEMA)?.strip_prefix('.')
     }
 
     /// The column that numbers its rows, where one does.
@@ -107,6 +157,19 @@ mod tests {
                 .all(|table| table.key.iter().all(|key| table.columns.iter().any(|c| c.name == *key)))
         );
         assert!(table("LEDGER").is_some() && table("customer_state").is_none());
+    }
+
+    #[test]
+    fn hidden_tables_are_named_by_their_schema_and_by_no_other_connection() {
+        assert_eq!(hidden_tables().len(), 7);
+        assert!(hidden_tables().iter().all(|own| own.hidden_name().is_some() && table(&own.name).is_none()));
+        let named =
+            |scope: Scope, schema, name| scope.hidden_table(schema, name).map(|own| own.name.as_str());
+        assert_eq!(named(Scope::Hidden, Some("HIDDEN"), "Groups"), Some("hidden.groups"));
+        assert_eq!(named(Scope::Hidden, None, "groups"), Some("hidden.groups"));
+        assert_eq!(named(Scope::Hidden, None, "customers"), None, "the visible table is meant");
+        assert_eq!(named(Scope::Hidden, Some("main"), "groups"), None);
+        assert_eq!(named(Scope::Visible, Some("hidden"), "groups"), None);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use rusqlite::Connection;
 use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
 use rusqlite::limits::Limit;
 
-use super::catalogue;
+use super::catalogue::{self, Scope};
 
 /// What the authorizer objected to last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -198,6 +198,8 @@ pub(super) struct Guard {
     reads: Reads,
     /// None where tables have no inside.
     views: Option<InnerViews>,
+    /// What statements may name.
+    scope: Scope,
 }
 
 impl Guard {
@@ -205,7 +207,7 @@ impl Guard {
     ///
     /// SQLite tells the authorizer from within which view a table is read, but a common table expression counts as
     /// a view there. So the insides open only to views whose names nobody can write.
-    pub fn set_up(connection: &Connection) -> rusqlite::Result<Guard> {
+    pub fn set_up(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
         let mut statement =
             connection.prepare("SELECT name, sql FROM main.sqlite_schema WHERE type = 'view'")?;
@@ -219,12 +221,12 @@ impl Guard {
         }
         let names = views.into_iter().map(|(name, _)| name).collect();
         let views = Some(InnerViews { secret, names });
-        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views })
+        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views, scope })
     }
 
     /// A guard of tables that have no inside.
-    pub fn of_ordinary_tables() -> Guard {
-        Guard { objections: Objections::default(), reads: Reads::default(), views: None }
+    pub fn of_ordinary_tables(scope: Scope) -> Guard {
+        Guard { objections: Objections::default(), reads: Reads::default(), views: None, scope }
     }
 
     /// The columns that statements read under this guard.
@@ -258,10 +260,22 @@ impl Guard {
             AuthAction::Select | AuthAction::Recursive => None,
             AuthAction::Function { function_name } if !UNSAFE_FUNCTIONS.contains(&function_name) => None,
             AuthAction::Read { table_name, column_name } => {
-                self.reading(table_name, column_name, context.accessor)
+                match self.scope.hidden_table(context.database_name, table_name) {
+                    Some(table) => {
+                        self.note_read(&table.name, column_name);
+                        None
+                    }
+                    None => self.reading(table_name, column_name, context.accessor),
+                }
             }
             AuthAction::Pragma { .. } => Some(Objection::Schema),
             _ => Some(Objection::Write),
+        }
+    }
+
+    fn note_read(&self, table: &str, column: &str) {
+        if self.views.is_none() {
+            self.reads.add(table, column);
         }
     }
 
@@ -270,9 +284,7 @@ impl Guard {
         let inside = INSIDES.iter().find(|(table, _)| *table == name);
         let is_inner_view =
             |name: &str| self.views.as_ref().is_some_and(|views| name.starts_with(&views.secret));
-        if self.views.is_none() {
-            self.reads.add(&name, column);
-        }
+        self.note_read(&name, column);
         let visible =
             catalogue::table(&name).is_some() || FUNCTIONS.contains(&name.as_str()) || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);

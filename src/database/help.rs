@@ -2,19 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use super::catalogue::{Table, table, tables};
+use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
 use super::guard::is_unsafe_function;
 use super::tokens::{Token, TokenKind, tokens};
 use crate::notation::nearest;
 
 /// The message of the engine, with what is valid instead. What is proposed comes from the visible tables, the functions
 /// of the engine and the statement itself, and from nothing else.
-pub(super) fn explain_error(message: &str, sql: &str) -> String {
+pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {
-        return unknown_column(column, sql);
+        return unknown_column(column, sql, scope);
     }
     if let Some(name) = message.strip_prefix("no such table: ") {
-        return unknown_table(name);
+        return unknown_table(name, scope);
     }
     if let Some(name) = message.strip_prefix("no such function: ") {
         let known = functions();
@@ -22,8 +22,8 @@ pub(super) fn explain_error(message: &str, sql: &str) -> String {
         return format!("there is no function {name}{meant}");
     }
     if let Some(column) = message.strip_prefix("ambiguous column name: ") {
-        let holders: Vec<&str> = tables()
-            .iter()
+        let holders: Vec<&str> = scope
+            .tables()
             .filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(column)))
             .map(|table| table.name.as_str())
             .collect();
@@ -67,12 +67,15 @@ fn functions() -> Vec<String> {
     names().unwrap_or_default().into_iter().filter(can_be_called).collect()
 }
 
-fn unknown_table(name: &str) -> String {
-    let mut names: Vec<&str> = tables().iter().map(|table| table.name.as_str()).collect();
+fn unknown_table(name: &str, scope: Scope) -> String {
+    let mut names: Vec<&str> = scope.tables().map(|table| table.name.as_str()).collect();
     names.sort_unstable();
-    let alone = name.split_once('.').map_or("", |(_, alone)| alone);
+    let (schema, alone) = name.split_once('.').unwrap_or_default();
     let help = match table(alone) {
         Some(_) => format!("; write {alone} alone"),
+        None if scope == Scope::Hidden && schema.eq_ignore_ascii_case(HIDDEN_SCHEMA) => {
+            meant(name, names.iter().copied())
+        }
         None => meant(if alone.is_empty() { name } else { alone }, names.iter().copied()),
     };
     // A question ends with its mark.
@@ -80,8 +83,8 @@ fn unknown_table(name: &str) -> String {
     format!("there is no table {name}{help}{end} tables are {}", names.join(", "))
 }
 
-fn unknown_column(column: &str, sql: &str) -> String {
-    let mentioned = mentioned_tables(sql);
+fn unknown_column(column: &str, sql: &str, scope: Scope) -> String {
+    let mentioned = mentioned_tables(sql, scope);
     if mentioned.is_empty() {
         return format!("there is no column {column}; the table browser lists the columns of every table");
     }
@@ -94,7 +97,7 @@ fn unknown_column(column: &str, sql: &str) -> String {
         false => meant(alone, columns.iter().copied()),
     };
     let elsewhere =
-        tables().iter().filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(alone)));
+        scope.tables().filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(alone)));
     let elsewhere: Vec<&str> = elsewhere.map(|table| table.name.as_str()).collect();
     if help.is_empty() && !columns.contains(alone) && !elsewhere.is_empty() {
         let verb = if elsewhere.len() == 1 { "has" } else { "have" };
@@ -111,17 +114,18 @@ fn unknown_column(column: &str, sql: &str) -> String {
     format!("there is no column {column}{help}{end}{}", lists.join("; "))
 }
 
-/// Visible tables whose names stand in a statement as whole words.
-fn mentioned_tables(sql: &str) -> Vec<&'static Table> {
+/// Tables whose names stand in a statement as whole words.
+fn mentioned_tables(sql: &str, scope: Scope) -> Vec<&'static Table> {
     let words: Vec<&str> = sql.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
-    tables().iter().filter(|table| words.iter().any(|word| word.eq_ignore_ascii_case(&table.name))).collect()
+    let stands = |name: &str| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+    scope.tables().filter(|table| table.name.split('.').all(stands)).collect()
 }
 
 /// For a statement without rows: comparisons `column = 'text'` with a text the column can never hold.
-pub(super) fn hints(sql: &str) -> Option<String> {
-    let mentioned = mentioned_tables(sql);
+pub(super) fn hints(sql: &str, scope: Scope) -> Option<String> {
+    let mentioned = mentioned_tables(sql, scope);
     let mut hints = Vec::new();
-    for (column, value) in text_comparisons(sql) {
+    for (column, value) in text_comparisons(sql, scope) {
         let lists = mentioned
             .iter()
             .flat_map(|table| &table.columns)
@@ -137,7 +141,7 @@ pub(super) fn hints(sql: &str) -> Option<String> {
 
 /// Pairs of column and text out of `column = 'text'`, wherever they stand and whichever side is which. A text in double
 /// quotes is one where the engine finds no column of that name.
-fn text_comparisons(sql: &str) -> Vec<(String, String)> {
+fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
     let own = tokens(sql);
     let mut found = Vec::new();
     for (at, token) in own.iter().enumerate() {
@@ -146,7 +150,7 @@ fn text_comparisons(sql: &str) -> Vec<(String, String)> {
         let Some(left) = own[..at].iter().rfind(|before| !before.is_sign("=")) else { continue };
         let Some(right) = own.get(at + 1).filter(|_| compares) else { continue };
         for (column, text) in [(left, right), (right, left)] {
-            if is_text(text) && column.may_name() && !is_text(column) {
+            if is_text(text, scope) && column.may_name() && !is_text(column, scope) {
                 found.push((column.content().into_owned(), text.content().into_owned()));
             }
         }
@@ -154,9 +158,9 @@ fn text_comparisons(sql: &str) -> Vec<(String, String)> {
     found
 }
 
-fn is_text(token: &Token<'_>) -> bool {
+fn is_text(token: &Token<'_>, scope: Scope) -> bool {
     let is_column = |name: &str| {
-        let mut columns = tables().iter().flat_map(|table| &table.columns);
+        let mut columns = scope.tables().flat_map(|table| &table.columns);
         columns.any(|column| column.name.eq_ignore_ascii_case(name))
     };
     match token.kind {
@@ -169,6 +173,14 @@ fn is_text(token: &Token<'_>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn explain_error(message: &str, sql: &str) -> String {
+        super::explain_error(message, sql, Scope::Visible)
+    }
+
+    fn hints(sql: &str) -> Option<String> {
+        super::hints(sql, Scope::Visible)
+    }
 
     #[test]
     fn unknown_columns_are_answered_with_the_valid_ones() {
@@ -269,5 +281,24 @@ mod tests {
         assert_eq!(hints("SELECT * FROM subscriptions WHERE status = \"plan\""), None);
         assert_eq!(hints("SELECT * FROM subscriptions WHERE status = \"lost\" -- or = 'active'"), None);
         assert_eq!(hints("SELECT 'status = ''active''' FROM subscriptions WHERE end_day = 5"), None);
+    }
+
+    #[test]
+    fn the_x_ray_is_told_of_its_own_tables_and_nobody_else_is() {
+        let told = |message: &str, sql: &str| super::explain_error(message, sql, Scope::Hidden);
+        let text = told("no such table: hidden.group", "");
+        assert!(text.starts_with("there is no table hidden.group; did you mean hidden.groups"), "{text}");
+        assert!(text.contains("hidden.competitors, hidden.customers, hidden.drift"), "{text}");
+        let text = told("no such column: reputaton", "SELECT reputaton FROM hidden.groups");
+        assert!(text.contains("did you mean reputation? hidden.groups has day, group_id"), "{text}");
+        let sql = "SELECT 1 FROM hidden.threads WHERE kind = 'lead'";
+        let hint = super::hints(sql, Scope::Hidden).expect("a hint");
+        assert!(hint.contains("'new_lead', 'plan_change'"), "{hint}");
+        assert_eq!(hints(sql), None);
+        let unknown = |schema: &str| {
+            explain_error(&format!("no such table: {schema}.groups"), "").replace(schema, "other")
+        };
+        assert_eq!(unknown("hidden"), unknown("sealed"));
+        assert!(!unknown("sealed").contains("hidden"));
     }
 }

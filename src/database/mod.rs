@@ -3,19 +3,23 @@
 //! `world.db` is a projection of the facts of each day, never the truth: a writer thread ([`Projector`]) turns
 //! facts into rows while the player reads and decides, and the file can be rebuilt from the trajectory at any
 //! time. Queries go through a guarded read-only connection ([`QueryConnection`]). What is hidden is never written here, so
-//! no query, tool or editor can find it (docs/formats/database.md).
+//! no query, tool or editor can find it (docs/formats/database.md). The connection of the x-ray keeps it beside the file, in
+//! memory of its own (docs/formats/hidden-tables.md).
 
 pub(crate) mod catalogue;
 pub mod query;
 pub(crate) mod text;
 
+mod answer;
 mod block_table;
 mod blocks;
 mod by_customer;
 mod by_text;
 mod day_table;
+mod filling;
 mod guard;
 mod help;
+mod hidden;
 mod interrupt;
 mod issues;
 mod ledger;
@@ -35,7 +39,9 @@ mod tokens;
 #[cfg(test)]
 mod tests;
 
-pub use catalogue::{Column, Table, table, tables};
+pub use answer::{Cell, Rows, number_at, text_at};
+pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};
+pub use hidden::HiddenValue;
 pub use interrupt::{Interrupt, Ticket};
 pub use location::Location;
 pub use plain_copy::copy_for_other_programs;
@@ -43,5 +49,5 @@ pub use projector::{
     Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,
     position_of, query_connection,
 };
-pub use query::{Cell, QueryConnection, QueryError, Rows, ScriptError, number_at, text_at};
+pub use query::{QueryConnection, QueryError, ScriptError};
 pub use rows::{Entry, ForecastRow};

@@ -1,8 +1,8 @@
 //! Query plans for people: how a question is answered, without the names of what only the inside has.
 
+use super::answer::{Cell, text_at};
 use super::catalogue::{table, tables};
 use super::guard::visible_name;
-use super::query::{Cell, text_at};
 use super::tokens::tokens;
 
 /// The column of a plan with the number of the step that a step belongs to; the first column numbers it.

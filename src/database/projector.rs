@@ -10,6 +10,7 @@ use std::thread::JoinHandle;
 use rusqlite::{Connection, OptionalExtension};
 
 use super::blocks::SharedStore;
+use super::catalogue::Scope;
 use super::loading::{BlockSource, load_store};
 use super::location::Location;
 use super::query::QueryConnection;
@@ -173,9 +174,9 @@ impl Projector {
     ///
     /// # Errors
     /// The database cannot be opened for reading.
-    pub fn connection(&self) -> Result<QueryConnection, ProjectionError> {
+    pub fn connection(&self, scope: Scope) -> Result<QueryConnection, ProjectionError> {
         let source = BlockSource::Writer(self.store.clone(), self.gate.clone());
-        QueryConnection::open(&self.location, source).map_err(told)
+        QueryConnection::open(&self.location, source, scope).map_err(told)
     }
 
     /// Leaves the database this many pages beside those it has, as a full disk does.
@@ -355,7 +356,10 @@ fn open_existing(
 ///
 /// # Errors
 /// There is none, or it is no database of a run.
-pub fn query_connection(location: &Location) -> Result<(QueryConnection, Position), ProjectionError> {
+pub fn query_connection(
+    location: &Location,
+    scope: Scope,
+) -> Result<(QueryConnection, Position), ProjectionError> {
     let missing = || ProjectionError("there is no database yet".to_owned());
     if location.path().is_none_or(|path| !path.exists()) {
         return Err(missing());
@@ -366,7 +370,7 @@ pub fn query_connection(location: &Location) -> Result<(QueryConnection, Positio
         return Err(ProjectionError("another version of the program created it".to_owned()));
     }
     let source = BlockSource::File(RefCell::default());
-    let connection = QueryConnection::open(location, source).map_err(told)?;
+    let connection = QueryConnection::open(location, source, scope).map_err(told)?;
     Ok((connection, position))
 }
 

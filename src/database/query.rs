@@ -10,15 +10,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rusqlite::hooks::{AuthContext, Authorization};
-use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ffi};
 
+use super::answer::{Cell, Rows};
 use super::block_table;
 use super::blocks::{BlockStore, Seen};
+use super::catalogue::Scope;
 use super::guard::{
     Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
+use super::hidden;
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::loading::BlockSource;
 use super::location::Location;
@@ -26,60 +28,6 @@ use super::packed_tables;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
 use super::tokens::tokens;
-
-/// One value of a result.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// SQL NULL.
-    Null,
-    /// A whole number.
-    Integer(i64),
-    /// A number.
-    Real(f64),
-    /// Text; blobs arrive as text too.
-    Text(String),
-}
-
-impl Cell {
-    fn text_length(&self) -> usize {
-        match self {
-            Cell::Text(text) => text.len(),
-            _ => 0,
-        }
-    }
-}
-
-/// A result.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Rows {
-    /// Names of the columns; they may repeat.
-    pub columns: Vec<String>,
-    /// Rows, each with one cell per column.
-    pub rows: Vec<Vec<Cell>>,
-    /// Whether more rows exist than were fetched.
-    pub truncated: bool,
-    /// What to know about the result, when it was cut.
-    pub warning: Option<String>,
-    /// Why an empty result may be empty.
-    pub hint: Option<String>,
-}
-
-/// A cell of a row as a number; 0 if it holds none.
-pub fn number_at(row: &[Cell], at: usize) -> f64 {
-    match row.get(at) {
-        Some(Cell::Integer(number)) => *number as f64,
-        Some(Cell::Real(number)) => *number,
-        _ => 0.0,
-    }
-}
-
-/// A cell of a row as text; empty if it holds none.
-pub fn text_at(row: &[Cell], at: usize) -> &str {
-    match row.get(at) {
-        Some(Cell::Text(text)) => text,
-        _ => "",
-    }
-}
 
 /// Why a query was not answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -116,13 +64,15 @@ const MOST_TEXT: usize = 64 << 20;
 
 /// A place to ask questions.
 pub struct QueryConnection {
-    released: Released,
-    connection: Connection,
+    pub(super) released: Released,
+    pub(super) connection: Connection,
+    /// What statements may name.
+    scope: Scope,
     objections: Objections,
     views: Option<InnerViews>,
     /// Set while the program itself works on the connection.
     trusted: Arc<AtomicBool>,
-    interrupt: Interrupt,
+    pub(super) interrupt: Interrupt,
     source: BlockSource,
     /// The blocks that the running query sees.
     seen: Arc<Seen>,
@@ -130,14 +80,21 @@ pub struct QueryConnection {
 
 impl QueryConnection {
     /// Opens a guarded connection.
-    pub(super) fn open(location: &Location, source: BlockSource) -> rusqlite::Result<QueryConnection> {
-        let released = Released::open()?;
+    pub(super) fn open(
+        location: &Location,
+        source: BlockSource,
+        scope: Scope,
+    ) -> rusqlite::Result<QueryConnection> {
+        let released = Released::open(scope)?;
         let mut connection = location.open_reader()?;
         let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
-        let guard = Guard::set_up(&connection)?;
+        if scope == Scope::Hidden {
+            hidden::attach(&connection)?;
+        }
+        let guard = Guard::set_up(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
         // Virtual tables connect at their first use, which the authorizer would refuse.
@@ -156,7 +113,17 @@ impl QueryConnection {
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
         connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
-        Ok(QueryConnection { released, connection, objections, views, trusted, interrupt, source, seen })
+        Ok(QueryConnection {
+            released,
+            connection,
+            scope,
+            objections,
+            views,
+            trusted,
+            interrupt,
+            source,
+            seen,
+        })
     }
 
     /// A handle that stops the queries of this connection.
@@ -275,7 +242,7 @@ impl QueryConnection {
         }
     }
 
-    fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
+    pub(super) fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
         self.trusted.store(true, Ordering::Relaxed);
         let done = work(&self.connection);
         self.trusted.store(false, Ordering::Relaxed);
@@ -291,7 +258,7 @@ impl QueryConnection {
         self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
-    fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
+    pub(super) fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
         self.trusting(|connection| connection.execute_batch(sql))
     }
 
@@ -340,7 +307,7 @@ impl QueryConnection {
                 truncated = true;
                 break;
             }
-            let cells = (0..width).map(|at| row.get_ref(at).map(cell)).collect::<Result<Vec<_>, _>>()?;
+            let cells = (0..width).map(|at| row.get_ref(at).map(Cell::of)).collect::<Result<Vec<_>, _>>()?;
             text += cells.iter().map(Cell::text_length).sum::<usize>();
             if text > MOST_TEXT {
                 return Err(Fault::TooLarge);
@@ -350,14 +317,14 @@ impl QueryConnection {
         }
         let warning = truncated
             .then(|| format!("only the first {} rows are shown; more exist: aggregate in SQL", limits.rows));
-        let hint = if rows.is_empty() { hints(sql) } else { None };
+        let hint = if rows.is_empty() { hints(sql, self.scope) } else { None };
         if is_plan {
             plan::mask(&mut rows, sql);
         }
         Ok(Rows { columns, rows, truncated, warning, hint })
     }
 
-    fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
+    pub(super) fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
         let objection = match self.released.objections().last() {
             Objection::None => self.objections.last(),
             objection => objection,
@@ -424,7 +391,7 @@ impl QueryConnection {
                 return refusal("sql_schema", SCHEMA_WORDS);
             }
         }
-        QueryError { code: "sql_error", message: explain_error(&text, sql), position }
+        QueryError { code: "sql_error", message: explain_error(&text, sql, self.scope), position }
     }
 }
 
@@ -485,16 +452,5 @@ fn hidden_refusal(table: Option<&str>) -> QueryError {
     match table {
         Some(table) => refusal("sql_hidden_table", &format!("table {table} is not accessible")),
         None => refusal("sql_hidden_table", "that table is not accessible; the 19 tables of the browser are"),
-    }
-}
-
-fn cell(value: ValueRef<'_>) -> Cell {
-    match value {
-        ValueRef::Null => Cell::Null,
-        ValueRef::Integer(number) => Cell::Integer(number),
-        ValueRef::Real(number) => Cell::Real(number),
-        ValueRef::Text(bytes) | ValueRef::Blob(bytes) => {
-            Cell::Text(String::from_utf8_lossy(bytes).into_owned())
-        }
     }
 }

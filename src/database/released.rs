@@ -12,8 +12,9 @@ use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::Value;
 use rusqlite::{Batch, Connection, Statement};
 
-use super::catalogue::{Table, table, tables};
+use super::catalogue::{Scope, Table, table, tables};
 use super::guard::{CUSTOMER, Columns, Guard, Objections, Reads, limit};
+use super::hidden;
 use super::query::Fault;
 use super::tokens::{Token, tokens};
 
@@ -55,14 +56,17 @@ pub(super) struct Reading {
 type Program = Vec<Vec<Value>>;
 
 impl Released {
-    /// Declares the tables in memory.
-    pub fn open() -> rusqlite::Result<Released> {
+    /// Declares the tables in memory; the hidden ones beside them where statements may name them.
+    pub fn open(scope: Scope) -> rusqlite::Result<Released> {
         let mut connection = Connection::open_in_memory()?;
+        if scope == Scope::Hidden {
+            hidden::attach(&connection)?;
+        }
         let declarations: Vec<String> = tables().iter().map(Table::declaration).collect();
         connection.execute_batch(&declarations.join(";\n"))?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
-        let guard = Guard::of_ordinary_tables();
+        let guard = Guard::of_ordinary_tables(scope);
         let (objections, reads) = (guard.objections(), guard.reads());
         connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
             guard.authorize(&context)

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::query::Limits;
 use super::{
-    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, number_at, text_at,
+    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, Scope, number_at, text_at,
 };
 use crate::world::day::step_day;
 use crate::world::events::{
@@ -72,7 +72,7 @@ impl Company {
             self.projector.commit(position(u64::from(self.world.day)));
         }
         self.projector.wait().expect("everything is written");
-        self.projector.connection().expect("a connection")
+        self.projector.connection(Scope::Visible).expect("a connection")
     }
 }
 
@@ -145,7 +145,7 @@ fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
     projector.commit(position(4));
     projector.wait().expect("everything is written");
     let found = rows(
-        &projector.connection().expect("a connection"),
+        &projector.connection(Scope::Visible).expect("a connection"),
         "SELECT issue_id, open_day, days_open FROM issues ORDER BY 1",
     );
     let expected = [[1, 1, 2], [2, 3, 1]].map(|row| row.map(Cell::Integer).to_vec());
@@ -184,7 +184,7 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
     projector.commit(position(5));
     projector.wait().expect("everything is written");
     let sql = "SELECT start_day, end_day, status, effective_price FROM subscriptions";
-    let found = rows(&projector.connection().expect("a connection"), sql);
+    let found = rows(&projector.connection(Scope::Visible).expect("a connection"), sql);
     let expected =
         [Cell::Integer(2), Cell::Integer(5), Cell::Text("cancelled".to_owned()), Cell::Real(18.0)].to_vec();
     assert_eq!(found.rows, [expected]);
@@ -499,7 +499,7 @@ fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
     let mut stopped = 0;
     for steps in (250..60_000).step_by(1250) {
         match connection.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
-            Ok(rows) => assert_eq!(super::query::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
+            Ok(rows) => assert_eq!(super::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
             Err(error) => {
                 assert_eq!(error.code, "sql_timeout", "after {steps} steps: {}", error.message);
                 stopped += 1;
@@ -611,7 +611,7 @@ fn a_database_of_another_layout_is_made_anew() {
         .expect("an older layout");
     drop(file);
     assert!(!super::has_layout_of_now(&location));
-    assert!(super::query_connection(&location).is_err());
+    assert!(super::query_connection(&location, Scope::Visible).is_err());
     let (projector, found) =
         Projector::start(location.clone(), 1, Arc::new(Params::shipped()), |_| true).expect("it opens");
     assert_eq!(found, None);
@@ -630,7 +630,7 @@ fn days_of_a_file_are_read_when_their_table_is_named_and_have_to_be_whole() {
     let before = [usage, ledger].map(|sql| rows(&connection, sql));
     drop((connection, company));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
-    let (reader, _) = super::query_connection(&location).expect("a connection");
+    let (reader, _) = super::query_connection(&location, Scope::Visible).expect("a connection");
     assert_eq!([usage, ledger].map(|sql| rows(&reader, sql)), before);
     let damaged = file.execute("UPDATE usage_blocks SET packed = x'ff' WHERE day = 30", []);
     assert_eq!(damaged, Ok(1));
@@ -657,12 +657,15 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
     let known = |found: &Position| *found == position(42);
     let (projector, found) = Projector::start(location.clone(), 1, params.clone(), known).expect("it opens");
     assert_eq!(found, Some(position(42)));
-    assert_eq!(rows(&projector.connection().expect("a connection"), usage), before);
+    assert_eq!(rows(&projector.connection(Scope::Visible).expect("a connection"), usage), before);
     drop(projector);
     let (projector, found) =
         Projector::start(location.clone(), 1, params.clone(), |_| false).expect("it opens");
     assert_eq!(found, None);
-    assert_eq!(one(&projector.connection().expect("a connection"), "SELECT count(*) FROM ledger"), 0.0);
+    assert_eq!(
+        one(&projector.connection(Scope::Visible).expect("a connection"), "SELECT count(*) FROM ledger"),
+        0.0
+    );
     drop(projector);
     std::fs::write(folder.path().join("world.db"), b"not a database at all, but long enough to look")
         .expect("a file");
@@ -691,7 +694,7 @@ fn queries_during_a_week_see_the_state_before_it() {
 #[test]
 fn a_reader_and_the_writer_never_wait_for_each_other() {
     let mut company = Company::open(Location::memory());
-    let connection = company.projector.connection().expect("a connection");
+    let connection = company.projector.connection(Scope::Visible).expect("a connection");
     let over = Arc::new(AtomicBool::new(false));
     let is_over = over.clone();
     // Without pause, so that it comes between the first row of a transaction and its end.

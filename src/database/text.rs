@@ -2,7 +2,7 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::query::{Cell, Rows};
+use super::answer::{Cell, Rows};
 
 /// A value of a result as text.
 pub fn cell_text(cell: &Cell) -> String {

@@ -217,6 +217,7 @@ impl Interpreter {
             "explain" | "what" => self.explain(word, rest),
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
+            "xray" => self.hidden_tables(rest, column),
             "pause" => self.pause(rest),
             "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
             "run" => self.run_days(rest, column).unwrap_or_else(usage),

@@ -63,7 +63,12 @@ pub fn parse(line: &str) -> Result<Line, Problem> {
     if word.is_empty() {
         return Err(reader.problem("a line begins with the name of a command or tool"));
     }
-    if TEXT_COMMANDS.contains(&word.as_str()) || (word == "inbox" && has_condition(reader.rest())) {
+    let is_text = match word.as_str() {
+        "inbox" => has_condition(reader.rest()),
+        "xray" => statement_of_xray(reader.rest()).is_some(),
+        word => TEXT_COMMANDS.contains(&word),
+    };
+    if is_text {
         return Ok(Line::Text { word, rest: reader.rest().trim().to_owned() });
     }
     Ok(Line::Call { word, column, arguments: reader.arguments()? })
@@ -72,6 +77,12 @@ pub fn parse(line: &str) -> Result<Line, Problem> {
 /// Whether the text after `inbox` holds a condition: `where …`, or `all where …`.
 fn has_condition(rest: &str) -> bool {
     rest.split_whitespace().find(|word| *word != "all") == Some("where")
+}
+
+/// What follows in `xray sql …`: a statement, with a day before it or none; none in another view of the x-ray.
+pub fn statement_of_xray(rest: &str) -> Option<&str> {
+    let rest = rest.trim_start().strip_prefix("sql")?;
+    (rest.is_empty() || rest.starts_with(char::is_whitespace)).then(|| rest.trim())
 }
 
 /// The statement after `sql` and `query`: as it stands, or as the only argument of the tool's call.

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::database::query::{CANCELLED, Limits};
 use crate::database::{
-    Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Ticket, query_connection,
+    Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Scope, Ticket, query_connection,
 };
 use crate::notation::json_number;
 use crate::session::resume::integrity::is_as_left;
@@ -78,7 +78,7 @@ impl Session {
     /// # Errors
     /// The run has no database, or it cannot be read.
     pub fn open_connection(&self) -> Result<QueryConnection, Refusal> {
-        self.projection.open_connection()
+        self.projection.open_connection(Scope::Visible)
     }
 
     /// Waits until the database holds everything up to the last decision day and this week's calls.
@@ -137,11 +137,15 @@ impl Session {
 
     /// The connection of this thread, to a database that holds everything up to now.
     pub(super) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
-        if let Err(problem) = self.wait_for_database() {
-            // There may be room again.
-            self.mend_database().map_err(|_| problem)?;
-        }
+        self.complete_database()?;
         self.projection.connection()
+    }
+
+    /// Waits until the database holds everything up to now, and mends it where it could not be written.
+    pub(super) fn complete_database(&mut self) -> Result<(), Refusal> {
+        let Err(problem) = self.wait_for_database() else { return Ok(()) };
+        // There may be room again.
+        self.mend_database().map_err(|_| problem)
     }
 }
 
@@ -176,7 +180,7 @@ pub fn connection_to_file(
     if !is_as_left(folder, key) {
         return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
     }
-    query_connection(&Location::File(folder.join("world.db")))
+    query_connection(&Location::File(folder.join("world.db")), Scope::Visible)
         .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }
 

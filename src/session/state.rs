@@ -25,6 +25,7 @@ use crate::session::trajectory::record::Ended;
 use crate::session::witness::code_words;
 use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::session::xray::hidden_day::Diary;
+use crate::session::xray::hidden_tables::HiddenTables;
 use crate::tools::Numbers;
 use crate::voice::CompanyNames;
 use crate::world::identifiers::ByGroup;
@@ -66,6 +67,8 @@ pub struct Session {
     pub(super) diary: Arc<Diary>,
     /// Conditions at which it stops.
     pub(super) breakpoints: Breakpoints,
+    /// The hidden tables; none before somebody asks them.
+    pub(super) hidden_tables: Option<HiddenTables>,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

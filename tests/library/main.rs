@@ -4,6 +4,7 @@ mod battery;
 mod breakpoints;
 mod durability;
 mod enterprise;
+mod hidden;
 mod notebook;
 mod queries;
 mod session;

@@ -523,3 +523,60 @@ run 3 until subscribers(S1) < 0   # never
         assert!(text.contains(part), "{part} is missing in\n{text}");
     }
 }
+
+#[test]
+fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let asked = "xray sql SELECT day, group_id, reputation FROM hidden.groups WHERE group_id = 'S1'\n\
+                 xray sql 3 SELECT count(*) AS n FROM hidden.customers WHERE start_day > 3 # a\n\
+                 xray sql 9 SELECT 1\nxray sql\nxray sql 99999999999 SELECT 1\n\
+                 sql SELECT * FROM hidden.groups\nhelp xray\n";
+    let (said, _) = play(
+        runs.path(),
+        &["--seed", "7", "--days", "28", "--mode", "debug", "--json"],
+        format!("{EXAMPLE}\n{asked}"),
+    );
+    let said = objects(&said);
+    let answer = |at: usize| &said[said.len() - 8 + at];
+    assert_eq!(answer(0)["data"]["row_count"], 7, "{}", answer(0));
+    assert_eq!(answer(0)["data"]["rows"][6]["group_id"], "S1");
+    assert_eq!(answer(1)["code"], "sql_error", "a statement ends where the line does: {}", answer(1));
+    assert_eq!(answer(2)["code"], "day_unknown");
+    assert_eq!((&answer(3)["code"], &answer(4)["code"]), (&"usage".into(), &"usage".into()));
+    assert!(
+        answer(5)["error"].as_str().is_some_and(|text| text.starts_with("there is no table hidden.groups"))
+    );
+    assert!(answer(6)["data"]["command"].as_str().is_some_and(|text| text.contains("xray sql [DAY]")));
+    let query = |options: &[&str]| {
+        let said = program(runs.path()).arg("query").args(options).output().expect("the program ends");
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+        (text(said.stdout), text(said.stderr), said.status.code())
+    };
+    let sql = "SELECT max(day) AS day, count(*) AS n FROM hidden.groups, hidden.pmi USING (day)";
+    let (out, err, code) = query(&["--xray", "latest", sql, "--format", "csv"]);
+    assert_eq!((out.as_str(), code), ("day,n\n7,182\n", Some(0)), "{err}");
+    let (out, err, _) =
+        query(&["--xray", "--day", "3", "latest", "SELECT count(*) > 0 AS n FROM hidden.customers"]);
+    assert!(out.contains("\n1\n"), "{out}{err}");
+    let (_, err, code) = query(&["latest", sql]);
+    assert!(err.contains("there is no table hidden.groups") && code != Some(0), "{err}");
+    let lines = std::fs::read_dir(runs.path())
+        .expect("a folder")
+        .flatten()
+        .find_map(|entry| std::fs::read_to_string(entry.path().join("trajectory.jsonl")).ok());
+    let lines = lines.expect("a run");
+    assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
+    // Elsewhere the answer is the same whatever is asked for.
+    let (said, _) =
+        play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
+    let said = objects(&said);
+    for at in said.len() - 8..said.len() - 3 {
+        assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
+        assert_eq!(said[at]["error"], said[said.len() - 4]["error"]);
+    }
+    for sql in [sql, "nonsense", "no-such-query"] {
+        let (out, err, code) = query(&["--xray", "latest", sql]);
+        assert!(out.is_empty() && code != Some(0), "{out}");
+        assert!(err.contains("the x-ray works in debug runs and in runs that are over"), "{err}");
+    }
+}

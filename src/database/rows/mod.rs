@@ -27,7 +27,8 @@ use crate::world::identifiers::Plan;
 use crate::world::params::Params;
 use issues::IssueWriter;
 use ledger::LedgerWriter;
-use many::{NOTHING, insert_rows, or_nothing, real, text, whole};
+use many::or_nothing;
+pub(super) use many::{NOTHING, Value, insert_rows, real, text, whole};
 use notices::NoticeWriter;
 use words::WordWriter;
 

@@ -7,17 +7,19 @@ mod views;
 use serde_json::Value;
 
 use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
+use super::super::grammar::{Argument, Problem, statement_of_xray};
+use super::super::signals::Phase;
+use super::{Interpreter, problem, usage};
+use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::xray::{company_in_words, customer_in_words, leads_in_words};
-use crate::session::{LeadFactor, Lens, Refusal};
+use crate::session::{LeadFactor, Lens, Refusal, rows_as_json};
 use crate::world::identifiers::Group;
 use data::{company_as_data, customer_as_data, leads_as_data};
 
 /// What can be shown.
-const VIEWS: [&str; 8] =
-    ["leads", "quality", "satisfaction", "reputation", "spillover", "rivals", "drift", "streams"];
+const VIEWS: [&str; 9] =
+    ["leads", "quality", "satisfaction", "reputation", "spillover", "rivals", "drift", "streams", "sql"];
 
 /// `help xray`
 pub(super) const IN_FULL: &str = "\
@@ -29,7 +31,11 @@ xray spillover [DAY]             how changes of reputation spilled over between 
 xray rivals [DAY]                what rivals could copy, what they did, and the move that is decided next
 xray drift [DAY]                 what the market has added to expectations and budgets, and when it adds the next time
 xray streams PART [N]            the first N draws that the next day makes of a part, and what follows
-Debug runs and runs that are over. DAY is any day that has run, the last one if none is named.";
+xray sql [DAY] SELECT …          asks the database and the tables hidden.groups, hidden.customers, hidden.threads,
+                                 hidden.competitors, hidden.drift, hidden.pmi and hidden.factors, for instance
+                                 xray sql SELECT day, reputation FROM hidden.groups WHERE group_id = 'S1'
+                                 hidden.customers shows DAY; all others have every day
+Debug runs and runs that are over. Each look is recorded. DAY is any day that has run, the last one if none is named.";
 
 impl Interpreter {
     pub(super) fn xray(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
@@ -50,6 +56,26 @@ impl Interpreter {
             _ => return Err(unknown_view(view, &arguments[0])),
         };
         Ok(shown.unwrap_or_else(|refusal| Answer::refused("xray", refusal)))
+    }
+
+    /// `xray sql [DAY] STATEMENT`
+    pub(super) fn hidden_tables(&mut self, rest: &str, column: usize) -> Answer {
+        let asked = self.session.xray_interrupt().and_then(|interrupt| {
+            let (day, sql) = match day_and_statement(rest) {
+                Ok(asked) => asked,
+                Err(text) => return Ok(Err(Problem { text: text.to_owned(), column })),
+            };
+            // What is stopped from here on is this query, though it has not begun.
+            let ticket = interrupt.ticket();
+            self.watch.enter_query(interrupt);
+            self.session.xray_query_as(ticket, sql, day).map(Ok)
+        });
+        self.watch.enter(Phase::Working);
+        match asked {
+            Ok(Ok(rows)) => Answer::done("xray", table(&rows), Value::Object(rows_as_json(&rows))),
+            Ok(Err(problem)) => usage(problem),
+            Err(refusal) => Answer::refused("xray", refusal),
+        }
     }
 
     fn lead_equation(&mut self, arguments: &[Argument]) -> Result<Result<Answer, Refusal>, Problem> {
@@ -85,6 +111,21 @@ impl Interpreter {
             }
             Err(refusal) => Answer::refused("lens", refusal),
         })
+    }
+}
+
+/// The day that is asked for, if one is, and the statement.
+fn day_and_statement(rest: &str) -> Result<(Option<u32>, &str), &'static str> {
+    let rest = statement_of_xray(rest).unwrap_or_default();
+    let digits = rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
+    let (day, sql) = rest.split_at(digits);
+    let day = match day {
+        "" => None,
+        day => Some(day.parse().map_err(|_| "no run has so many days")?),
+    };
+    match sql.trim() {
+        "" => Err("write a statement: xray sql SELECT day, pmi FROM hidden.pmi"),
+        sql => Ok((day, sql)),
     }
 }
 

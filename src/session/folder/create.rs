@@ -166,6 +166,7 @@ impl Session {
             shadow: None,
             diary: Arc::default(),
             breakpoints: Breakpoints::default(),
+            hidden_tables: None,
             clock: PersonalClock::default(),
             memo_in_memory: String::new(),
             remarks: Vec::new(),

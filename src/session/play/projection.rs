@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::database::{
-    Entry, Location, Position, ProjectionError, Projector, QueryConnection, copy_for_other_programs,
+    Entry, Location, Position, ProjectionError, Projector, QueryConnection, Scope, copy_for_other_programs,
     query_connection,
 };
 use crate::session::error::RunError;
@@ -65,10 +65,10 @@ impl Projection {
     }
 
     /// A connection of its own, for another thread.
-    pub(in crate::session) fn open_connection(&self) -> Result<QueryConnection, Refusal> {
+    pub(in crate::session) fn open_connection(&self, scope: Scope) -> Result<QueryConnection, Refusal> {
         let connection = match (&self.projector, &self.finished) {
-            (Some(projector), _) => projector.connection(),
-            (None, Some(location)) => query_connection(location).map(|(connection, _)| connection),
+            (Some(projector), _) => projector.connection(scope),
+            (None, Some(location)) => query_connection(location, scope).map(|(connection, _)| connection),
             (None, None) => return Err(Refusal::new("sql_error", "this run is played without a database")),
         };
         connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
@@ -78,7 +78,7 @@ impl Projection {
     pub(in crate::session) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
         let connection = match self.connection.take() {
             Some(connection) => connection,
-            None => self.open_connection()?,
+            None => self.open_connection(Scope::Visible)?,
         };
         Ok(self.connection.insert(connection))
     }

@@ -49,14 +49,14 @@ impl Session {
         let group = |group: Group| GroupDrifted {
             group,
             is_known: seen.known[group],
-            own: seen.drift.quality[group],
-            expectation: seen.drift.expectation(group),
+            own: seen.market.drift.quality[group],
+            expectation: seen.market.drift.expectation(group),
             step: step_of_group(group, params),
         };
         let next = next_drift_day(day, &params.drift);
         Ok(DriftState {
             day,
-            everyone: seen.drift.global_quality,
+            everyone: seen.market.drift.global_quality,
             step: step_of_everyone(&params.drift),
             next_day: Some(next).filter(|next| *next <= self.simulation.world.total_days),
             groups: Group::all().map(group).collect(),

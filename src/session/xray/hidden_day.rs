@@ -2,16 +2,22 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::company_day::{CompanyDay, company_day};
+use super::mood::mood_of;
 use super::quality_equation::QualityDay;
 use super::reputation_equation::ReputationDay;
 use super::satisfaction_equation::{MoodSums, MoodsByBlock, SatisfactionDay};
 use crate::world::context::DayContext;
+use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::watch::{DayWatch, SettledReputation};
-use crate::world::events::Facts;
+use crate::world::enterprise::{Enterprise, Negotiation, Thread};
+use crate::world::events::{Facts, Reading, Sender};
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::market::arrivals::{Arrivals, lead_context};
+use crate::world::market::competitors::{Event, severity};
 use crate::world::market::drift::DriftTotals;
+use crate::world::market::economy::Dimension;
 use crate::world::market::leads::{LeadFactors, word_of_mouth};
 use crate::world::market::reputation::ReputationBook;
 use crate::world::morning::Morning;
@@ -37,8 +43,12 @@ pub(in crate::session) struct HiddenDay {
     pub(in crate::session) reputation: ReputationDay,
     /// What rivals could copy in the evening.
     pub(in crate::session) banks: Banks,
-    /// How much expectations and budgets had moved in the evening.
-    pub(in crate::session) drift: DriftTotals,
+    /// Threads of the morning in which somebody was still to answer, where they are kept.
+    pub(in crate::session) threads: Vec<CompanyDay>,
+    /// The groups in the evening.
+    pub(in crate::session) groups: ByGroup<GroupEvening>,
+    /// The market in the evening.
+    pub(in crate::session) market: MarketEvening,
 }
 
 /// Improvements, and how much of them no rival has copied.
@@ -54,9 +64,51 @@ pub(in crate::session) struct Banks {
     pub(in crate::session) own: ByGroup<f64>,
 }
 
+/// A group once a day is over.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::session) struct GroupEvening {
+    /// What the company knows of it, 0 before it is found.
+    pub(in crate::session) info_level: u32,
+    /// Active subscriptions.
+    pub(in crate::session) active: u32,
+    /// Reputation.
+    pub(in crate::session) reputation: f64,
+    /// Mean satisfaction and relationship of the active ones; none without any.
+    pub(in crate::session) mood: Option<(f64, f64)>,
+    /// Active ones with an open issue.
+    pub(in crate::session) open_issues: u32,
+    /// Product quality before the multiplier of the model.
+    pub(in crate::session) product_quality: f64,
+    /// Quality by targeted development that no rival has copied yet.
+    pub(in crate::session) bank: f64,
+    /// Factor of the economy on budgets.
+    pub(in crate::session) willingness_to_pay: f64,
+    /// Factor of the economy on the speed of replies.
+    pub(in crate::session) deal_velocity: f64,
+    /// Factor of the economy on the drift of seats.
+    pub(in crate::session) seat_count: f64,
+}
+
+/// The market once a day is over.
+#[derive(Debug, Clone, Default)]
+pub(in crate::session) struct MarketEvening {
+    /// What it has added to curves since day 0.
+    pub(in crate::session) drift: DriftTotals,
+    /// Quality by development for everybody that no rival has copied yet.
+    pub(in crate::session) shared_bank: f64,
+    /// The event of the rivals on this day, with its severity.
+    pub(in crate::session) event: Option<(Event, &'static str)>,
+    /// The index.
+    pub(in crate::session) pmi: f64,
+    /// Its newest measurement, and whether it is published.
+    pub(in crate::session) measured: Option<(Reading, bool)>,
+}
+
 /// Keeps every day that is simulated.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Diary {
+    /// Whether threads are kept as well: every company that negotiates judges every plan, every day.
+    keeps_threads: bool,
     pages: Mutex<Pages>,
 }
 
@@ -75,9 +127,28 @@ struct Pages {
 }
 
 impl Diary {
+    /// An empty one that keeps threads as well.
+    pub(in crate::session) fn with_threads() -> Diary {
+        Diary { keeps_threads: true, ..Diary::default() }
+    }
+
+    /// Whether it keeps threads.
+    pub(in crate::session) fn keeps_threads(&self) -> bool {
+        self.keeps_threads
+    }
+
     /// A day that is over, from 1.
     pub(in crate::session) fn day(&self, day: u32) -> Option<HiddenDay> {
         self.pages().days.get(day.checked_sub(1)? as usize).cloned()
+    }
+
+    /// Hands over the threads of a day: there are many, so they are kept in one place only.
+    pub(in crate::session) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
+        let at = day.checked_sub(1).map(|at| at as usize);
+        let mut pages = self.pages();
+        at.and_then(|at| pages.days.get_mut(at))
+            .map(|day| std::mem::take(&mut day.threads))
+            .unwrap_or_default()
     }
 
     fn pages(&self) -> MutexGuard<'_, Pages> {
@@ -102,6 +173,16 @@ impl DayWatch for Diary {
         let mut pages = self.pages();
         let Some(morning) = pages.morning.take() else { return };
         pages.today.reputation = ReputationDay::of(&morning, settled);
+    }
+
+    fn before_negotiations(&self, enterprise: &Enterprise, customers: &Customers, talks: &Negotiation<'_>) {
+        if !self.keeps_threads {
+            return;
+        }
+        let reappearing = talks.day.params.fidelity.reappearing_threads;
+        let threads = enterprise.threads.iter().filter(|thread| awaits_somebody(thread, reappearing));
+        let seen = threads.filter_map(|thread| company_day(thread, enterprise, customers, talks));
+        self.pages().today.threads = seen.collect();
     }
 
     fn leads_expected(
@@ -136,7 +217,52 @@ impl DayWatch for Diary {
             group_bonus: world.product.group_bonus,
             own: world.product.group_bank,
         };
-        today.drift = world.market.drift.clone();
+        today.groups = ByGroup::from_fn(|group| group_evening(group, world, params));
+        today.market = market_evening(world, params);
         pages.days.push(today);
     }
+}
+
+/// Whether something can still come of a thread: it is open, or dead and the company's answer is under way. One that is dead
+/// and only repeats its loss is not.
+fn awaits_somebody(thread: &Thread, reappearing: bool) -> bool {
+    thread.is_open() || thread.live(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
+}
+
+fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
+    let (market, product) = (&world.market, &world.product);
+    let blocks = || world.customers.groups[group].blocks.iter();
+    let multiplier = |dimension| market.economy.multiplier(group, dimension, params);
+    GroupEvening {
+        info_level: market.knowledge[group].level.into(),
+        active: world.customers.groups[group].active(),
+        reputation: market.reputation.of(group),
+        mood: mood_of(world, group),
+        open_issues: blocks().map(open_issues).sum(),
+        product_quality: product.quality(group, params),
+        bank: product.group_bank[group],
+        willingness_to_pay: multiplier(Dimension::WillingnessToPay),
+        deal_velocity: multiplier(Dimension::DealVelocity),
+        seat_count: multiplier(Dimension::SeatCount),
+    }
+}
+
+fn market_evening(world: &World, params: &Params) -> MarketEvening {
+    let market = &world.market;
+    let newest = market.competitors.last().filter(|event| event.day == world.day);
+    let measured = market.economy.measured().map(|reading| {
+        let published = market.economy.published.as_ref();
+        (*reading, published.is_some_and(|published| published.measured_day == reading.measured_day))
+    });
+    MarketEvening {
+        drift: market.drift.clone(),
+        shared_bank: world.product.shared_bank,
+        event: newest.map(|event| (*event, severity(event.boost, &params.competitor).id())),
+        pmi: market.economy.pmi,
+        measured,
+    }
+}
+
+fn open_issues(block: &Block) -> u32 {
+    block.open_issue_days.iter().filter(|days| **days > 0).count() as u32
 }

@@ -4,12 +4,15 @@
 //! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
 
 pub(in crate::session) mod breakpoint;
+pub(in crate::session) mod company_day;
 pub(in crate::session) mod company_lens;
 pub(in crate::session) mod customer_diary;
 pub(in crate::session) mod customer_lens;
 pub(in crate::session) mod drift_state;
 pub(in crate::session) mod group_views;
 pub(in crate::session) mod hidden_day;
+pub(in crate::session) mod hidden_rows;
+pub(in crate::session) mod hidden_tables;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;
@@ -21,6 +24,7 @@ pub(in crate::session) mod reputation_equation;
 pub(in crate::session) mod rival_state;
 pub(in crate::session) mod satisfaction_equation;
 pub(in crate::session) mod shadow;
+pub(in crate::session) mod sql;
 pub(in crate::session) mod weighed;
 pub(in crate::session) mod writes;
 

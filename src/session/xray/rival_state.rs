@@ -73,7 +73,7 @@ impl Session {
             shared_bonus,
             shared_bank: shared,
             own: improved.map(|group| (group, group_bonus[group], own[group])).collect(),
-            everyone: seen.drift.global_quality,
+            everyone: seen.market.drift.global_quality,
             moves: moves.map(|event| (event, severity(event.boost, law))).collect(),
             next: self.rival_move_after(day, &own),
         })

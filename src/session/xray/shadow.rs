@@ -1,6 +1,6 @@
 //! The days of a run, simulated again beside it and watched.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::hidden_day::{Diary, HiddenDay};
 use crate::session::error::RunError;
@@ -8,6 +8,9 @@ use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 use crate::tools::Refusal;
 use crate::world::day::watch::DayWatch;
+use crate::world::events::Facts;
+use crate::world::params::Params;
+use crate::world::state::World;
 
 impl Session {
     /// Days that are over, as they were seen from within, the first one first.
@@ -18,17 +21,42 @@ impl Session {
         &mut self,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Refusal> {
-        let mut shadow = match self.shadow.take() {
+        let diary = self.diary_of_all_days(self.diary.keeps_threads())?;
+        Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
+    }
+
+    /// What was seen of every day up to now, with the threads of each if they are to be kept: a shadow that was led without
+    /// keeping them begins anew.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn diary_of_all_days(
+        &mut self,
+        with_threads: bool,
+    ) -> Result<Arc<Diary>, Refusal> {
+        let kept = self.shadow.take().filter(|_| self.diary.keeps_threads() == with_threads);
+        let mut shadow = match kept {
             Some(shadow) => shadow,
             None => {
-                self.diary = Arc::new(Diary::default());
+                self.diary = Arc::new(if with_threads { Diary::with_threads() } else { Diary::default() });
                 self.new_shadow(self.diary.clone())?
             }
         };
         // A shadow that went wrong is not kept: the next look begins anew.
         self.lead(&mut shadow, |_| true)?;
         self.shadow = Some(shadow);
-        Ok(days.into_iter().filter_map(|day| self.diary.day(day)).collect())
+        Ok(self.diary.clone())
+    }
+
+    /// The world on the evening of a day that is over.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub(in crate::session) fn world_on(&self, day: u32) -> Result<World, Refusal> {
+        let evening = Arc::new(Evening { day, world: Mutex::default() });
+        self.watch_up_to(day, evening.clone())?;
+        let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
+        world.ok_or_else(|| Refusal::new("not_readable", format!("the record does not lead to day {day}")))
     }
 
     /// A day that is over, as it was seen from within.
@@ -86,6 +114,20 @@ impl Session {
             shadow.apply_line(&path, line).map_err(not_readable)?;
         }
         Ok(())
+    }
+}
+
+/// Keeps the world as one day leaves it.
+struct Evening {
+    day: u32,
+    world: Mutex<Option<World>>,
+}
+
+impl DayWatch for Evening {
+    fn day_over(&self, world: &World, _: &Params, _: &Facts) {
+        if world.day == self.day {
+            *self.world.lock().unwrap_or_else(PoisonError::into_inner) = Some(world.clone());
+        }
     }
 }
 

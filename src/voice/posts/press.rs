@@ -79,15 +79,9 @@ pub(super) fn about_rival(
     estimate: f64,
     choose: Chooser<'_>,
 ) -> String {
-    let severity = match severity {
-        Severity::Minor => "minor",
-        Severity::Moderate => "moderate",
-        Severity::Major => "major",
-        Severity::Transformative => "transformative",
-    };
     let context = context("", RIVAL_VIEWS[usize::from(view) % RIVAL_VIEWS.len()])
         .with("name", name)
-        .with("severity", severity)
+        .with("severity", severity.id())
         .with("estimate", format!("{estimate:.4}"));
     GRAMMAR.write("rival", &context, choose)
 }

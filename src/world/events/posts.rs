@@ -295,3 +295,10 @@ pub enum Severity {
     /// Above.
     Transformative,
 }
+
+impl Severity {
+    /// Word as posts and tables write it.
+    pub fn id(self) -> &'static str {
+        ["minor", "moderate", "major", "transformative"][self as usize]
+    }
+}

@@ -73,6 +73,11 @@ impl Economy {
         }
     }
 
+    /// The newest measurement, whether it is published or waits for it.
+    pub fn measured(&self) -> Option<&Reading> {
+        self.waiting.last().or(self.published.as_ref())
+    }
+
     /// Multiplier of a group in a dimension at the present index; 1 before the first day and where the group
     /// does not react.
     pub fn multiplier(&self, group: Group, dimension: Dimension, params: &Params) -> f64 {
@@ -134,8 +139,7 @@ pub fn step(
 fn measure(day: u32, economy: &mut Economy, law: &MacroEconomy) {
     let mean = economy.history.iter().sum::<f64>() / economy.history.len() as f64;
     let value = round_to(mean, law.published_pmi_decimals);
-    let previous = economy.waiting.last().or(economy.published.as_ref());
-    let before = previous.map_or(law.macro_pmi_initial, |reading| reading.value);
+    let before = economy.measured().map_or(law.macro_pmi_initial, |reading| reading.value);
     let change = round_to(value - before, law.published_pmi_decimals);
     let (trend, phase) = (Trend::of(value, law), Phase::of(value, change, law));
     economy.waiting.push(Reading { measured_day: day, value, change, trend, phase });

@@ -1,0 +1,214 @@
+//! The rows of the hidden tables, column by column as `assets/hidden_tables.toml` lists them.
+
+use super::company_day::CompanyDay;
+use super::hidden_day::{GroupEvening, HiddenDay};
+use crate::database::HiddenValue;
+use crate::world::customers::columns::Subscriber;
+use crate::world::customers::traits::Negotiator;
+use crate::world::enterprise::{Answer, Standing};
+use crate::world::identifiers::{Channel, Group, Plan};
+use crate::world::state::World;
+
+use HiddenValue::{Null, Whole};
+
+/// `hidden.groups` of a day.
+pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
+    let rows = Group::all().map(|group| {
+        let own: GroupEvening = seen.groups[group];
+        let expectation = seen.market.drift.expectation(group);
+        [
+            day.into(),
+            group.id().into(),
+            own.info_level.into(),
+            own.active.into(),
+            own.reputation.into(),
+            own.mood.map(|mood| mood.0).into(),
+            own.mood.map(|mood| mood.1).into(),
+            own.open_issues.into(),
+            expectation.quality.into(),
+            expectation.c_max.into(),
+            own.product_quality.into(),
+            own.bank.into(),
+            own.willingness_to_pay.into(),
+            own.deal_velocity.into(),
+            own.seat_count.into(),
+        ]
+    });
+    rows.collect()
+}
+
+/// `hidden.drift` of a day.
+pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
+    let drift = &seen.market.drift;
+    let rows = Group::all().map(|group| {
+        [
+            day.into(),
+            group.id().into(),
+            drift.global_quality.into(),
+            drift.quality[group].into(),
+            drift.c_max[group].into(),
+        ]
+    });
+    rows.collect()
+}
+
+/// `hidden.factors` of a day: the groups that were known.
+pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
+    let rows = Group::all().filter(|group| seen.known[*group]).map(|group| {
+        let own = &seen.leads[group];
+        let paid = |channel: Channel| own.paid[channel].into();
+        [
+            day.into(),
+            group.id().into(),
+            own.reputation.into(),
+            own.saturation.into(),
+            own.calendar.into(),
+            own.economy.into(),
+            own.social.into(),
+            own.surge.into(),
+            paid(Channel::SocialMedia),
+            paid(Channel::SearchAds),
+            paid(Channel::Linkedin),
+            paid(Channel::ContentMarketing),
+            paid(Channel::ReferralProgram),
+            own.network.into(),
+            own.expected().into(),
+            seen.came[group].into(),
+        ]
+    });
+    rows.collect()
+}
+
+/// `hidden.competitors` of a day.
+pub(in crate::session) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
+    let event = seen.market.event.as_ref().map(|(event, _)| event);
+    [
+        day.into(),
+        seen.market.shared_bank.into(),
+        seen.groups.iter().map(|own| own.bank).sum::<f64>().into(),
+        event.map(|event| event.boost).into(),
+        event.map(|event| event.sampled).into(),
+        event.map(|event| event.u).into(),
+        event.map(|event| event.by_feedback).into(),
+        seen.market.event.as_ref().map(|(_, severity)| *severity).into(),
+    ]
+}
+
+/// `hidden.pmi` of a day.
+pub(in crate::session) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
+    let reading = seen.market.measured.as_ref().map(|(reading, _)| reading);
+    [
+        day.into(),
+        seen.market.pmi.into(),
+        reading.map(|own| own.measured_day).into(),
+        reading.map(|own| own.value).into(),
+        reading.map(|own| own.change).into(),
+        reading.map(|own| own.trend.id()).into(),
+        reading.map(|own| own.phase.id()).into(),
+        seen.market.measured.as_ref().map(|(_, published)| *published).into(),
+    ]
+}
+
+/// A row of `hidden.threads`.
+pub(in crate::session) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
+    let accepts = |plan: Plan| {
+        let judged = own.plans[plan];
+        (!judged.accepts_any_price).then_some(judged.accepts_below).into()
+    };
+    let (answer, at, price) = match own.answer {
+        None => (Null, None, None),
+        Some(Answer::Accept(at)) => ("accept".into(), Some(at), own.offerings.get(at).map(|own| own.price)),
+        Some(Answer::Counter(at, price)) => ("counter".into(), Some(at), Some(price)),
+        Some(Answer::Silence) => ("silence".into(), None, None),
+    };
+    let plan = at.and_then(|at| own.offerings.get(at)).map(|offering| offering.plan.id());
+    [
+        own.day.into(),
+        own.thread.into(),
+        own.customer.into(),
+        own.group.id().into(),
+        own.kind.id().into(),
+        own.budget.into(),
+        own.turns_left.into(),
+        own.relationship.into(),
+        own.late_penalty.into(),
+        own.reply_day.into(),
+        own.plans[Plan::A].quality.into(),
+        own.plans[Plan::B].quality.into(),
+        own.plans[Plan::C].quality.into(),
+        accepts(Plan::A),
+        accepts(Plan::B),
+        accepts(Plan::C),
+        own.plans[Plan::A].counter.into(),
+        own.plans[Plan::B].counter.into(),
+        own.plans[Plan::C].counter.into(),
+        answer,
+        plan.into(),
+        price.into(),
+    ]
+}
+
+/// `hidden.customers` of a world: the subscribers in its columns, then the companies that are none.
+pub(in crate::session) fn customers(world: &World) -> impl Iterator<Item = [HiddenValue; 32]> {
+    let subscribers = world.customers.blocks().flat_map(move |(group, block)| {
+        (0..block.len()).map(move |at| {
+            let row = block.row(at);
+            let company = group.is_enterprise().then(|| world.enterprise.company(row.customer)).flatten();
+            customer(group, "subscriber", &row, company.map(|company| company.negotiator))
+        })
+    });
+    let others = world.enterprise.companies.iter().filter_map(|company| {
+        let (standing, row) = match &company.standing {
+            Standing::Lead(row) => ("lead", row),
+            Standing::Gone(row) => ("gone", row),
+            Standing::Subscriber => return None,
+        };
+        Some(customer(company.group, standing, row, Some(company.negotiator)))
+    });
+    subscribers.chain(others)
+}
+
+fn customer(
+    group: Group,
+    standing: &'static str,
+    row: &Subscriber,
+    negotiator: Option<Negotiator>,
+) -> [HiddenValue; 32] {
+    // What somebody without a subscription has in these columns means nothing yet, or no more.
+    let is_subscriber = standing == "subscriber";
+    let subscribed = |value: HiddenValue| if is_subscriber { value } else { Null };
+    [
+        row.customer.into(),
+        group.id().into(),
+        standing.into(),
+        row.n.into(),
+        row.subscription.into(),
+        subscribed(row.plan.id().into()),
+        subscribed(row.start_day.into()),
+        subscribed(Whole(row.billing_day.into())),
+        row.satisfaction.into(),
+        row.relationship.into(),
+        row.open_issue_days.into(),
+        (row.issue > 0).then_some(row.issue).into(),
+        row.steepness_left.into(),
+        row.steepness_right.into(),
+        row.c_max.into(),
+        row.q_min.into(),
+        row.q_max.into(),
+        subscribed(row.required.into()),
+        row.usage_demand.into(),
+        row.usage_rate.into(),
+        Whole(row.period_usage as i64),
+        row.ads_quality_sensitivity.into(),
+        row.ads_return_sensitivity.into(),
+        row.seats.into(),
+        subscribed(row.listed_price.into()),
+        subscribed(row.promotion.into()),
+        subscribed(row.effective_price.into()),
+        subscribed(row.effective_c_max.into()),
+        negotiator.map(|own| own.reply_delay_mean).into(),
+        negotiator.map(|own| own.reply_delay_std).into(),
+        negotiator.map(|own| own.initial_offer_factor).into(),
+        negotiator.map(|own| own.max_negotiation_turns).into(),
+    ]
+}

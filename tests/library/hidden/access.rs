@@ -1,0 +1,146 @@
+//! Who may ask, what a statement leaves behind, and that nobody else finds a table of these names.
+
+use std::fs;
+
+use novamind::database::hidden_tables;
+use novamind::session::{Access, Activity, Mode, Record, Session, Trajectory, lines_afterwards, verify};
+
+use super::{hidden, open_wide, run_in, whole};
+use crate::support::company::{week, weeks};
+
+fn looks(lines: &Trajectory) -> Vec<(String, String, u32)> {
+    let look = |record: &Record| match record {
+        Record::Activity(Activity::Xray(look)) => {
+            Some((look.what.clone(), look.which.clone(), look.shown_day))
+        }
+        _ => None,
+    };
+    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+}
+
+#[test]
+fn asking_changes_no_hash_and_each_statement_is_a_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut asked = run_in(folder.path(), Mode::Debug, 60);
+    let mut alone = run_in(folder.path(), Mode::Debug, 60);
+    for session in [&mut asked, &mut alone] {
+        open_wide(session);
+        weeks(session, 2);
+    }
+    let place = asked.folder().expect("a folder").to_owned();
+    let world = || fs::read(place.join("world.db")).expect("a database");
+    asked.wait_for_database().expect("written");
+    let before = world();
+    let statements: Vec<String> =
+        hidden_tables().iter().map(|table| format!("SELECT count(*) FROM {}", table.name)).collect();
+    for sql in &statements {
+        hidden(&mut asked, sql);
+    }
+    let refused = asked.xray_query("SELECT c_mx FROM hidden.customers", Some(3)).expect_err("no column");
+    assert!(refused.message.contains("did you mean c_max"), "{refused}");
+    let refused = asked.xray_query("SELECT 1", Some(15)).expect_err("no day");
+    assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
+    assert!(world() == before, "nothing of it is in the file");
+    for session in [&mut asked, &mut alone] {
+        week(session);
+    }
+    assert_eq!(asked.state_hash(), alone.state_hash());
+    drop(asked);
+    let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+    let mut expected: Vec<(String, String, u32)> =
+        statements.into_iter().map(|sql| ("sql".to_owned(), sql, 14)).collect();
+    expected.push(("sql".to_owned(), "SELECT c_mx FROM hidden.customers".to_owned(), 3));
+    assert_eq!(looks(&trajectory), expected);
+    assert_eq!(verify(&place).expect("it verifies").day, 21);
+    // Opened again, the tables are there again.
+    let mut again = Session::open(&place, Access::Write, true).expect("it opens");
+    assert_eq!(hidden(&mut again, "SELECT max(day) FROM hidden.groups"), [[whole(21)]]);
+}
+
+#[test]
+fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode, 28);
+        open_wide(&mut session);
+        week(&mut session);
+        let place = session.folder().expect("a folder").to_owned();
+        let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
+        let before = lines();
+        let asked =
+            ["SELECT * FROM hidden.groups", "SELECT 1", "", "nonsense", "SELECT * FROM hidden.nothing"];
+        for (sql, day) in asked.into_iter().zip([None, Some(3), Some(9000), None, Some(1)]) {
+            let refused = session.xray_query(sql, day).expect_err("hidden").to_string();
+            assert_eq!(refused, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+        }
+        assert!(session.xray_interrupt().is_err());
+        assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
+        session.end().expect("it ends");
+        drop(session);
+        let mut session = Session::open(&place, Access::Write, true).expect("it opens");
+        let rows = hidden(&mut session, "SELECT count(*), max(day) FROM hidden.groups");
+        assert_eq!(rows, [[whole(7 * 26), whole(7)]]);
+        let active = "SELECT (SELECT count(*) FROM hidden.customers WHERE standing = 'subscriber') \
+                      = (SELECT count(*) FROM subscriptions WHERE status = 'subscribed')";
+        assert_eq!(hidden(&mut session, active), [[whole(1)]]);
+        drop(session);
+        let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+        assert_eq!(looks(&trajectory), [], "the end is the last line");
+        assert_eq!(looks(&lines_afterwards(&place, &trajectory).expect("lines")).len(), 2);
+    }
+}
+
+/// Ways to name a table.
+const FORMS: [&str; 12] = [
+    "SELECT * FROM {t}",
+    "SELECT count(*) FROM {t}",
+    "SELECT day FROM {t} AS own",
+    "SELECT 1 FROM ledger JOIN {t} USING (day)",
+    "SELECT (SELECT 1 FROM {t})",
+    "WITH x AS (SELECT * FROM {t}) SELECT * FROM x",
+    "WITH hidden AS (SELECT 1) SELECT * FROM {t}",
+    "EXPLAIN QUERY PLAN SELECT * FROM {t}",
+    "SELECT * FROM ledger WHERE day IN (SELECT day FROM {t})",
+    "SELECT * FROM ledger UNION SELECT * FROM {t}",
+    "SELECT {t}.day FROM ledger",
+    "SELECT day FROM ledger ORDER BY (SELECT day FROM {t})",
+];
+
+#[test]
+fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Debug, Mode::Sandbox] {
+        let mut session = run_in(folder.path(), mode, 28);
+        open_wide(&mut session);
+        week(&mut session);
+        if mode == Mode::Debug {
+            // Also where the x-ray was asked before.
+            hidden_tables().iter().for_each(|table| {
+                hidden(&mut session, &format!("SELECT * FROM {}", table.name));
+            });
+        }
+        let connection = session.open_connection().expect("a connection");
+        let limits = session.query_limits();
+        for table in hidden_tables() {
+            let alone = table.name.strip_prefix("hidden.").expect("a schema");
+            for form in FORMS {
+                let told = |schema: &str| {
+                    let sql = form.replace("{t}", &format!("{schema}.{alone}"));
+                    let error = connection.ask(&sql, limits).expect_err("unknown");
+                    (error.code, error.message.replace(schema, "other"), error.position)
+                };
+                assert_eq!(told("hidden"), told("secret"), "{form} of {alone}");
+                let sql = form.replace("{t}", &table.name);
+                let refused = session.query(&sql).expect_err("unknown");
+                assert_eq!(refused.code, "sql_error", "{sql}");
+            }
+            if alone != "customers" {
+                let refused = session.query(&format!("SELECT * FROM {alone}")).expect_err("unknown");
+                assert!(refused.message.starts_with(&format!("there is no table {alone}")), "{refused}");
+                assert!(!refused.message.contains("hidden"), "{refused}");
+            }
+        }
+        let columns: Vec<String> = connection.ask("SELECT * FROM customers", limits).expect("rows").columns;
+        assert_eq!(columns.len(), 17, "the visible table");
+    }
+}

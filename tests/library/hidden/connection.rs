@@ -1,0 +1,118 @@
+//! What the connection of the x-ray answers, refuses and leaves as it was.
+
+use novamind::session::{Cell, Mode};
+
+use super::{hidden, open_wide, run_in, whole};
+use crate::support::company::{week, weeks};
+
+#[test]
+fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 28);
+    open_wide(&mut session);
+    week(&mut session);
+    let count = hidden(&mut session, "SELECT count(*) FROM hidden.groups");
+    for (code, sql) in [
+        ("sql_write", "ATTACH ':memory:' AS other"),
+        ("sql_write", "ATTACH 'file:hidden?mode=memory' AS again"),
+        ("sql_write", "DETACH hidden"),
+        ("sql_write", "DELETE FROM hidden.groups"),
+        ("sql_write", "UPDATE hidden.groups SET reputation = 1"),
+        ("sql_write", "INSERT INTO hidden.pmi (day, pmi) VALUES (1000, 50)"),
+        ("sql_write", "DROP TABLE hidden.groups"),
+        ("sql_write", "CREATE TABLE hidden.more (a)"),
+        ("sql_write", "CREATE TEMP TABLE groups (a)"),
+        ("sql_write", "CREATE INDEX hidden.own ON groups (reputation)"),
+        ("sql_schema", "SELECT * FROM hidden.sqlite_master"),
+        ("sql_schema", "SELECT count(*) FROM hidden.sqlite_schema"),
+        ("sql_schema", "PRAGMA hidden.table_info(groups)"),
+        ("sql_schema", "PRAGMA query_only = 0"),
+        ("sql_schema", "SELECT * FROM pragma_table_info('groups', 'hidden')"),
+        ("sql_schema", "EXPLAIN SELECT * FROM hidden.groups"),
+        ("sql_hidden_table", "SELECT * FROM customer_rows"),
+        ("sql_hidden_table", "SELECT * FROM main.projection"),
+        ("sql_hidden_table", "SELECT * FROM customer_state"),
+        ("sql_hidden_table", "SELECT count(*) FROM hidden.customer_rows"),
+        ("sql_error", "SELECT * FROM hidden.nothing"),
+        ("sql_error", "SELECT * FROM main.groups"),
+        ("sql_error", "SELECT * FROM temp.groups"),
+        ("sql_error", "SELECT * FROM hidden.ledger"),
+        ("sql_error", "SELECT 1; DELETE FROM hidden.groups"),
+        ("sql_write", "SELECT load_extension('x') FROM hidden.groups"),
+        ("sql_empty", "-- nothing"),
+    ] {
+        let refused = session.xray_query(sql, None).expect_err(sql);
+        assert_eq!(refused.code, code, "{sql}: {refused}");
+    }
+    assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), count);
+    for (sql, answer) in [
+        ("SELECT count(DISTINCT group_id) FROM groups", 26),
+        ("SELECT count(*) FROM HIDDEN.\"Groups\" WHERE [hidden].[groups].rowid = 1", 1),
+        ("WITH groups AS (SELECT 1) SELECT count(*) FROM groups", 1),
+        (
+            "SELECT count(*) > 0 FROM group_info_levels LEFT JOIN hidden.groups USING (group_id) WHERE day = 7",
+            1,
+        ),
+        (
+            "SELECT count(*) FROM hidden.groups RIGHT JOIN group_info_levels USING (group_id) WHERE day = 7",
+            26,
+        ),
+        (
+            "SELECT count(*) - count(DISTINCT customer_id) FROM hidden.customers JOIN customers USING (customer_id)",
+            0,
+        ),
+    ] {
+        assert_eq!(hidden(&mut session, sql), [[whole(answer)]], "{sql}");
+    }
+    let plan = hidden(&mut session, "EXPLAIN QUERY PLAN SELECT * FROM hidden.groups WHERE day = 3");
+    assert!(
+        matches!(&plan[0][3], Cell::Text(text) if text == "SEARCH hidden.groups USING INDEX (day=?)"),
+        "{plan:?}"
+    );
+    let many = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) \
+                SELECT x FROM n, hidden.pmi WHERE day = 1";
+    let rows = session.xray_query(many, None).expect("rows");
+    assert!(rows.truncated && rows.rows.len() == 5000, "the limits are those of any query");
+}
+
+#[test]
+fn a_statement_that_is_stopped_leaves_the_tables_as_they_were() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 60);
+    open_wide(&mut session);
+    weeks(&mut session, 2);
+    let interrupt = session.xray_interrupt().expect("a debug run");
+    let ticket = interrupt.ticket();
+    interrupt.stop();
+    let refused = session.xray_query_as(ticket, "SELECT * FROM hidden.groups", None).expect_err("stopped");
+    assert_eq!((refused.code, refused.message.as_str()), ("sql_timeout", "the query was cancelled"));
+    assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), [[whole(14 * 26)]]);
+}
+
+#[test]
+fn the_run_goes_on_and_other_threads_ask_while_the_tables_are_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 60);
+    open_wide(&mut session);
+    week(&mut session);
+    let mut connection = session.open_connection().expect("a connection");
+    let limits = session.query_limits();
+    for week_number in 2..=4 {
+        session.wait_for_database().expect("written");
+        let asking = std::thread::scope(|scope| {
+            let other = scope.spawn(move || {
+                let answer = connection.ask("SELECT max(day) FROM ledger", limits);
+                (connection, answer)
+            });
+            let own = session.xray_query("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
+            assert!(own.is_ok(), "{own:?}");
+            other.join().expect("a thread")
+        });
+        connection = asking.0;
+        assert_eq!(asking.1.expect("rows").rows, [[whole((week_number - 1) * 7)]]);
+        week(&mut session);
+        session.wait_for_database().expect("the week is written");
+        let sql = "SELECT (SELECT max(day) FROM ledger), (SELECT max(day) FROM hidden.groups)";
+        assert_eq!(hidden(&mut session, sql), [[whole(week_number * 7), whole(week_number * 7)]]);
+    }
+}

@@ -1,0 +1,75 @@
+//! The hidden tables: what they hold is what the world holds, they exist on the connection of the x-ray and on no other, and
+//! whoever asks leaves a line.
+
+mod access;
+mod connection;
+mod contents;
+mod page;
+
+use std::path::Path;
+
+use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Storage, Via};
+use serde_json::json;
+
+use crate::support::company::open_shop;
+
+fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
+    let new = NewRun {
+        seed: Some(11),
+        days: Some(days),
+        cash: Some(20_000_000.0),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
+}
+
+/// A company with subscribers in several groups, ads of its own and negotiations.
+fn open_wide(session: &mut Session) {
+    open_shop(session);
+    for (tool, arguments) in [
+        (
+            "set_targeted_dev_spend",
+            json!({"targeted_spend": {"S1": 6000, "S2": 3000, "E1": 9000, "E2": 9000}}),
+        ),
+        (
+            "set_targeted_ad_spend",
+            json!({"targeted_spend": {
+                "content_marketing": {"S1": 750, "S2": 500}, "linkedin": {"E1": 9000, "E2": 9000}
+            }}),
+        ),
+        ("set_model_tiers", json!({"A": 3, "B": 4, "C": 4})),
+        ("set_capacity_tier", json!({"tier": 5})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+}
+
+/// Offers every company that waits what it asked for, or a little more.
+fn make_offers(session: &mut Session) {
+    let waiting = session.observe().waiting;
+    let deal = |(customer, asked): (u32, f64)| json!([customer, [["C", asked * 1.3], ["B", asked * 1.05]]]);
+    let deals: Vec<_> = waiting.iter().map(|own| deal((own.customer, own.asked.unwrap_or(40.0)))).collect();
+    if !deals.is_empty() {
+        session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script).expect("offers");
+    }
+}
+
+#[track_caller]
+fn hidden(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
+    session.xray_query(sql, None).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
+}
+
+fn cell(value: impl Into<Option<f64>>) -> Cell {
+    value.into().map_or(Cell::Null, Cell::Real)
+}
+
+fn whole(value: impl Into<i64>) -> Cell {
+    Cell::Integer(value.into())
+}
+
+fn word(text: &str) -> Cell {
+    Cell::Text(text.to_owned())
+}

@@ -4,6 +4,7 @@ mod check;
 mod groups;
 mod help;
 mod inbox;
+mod parameters;
 mod readings;
 mod report;
 mod rules;
@@ -88,6 +89,10 @@ const COMMANDS: &[(&str, &str)] = &[
     (
         "lens",
         "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+    ),
+    (
+        "set",
+        "set KEY VALUE [from DAY] debug: set a parameter from now on, or from a later day; set alone lists what differs",
     ),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
@@ -317,6 +322,7 @@ impl Interpreter {
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
+            "set" => self.set(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

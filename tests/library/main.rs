@@ -4,6 +4,7 @@ mod battery;
 mod durability;
 mod enterprise;
 mod notebook;
+mod overrides;
 mod queries;
 mod session;
 #[path = "../support/mod.rs"]

@@ -10,6 +10,7 @@ use super::kept_state::KeptState;
 use super::script::{Move, PastDays, has_replies};
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::StateHash;
+use crate::session::play::overrides::{ParameterChange, Taken};
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
 use crate::tools::bounds;
@@ -74,6 +75,8 @@ fn play(
                     branch.refused.push((Some(call.seq), call.tool, refusal));
                 }
             }
+            Move::Parameter(setting) if edits.dropped.contains(&setting.change.seq) => {}
+            Move::Parameter(setting) => branch.set(&setting.change),
             Move::Days(days) => {
                 branch.run_days(days.until.min(until), edits, progress)?;
                 branch.close(days);
@@ -111,8 +114,9 @@ impl OpenBranch {
         let told = hashed || has_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
         let feed = if told { start.feed.clone() } else { Default::default() };
-        let given = (params, start.streams.clone(), start.names.clone());
-        let simulation = Simulation::at(given, start.world.clone(), feed);
+        let overrides = start.overrides.over(&params, &edits.dropped);
+        let given = (start.streams.clone(), start.names.clone());
+        let simulation = Simulation::at((params, overrides), given, start.world.clone(), feed);
         OpenBranch {
             cash_before: simulation.world.finance.cash,
             simulation,
@@ -151,6 +155,15 @@ impl OpenBranch {
         Ok(())
     }
 
+    /// Sets a parameter. A value that does not fit the parameters of the branch is left out, as one that waits is.
+    fn set(&mut self, change: &ParameterChange) {
+        let taken = self.simulation.overrides.take(&self.simulation.params, change.clone());
+        if let Ok(Taken { now, .. }) = taken {
+            self.simulation.use_params(now, self.projection.entries());
+            self.numbers = OnceLock::new();
+        }
+    }
+
     fn run_days(
         &mut self,
         until: u32,
@@ -179,7 +192,11 @@ impl OpenBranch {
 
     fn run_day(&mut self, held: &Held) {
         let day_before = self.left_to_tell.then(Vec::new);
+        let params = self.simulation.params.clone();
         let figures = self.simulation.simulate_day(held, self.projection.entries(), day_before);
+        if !Arc::ptr_eq(&params, &self.simulation.params) {
+            self.numbers = OnceLock::new();
+        }
         self.left_to_tell = self.told;
         self.simulation.judge_own_posts(self.projection.entries());
         let Simulation { facts, params, world, .. } = &self.simulation;

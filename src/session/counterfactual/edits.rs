@@ -12,7 +12,7 @@ use crate::world::params::Params;
 /// Changes to the days of a run. Without any, they lead to the state they led to.
 #[derive(Debug, Clone, Default)]
 pub(in crate::session) struct Edits {
-    /// Lines of calls that are not made.
+    /// Lines of calls that are not made, and of parameters that are not set.
     pub dropped: BTreeSet<u64>,
     /// Other arguments of calls, by line.
     pub changed: BTreeMap<u64, Value>,

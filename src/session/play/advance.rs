@@ -1,5 +1,7 @@
 //! Letting time pass.
 
+use std::sync::Arc;
+
 use serde_json::{Map, Value, json};
 
 use super::act::not_saved;
@@ -166,6 +168,7 @@ impl Session {
         let week_end = self.next_decision_day();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
+        let params = self.simulation.params.clone();
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
             let figures =
                 self.simulation.simulate_day(&nothing, self.projection.entries(), day_before.take());
@@ -177,6 +180,9 @@ impl Session {
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();
             day_before = Some(notices);
+        }
+        if !Arc::ptr_eq(&params, &self.simulation.params) {
+            self.renew_what_follows_from_parameters();
         }
         self.simulation.end_days(self.projection.entries(), day_before)
     }

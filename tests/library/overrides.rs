@@ -7,9 +7,11 @@ use novamind::session::{
     Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Storage, Trajectory,
     list_runs, rescue, verify,
 };
+use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
 use crate::support::company::{call, open_shop, rows, week, weeks};
+use crate::support::forging::forge;
 
 fn run_in(folder: &Path, mode: Mode) -> Session {
     let new = NewRun {
@@ -117,7 +119,7 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
 
     // The x-ray simulates the days again.
     let mut again = Session::open(&own, Access::Write, false).expect("it opens");
-    let s1 = novamind::world::identifiers::Group::parse("S1").expect("a group");
+    let s1 = Group::parse("S1").expect("a group");
     assert_eq!(again.lead_equations(s1, Some(day)).expect("a look").len(), 28);
 }
 
@@ -279,17 +281,43 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
     let own = place(&session);
     drop(session);
     let path = own.join("trajectory.jsonl");
-    let good = std::fs::read_to_string(&path).expect("lines");
-    for (from, to) in [
-        ("\"new\":0.9", "\"new\":0.8"),
-        ("\"from_day\":10", "\"from_day\":11"),
-        ("operations.base_outage_prob", "operations.ops_outage_min_prob"),
-        ("\"new\":0.9", "\"new\":null"),
+    let good = std::fs::read(&path).expect("lines");
+    let told = |field: &str, value: Value| {
+        std::fs::write(&path, &good).expect("written");
+        for name in ["world.db", "snapshot.bin"] {
+            let _ = std::fs::remove_file(own.join(name));
+        }
+        forge(&own, |_, line| {
+            if line["kind"] == "override" {
+                line[field] = value.clone();
+            }
+        });
+        verify(&own).expect_err(field).to_string()
+    };
+    for (field, value, part) in [
+        ("new", json!(0.01), "the state on day 14 is not the recorded one"),
+        ("from_day", json!(12), "the state on day 14 is not the recorded one"),
+        ("from_day", json!(0), "has passed"),
+        ("old", json!(0.5), "was not 0.5 before it"),
+        ("key", json!("operations.nothing"), "no such parameter"),
+        ("new", json!(null), "none that a parameter can have"),
+        ("new", json!(7), "between 0 and 1"),
+        ("new", json!("often"), "expected a number"),
     ] {
-        assert!(good.contains(from), "{from}");
-        std::fs::write(&path, good.replace(from, to)).expect("written");
-        assert!(verify(&own).is_err(), "{from} became {to}");
+        let words = told(field, value);
+        assert!(words.contains(part), "{field}: {words}");
+        assert!(Session::open(&own, Access::Write, false).is_err(), "{field}");
     }
+    // A run of another mode cannot be given such a line.
+    std::fs::write(&path, &good).expect("written");
+    forge(&own, |_, line| {
+        if line["kind"] == "start" {
+            line["mode"] = "sandbox".into();
+            line["rules"] = Value::Null;
+        }
+    });
+    let words = verify(&own).expect_err("a sandbox").to_string();
+    assert!(words.contains("only a debug run can"), "{words}");
 }
 
 #[test]
@@ -317,4 +345,72 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     drop(session);
     let again = Session::open(&folder.path().join(id), Access::Write, true).expect("it opens");
     assert!(again.observe().has_own_parameters);
+}
+
+/// Every kind of parameter once: `group.*.c_max_mean` and not 26 of them.
+fn kinds(params: &Value) -> Vec<String> {
+    fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
+        let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match value {
+            Value::Object(fields) => fields.iter().for_each(|(name, own)| walk(&below(name), own, found)),
+            Value::Array(list) => {
+                let groups: Vec<&str> = Group::all().map(Group::id).collect();
+                let is_by_group = list.len() == groups.len() && list.iter().all(Value::is_number);
+                for (at, own) in list.iter().enumerate() {
+                    let place = if is_by_group { groups[at].to_owned() } else { at.to_string() };
+                    let name = ["id", "tier", "level"].iter().find_map(|field| match own.get(*field)? {
+                        Value::String(id) => Some(id.clone()),
+                        number => Some(number.to_string()),
+                    });
+                    walk(&below(&name.unwrap_or(place)), own, found);
+                }
+            }
+            Value::Null => {}
+            _ => {
+                let is_name = |part: &str| Group::parse(part).is_some() || part.parse::<u32>().is_ok();
+                let kind = path.split('.').map(|part| if is_name(part) { "*" } else { part });
+                let kind: Vec<&str> = kind.collect();
+                found.entry(kind.join(".")).or_insert_with(|| path.to_owned());
+            }
+        }
+    }
+    let mut found = std::collections::BTreeMap::new();
+    walk("", params, &mut found);
+    found.into_values().collect()
+}
+
+#[test]
+fn whatever_is_set_the_days_go_on() {
+    let new = NewRun {
+        mode: Mode::Debug,
+        seed: Some(7),
+        days: Some(50_000),
+        cash: Some(1e12),
+        projection: false,
+        ..NewRun::default()
+    };
+    let configuration = Configuration::shipped();
+    let fresh = || {
+        let mut session = Session::create(new.clone(), &configuration).expect("the run begins");
+        open_shop(&mut session);
+        weeks(&mut session, 6);
+        session
+    };
+    let mut session = fresh();
+    let (mut accepted, mut refused) = (0, 0);
+    for key in kinds(&serde_json::to_value(session.params()).expect("JSON")) {
+        let old = session.parameter(&key).expect("its value");
+        for value in [json!(0), json!(8)] {
+            if session.set_parameter(&key, &value, None).is_err() {
+                refused += 1;
+                continue;
+            }
+            accepted += 1;
+            session.step(2, &mut |_| {}).expect("days");
+            if session.ended().is_some() || session.set_parameter(&key, &old, None).is_err() {
+                session = fresh();
+            }
+        }
+    }
+    assert!(accepted > 300 && refused > 100, "{accepted} {refused}");
 }

@@ -109,6 +109,7 @@ impl Params {
 pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
     let with_names = |(key, problem): (String, String)| (named(&tables, &key), problem);
     check::ranges(&tables).map_err(with_names)?;
+    check::bounds(&tables).map_err(with_names)?;
     let params = read(tables.clone()).map_err(with_names)?;
     check::relations(&params).map_err(with_names)?;
     Ok(params)

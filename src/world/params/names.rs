@@ -83,7 +83,9 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
     let own = last(key);
-    let alike: Vec<&str> = all.iter().filter(|one| last(one) == own).map(String::as_str).collect();
+    let is_place = own.parse::<usize>().is_ok();
+    let ends_alike = |one: &&String| !is_place && last(one) == own;
+    let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
         // However far it is: one that ends in the same name is what was meant.
         false => by_distance(key, alike),
@@ -147,5 +149,6 @@ mod tests {
         assert_eq!(nearest_keys(&tables, "groups.S2.c_max_mean")[0], "group.S2.c_max_mean");
         assert_eq!(nearest_keys(&tables, "base_product_quality"), ["quality.base_product_quality"]);
         assert_eq!(nearest_keys(&tables, "capacity_tier.9.capacity_units").len(), 3);
+        assert_eq!(nearest_keys(&tables, "reputation_influence.S2.0")[0], "reputation_influence.S2.S1");
     }
 }

@@ -1,6 +1,7 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
 mod check;
+mod difference;
 mod groups;
 mod help;
 mod inbox;
@@ -89,6 +90,10 @@ const COMMANDS: &[(&str, &str)] = &[
     (
         "lens",
         "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
+    ),
+    (
+        "diff",
+        "diff DAY DAY             the same: what differs between the ends of two days: parts of the state, figures, customers",
     ),
     (
         "set",
@@ -322,6 +327,7 @@ impl Interpreter {
             "branch" => count(arguments).and_then(|week| self.branch(week, arguments)),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
+            "diff" => self.difference(arguments),
             "set" => self.set(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),

@@ -115,6 +115,7 @@ pub use witness::{
 pub use xray::company_lens::{CompanyDay, CompanyLens, JudgedPlan};
 pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
 pub use xray::customer_lens::CustomerLens;
+pub use xray::difference::{CustomerDifference, Difference, RunDifference};
 pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
 pub use xray::lens::Lens;

@@ -63,7 +63,7 @@ fn in_full(name: &str, led: bool) -> Option<String> {
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
 /// Not for participants of a study: refused in their runs.
-const NOT_LED: [&str; 5] = ["branch", "step", "xray", "lens", "set"];
+const NOT_LED: [&str; 6] = ["branch", "step", "xray", "lens", "diff", "set"];
 
 /// The commands, for participants of a study or others.
 fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -99,7 +99,7 @@ fn group_and_day(arguments: &[&Argument]) -> Result<(Group, Option<u32>), Proble
     Ok((group, day))
 }
 
-fn whole_number(argument: &Argument) -> Result<u32, Problem> {
+pub(super) fn whole_number(argument: &Argument) -> Result<u32, Problem> {
     let number = argument.value.as_u64().filter(|_| argument.key.is_none());
     let number = number.and_then(|number| u32::try_from(number).ok());
     number.ok_or_else(|| Problem { text: "a whole number is expected".to_owned(), column: argument.column })

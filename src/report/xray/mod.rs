@@ -2,10 +2,12 @@
 
 mod company;
 mod customer;
+mod difference;
 mod leads;
 
 pub use company::company_in_words;
 pub use customer::customer_in_words;
+pub use difference::{difference_as_data, difference_in_words, runs_in_words};
 pub use leads::leads_in_words;
 
 /// A table, indented.

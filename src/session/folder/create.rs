@@ -163,6 +163,7 @@ impl Session {
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
             shadow: None,
+            is_shadow: false,
             diary: Arc::default(),
             clock: PersonalClock::default(),
             memo_in_memory: String::new(),

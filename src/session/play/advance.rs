@@ -176,7 +176,7 @@ impl Session {
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
             let debug = self.manifest.mode == crate::session::folder::mode::Mode::Debug;
-            let xray = debug.then(|| Xray::new(self));
+            let xray = (debug || self.is_shadow).then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();
             day_before = Some(notices);

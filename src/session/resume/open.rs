@@ -11,6 +11,7 @@ use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
+use crate::session::play::advance::DayReport;
 use crate::session::play::facts_chain::StateHash;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -169,12 +170,22 @@ impl Session {
 
     /// Applies a line of a file again.
     pub(in crate::session) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
-        self.position = line.position();
-        let damaged = damaged_at(path);
-        self.replay_line(line).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+        self.apply_line_telling(path, line, &mut |_| {})
     }
 
-    fn replay_line(&mut self, line: &Line) -> Result<(), String> {
+    /// The same, and tells of each day that it simulates.
+    pub(in crate::session) fn apply_line_telling(
+        &mut self,
+        path: &Path,
+        line: &Line,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
+        self.position = line.position();
+        let damaged = damaged_at(path);
+        self.replay_line(line, tell).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+    }
+
+    fn replay_line(&mut self, line: &Line, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
         match &line.record {
             Record::Start(_) => self.project_opening(),
             Record::Call(call) => {
@@ -185,7 +196,7 @@ impl Session {
             Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
-                let state = self.run_days(from.saturating_add(closing.days_run), &mut |_| {});
+                let state = self.run_days(from.saturating_add(closing.days_run), tell);
                 self.compare(from, &state, closing)?;
                 self.commit_projection();
             }

@@ -1,6 +1,7 @@
 //! Stories through the library: runs, their records and tables, what outlives a crash, what hides from a query.
 
 mod battery;
+mod difference;
 mod durability;
 mod enterprise;
 mod notebook;

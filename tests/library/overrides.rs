@@ -398,19 +398,19 @@ fn whatever_is_set_the_days_go_on() {
     };
     let mut session = fresh();
     let (mut accepted, mut refused) = (0, 0);
-    for key in kinds(&serde_json::to_value(session.params()).expect("JSON")) {
+    let all = kinds(&serde_json::to_value(session.params()).expect("JSON"));
+    for (at, key) in all.into_iter().enumerate() {
         let old = session.parameter(&key).expect("its value");
-        for value in [json!(0), json!(8)] {
-            if session.set_parameter(&key, &value, None).is_err() {
-                refused += 1;
-                continue;
-            }
-            accepted += 1;
-            session.step(2, &mut |_| {}).expect("days");
-            if session.ended().is_some() || session.set_parameter(&key, &old, None).is_err() {
-                session = fresh();
-            }
+        let value = [json!(0), json!(8)][at % 2].clone();
+        if session.set_parameter(&key, &value, None).is_err() {
+            refused += 1;
+            continue;
+        }
+        accepted += 1;
+        session.step(2, &mut |_| {}).expect("days");
+        if session.ended().is_some() || session.set_parameter(&key, &old, None).is_err() {
+            session = fresh();
         }
     }
-    assert!(accepted > 300 && refused > 100, "{accepted} {refused}");
+    assert!(accepted > 150 && refused > 50, "{accepted} {refused}");
 }

@@ -91,14 +91,8 @@ const COMMANDS: &[(&str, &str)] = &[
         "lens",
         "lens CUSTOMER [DAY]      the same: a customer from within, and what would have turned its decision",
     ),
-    (
-        "diff",
-        "diff DAY DAY             the same: what differs between the ends of two days: parts of the state, figures, customers",
-    ),
-    (
-        "set",
-        "set KEY VALUE [from DAY] debug: set a parameter from now on, or from a later day; set alone lists what differs",
-    ),
+    ("diff", "diff DAY DAY             the same: what differs between the ends of two days"),
+    ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists what differs"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
     ("resume", "resume                   start the clock again"),

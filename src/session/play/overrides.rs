@@ -34,7 +34,7 @@ impl ParameterChange {
 
 /// A change that waits, with the parameters that are in force once it acts.
 #[derive(Debug, Clone)]
-struct Waiting {
+struct WaitingChange {
     day: u32,
     change: ParameterChange,
     params: Arc<Params>,
@@ -46,7 +46,7 @@ pub(in crate::session) struct Overrides {
     /// Whether any was set.
     is_used: bool,
     /// Changes that wait, by their day, those of a day in the order of their lines.
-    waiting: Vec<Waiting>,
+    waiting: Vec<WaitingChange>,
 }
 
 /// Parameters after a change was taken in.
@@ -92,14 +92,14 @@ impl Overrides {
             None => now = with(&now, &change).map_err(|error| Unfit { day: None, error })?,
             Some(day) => later.insert(later.partition_point(|other| other.from_day <= Some(day)), change),
         }
-        let mut waiting: Vec<Waiting> = Vec::with_capacity(later.len());
+        let mut waiting: Vec<WaitingChange> = Vec::with_capacity(later.len());
         for change in later {
             let before = waiting.last().map_or(&now, |last| &last.params);
             let params = with(before, &change).map_err(|error| {
                 let day = change.from_day.filter(|_| change.seq != own);
                 Unfit { day, error }
             })?;
-            waiting.push(Waiting { day: change.from_day.unwrap_or_default(), change, params });
+            waiting.push(WaitingChange { day: change.from_day.unwrap_or_default(), change, params });
         }
         let changed =
             waiting.iter().find(|waits| waits.change.seq == own).map_or(&now, |waits| &waits.params);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::moment::{Album, Fingerprints, Moment};
+use super::day_end::{Album, DayEnd, Fingerprints};
 use crate::session::state::Session;
 use crate::tools::Refusal;
 use crate::world::identifiers::Group;
@@ -56,7 +56,7 @@ pub struct RunDifference {
 }
 
 impl Difference {
-    fn between(days: (u32, u32), one: &Moment, other: &Moment) -> Difference {
+    fn between(days: (u32, u32), one: &DayEnd, other: &DayEnd) -> Difference {
         let pairs = || one.parts.iter().zip(&other.parts);
         let names = |alike: bool| {
             pairs()
@@ -85,7 +85,7 @@ impl Difference {
     }
 }
 
-fn customers_that_differ(one: &Moment, other: &Moment) -> Vec<CustomerDifference> {
+fn customers_that_differ(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference> {
     let only_in_other = other.customers.iter().filter(|(number, _)| !one.customers.contains_key(number));
     let mut found: Vec<CustomerDifference> = only_in_other
         .map(|(number, (group, _))| CustomerDifference {

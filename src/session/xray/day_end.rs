@@ -14,7 +14,7 @@ use crate::world::state::{PartHash, World};
 
 /// The end of a day.
 #[derive(Debug, Clone)]
-pub(in crate::session) struct Moment {
+pub(in crate::session) struct DayEnd {
     /// Hashes of the parts of the state, and of the facts of the day.
     pub(in crate::session) parts: Vec<PartHash>,
     /// Figures by name, hidden ones included, in one order.
@@ -23,11 +23,11 @@ pub(in crate::session) struct Moment {
     pub(in crate::session) customers: BTreeMap<u32, (Group, Subscriber)>,
 }
 
-impl Moment {
-    fn of(world: &World, facts: &Facts) -> Moment {
+impl DayEnd {
+    fn of(world: &World, facts: &Facts) -> DayEnd {
         let rows = world.customers.blocks();
         let rows = rows.flat_map(|(group, block)| (0..block.len()).map(move |at| (group, block.row(at))));
-        Moment {
+        DayEnd {
             parts: parts_of(world, facts),
             figures: figures_of(world, facts),
             customers: rows.map(|(group, row)| (row.customer, (group, row))).collect(),
@@ -79,7 +79,7 @@ fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
 /// Keeps the ends of some days.
 pub(in crate::session) struct Album {
     wanted: Vec<u32>,
-    moments: Mutex<BTreeMap<u32, Moment>>,
+    moments: Mutex<BTreeMap<u32, DayEnd>>,
 }
 
 impl Album {
@@ -89,7 +89,7 @@ impl Album {
     }
 
     /// The end of a day that has been seen.
-    pub(in crate::session) fn take(&self, day: u32) -> Option<Moment> {
+    pub(in crate::session) fn take(&self, day: u32) -> Option<DayEnd> {
         self.moments.lock().unwrap_or_else(PoisonError::into_inner).remove(&day)
     }
 }
@@ -97,7 +97,7 @@ impl Album {
 impl DayWatch for Album {
     fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
         if self.wanted.contains(&world.day) {
-            let moment = Moment::of(world, facts);
+            let moment = DayEnd::of(world, facts);
             self.moments.lock().unwrap_or_else(PoisonError::into_inner).insert(world.day, moment);
         }
     }

@@ -1,7 +1,9 @@
 //! `novamind lab`: comparison with reference figures, and of runs with each other.
 
 mod comparison;
+mod difference;
 mod forecasts;
+mod metrics;
 
 use std::path::{Path, PathBuf};
 
@@ -29,6 +31,10 @@ enum Laboratory {
     Forecasts(forecasts::Options),
     /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
     Compare(comparison::Options),
+    /// Print the figures of a run day by day, hidden ones included: a debug run, or one that is over.
+    Metrics(metrics::Options),
+    /// Tell what differs between two runs on a day: parts of the state, figures, customers.
+    Diff(difference::Options),
 }
 
 /// Options of `lab golden`.
@@ -68,6 +74,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Laboratory::Golden(golden) => run_golden(golden, context),
         Laboratory::Forecasts(options) => forecasts::run(options, context),
         Laboratory::Compare(options) => comparison::run(options, context),
+        Laboratory::Metrics(options) => metrics::run(options, context),
+        Laboratory::Diff(options) => difference::run(options, context),
     }
 }
 

@@ -208,11 +208,20 @@ fn summary(outcome: &Outcome, json: bool) -> String {
     }
 }
 
+/// Columns of figures.
+const HEAD: &str = "seed,day,figure,group,value";
+
 fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     let mut file = BufWriter::new(File::create(path).map_err(failed)?);
-    writeln!(file, "seed,day,figure,group,value").map_err(failed)?;
+    writeln!(file, "{HEAD}").map_err(failed)?;
     Ok(file)
+}
+
+/// The figures of a run as `--metrics` writes them.
+pub fn figure_rows(seed: &str, figures: &[Figure]) -> String {
+    let row = |own: &Figure| format!("{seed},{},{},{},{}\n", own.day, own.figure, own.group, own.value);
+    format!("{HEAD}\n{}", figures.iter().map(row).collect::<String>())
 }
 
 fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> Result<(), Failure> {

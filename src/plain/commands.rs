@@ -2,10 +2,12 @@
 
 mod breakpoints;
 mod check;
+mod difference;
 mod groups;
 mod help;
 mod inbox;
 mod memo;
+mod parameters;
 mod queries;
 mod readings;
 mod report;
@@ -116,6 +118,8 @@ const COMMANDS: &[(&str, &str)] = &[
         "who",
         "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
     ),
+    ("diff", "diff DAY DAY             the same: what differs between the ends of two days"),
+    ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists what differs"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
     ("resume", "resume                   start the clock again"),
@@ -310,6 +314,8 @@ impl Interpreter {
             "branches" => none(arguments).map(|()| self.branches()),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),
+            "diff" => self.difference(arguments),
+            "set" => self.set(arguments),
             "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
             _ => self.call(word, column, arguments),
         };

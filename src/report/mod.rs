@@ -24,6 +24,7 @@ mod movement;
 pub(crate) mod needs;
 mod outline;
 mod page;
+pub(crate) mod parameters;
 pub(crate) mod peak;
 pub(crate) mod plan_margins;
 pub(crate) mod post_leads;

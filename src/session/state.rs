@@ -63,6 +63,8 @@ pub struct Session {
     pub(super) seal_key: SealKey,
     /// The run again, watched from within; none before somebody looks.
     pub(super) shadow: Option<Box<Session>>,
+    /// It is a run simulated again beside one that may be looked into: its days are told with their hidden state.
+    pub(super) is_shadow: bool,
     /// What was seen of its days.
     pub(super) diary: Arc<Diary>,
     /// Conditions at which it stops.

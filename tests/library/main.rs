@@ -2,10 +2,12 @@
 
 mod battery;
 mod breakpoints;
+mod difference;
 mod durability;
 mod enterprise;
 mod hidden;
 mod notebook;
+mod overrides;
 mod queries;
 mod session;
 #[path = "../support/mod.rs"]

@@ -7,6 +7,7 @@ mod exports;
 mod forged;
 mod golden;
 mod hardship;
+mod looking;
 mod plain;
 mod preparation;
 mod scenarios;

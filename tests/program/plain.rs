@@ -580,3 +580,57 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         assert!(err.contains("the x-ray works in debug runs and in runs that are over"), "{err}");
     }
 }
+
+#[test]
+fn parameters_are_set_in_debug_runs_and_refused_in_others() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let commands = [
+        "set",
+        "set group.S1.c_max_mean",
+        "set group.S1.c_max_mean 300 from 10",
+        "set capacity_tier.3.capacity_units=90000",
+        "set group.S9.c_max_mean 3",
+        "set operations.base_outage_prob 7",
+        "set calendar.weekly [1,1,1,1,1,1,1]",
+        "set a b c",
+        "set 5 6",
+        "set x 5 from never",
+        "set",
+        "diff 3 5",
+        "diff 3",
+        "diff 3 99",
+    ];
+    let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
+    let said = objects(&said);
+    // Behind the answers stands where the run was saved.
+    let first = said.len() - 1 - commands.len();
+    let answer = |at: usize| &said[first + at];
+    assert_eq!(answer(0)["data"]["in_force"], serde_json::json!([]));
+    assert_eq!(answer(1)["data"]["value"], 50);
+    assert_eq!(answer(2)["data"]["from_day"], 10);
+    assert_eq!(answer(3)["data"]["new"], 90_000);
+    assert_eq!(
+        (&answer(4)["code"], &answer(4)["field"]),
+        (&"parameter_unknown".into(), &"group.S9.c_max_mean".into())
+    );
+    assert!(
+        answer(4)["error"].as_str().is_some_and(|text| text.contains("group.S1.c_max_mean")),
+        "{}",
+        answer(4)
+    );
+    assert_eq!(answer(5)["code"], "parameter_not_allowed");
+    assert_eq!(answer(6)["ok"], true);
+    assert_eq!([7, 8, 9].map(|at| answer(at)["code"].clone()), ["usage", "usage", "usage"]);
+    let changed = &answer(10)["data"];
+    assert_eq!(changed["scenario"], "default");
+    assert!(changed["in_force"].as_array().is_some_and(|all| all.len() > 1), "{changed}");
+    assert_eq!(changed["waiting"][0]["key"], "group.S1.c_max_mean");
+    assert!(answer(11)["data"]["difference"]["differs"].as_array().is_some_and(|all| !all.is_empty()));
+    assert_eq!([12, 13].map(|at| answer(at)["code"].clone()), ["usage", "day_unknown"]);
+    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
+    let said = objects(&said);
+    for answer in &said[first..said.len() - 1] {
+        assert_eq!(answer["code"], "not_in_this_mode", "{answer}");
+    }
+}

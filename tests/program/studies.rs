@@ -194,8 +194,9 @@ fn at_every_prompt_and_question_one_can_leave_or_withdraw() {
     {
         assert!(back.out.contains(part), "{part} is missing in\n{}", back.out);
     }
-    let refused = ["branch WEEK", "step [DAYS]", "xray VIEW", "The session begins"];
-    assert_eq!(refused.map(|part| back.out.contains(part)), [false; 4], "{}", back.out);
+    let refused =
+        ["branch WEEK", "step [DAYS]", "xray VIEW", "lens CUSTOMER", "set KEY", "The session begins"];
+    assert_eq!(refused.map(|part| back.out.contains(part)), [false; 6], "{}", back.out);
     assert!(lab.visit("P01\nquit\n").out.contains("The session goes on after week 4."));
     let trajectory = Trajectory::read(&lab.only_run("P01").join("trajectory.jsonl")).expect("it reads");
     let changes = trajectory.lines.iter().filter_map(|line| match &line.record {

@@ -3,5 +3,6 @@
 
 pub mod company;
 pub mod dice;
+pub mod forging;
 pub mod home;
 pub mod python;

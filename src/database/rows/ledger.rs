@@ -27,6 +27,11 @@ impl LedgerWriter {
         LedgerWriter { params, days, touched: BTreeMap::new(), next }
     }
 
+    /// Makes rows with other parameters from here on.
+    pub fn go_on_with(&mut self, params: Arc<Params>) {
+        self.params = params;
+    }
+
     /// Adds the movements of a day or a call.
     pub fn write(&mut self, facts: &Facts) {
         if facts.arrivals.is_empty() && facts.payments.is_empty() && facts.ledger.is_empty() {

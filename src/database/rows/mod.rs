@@ -51,6 +51,8 @@ pub struct Entry {
     pub settings: Option<serde_json::Value>,
     /// Forecasts that were filed.
     pub forecasts: Vec<ForecastRow>,
+    /// Parameters with which rows are made from here on, where they change.
+    pub params: Option<Arc<Params>>,
 }
 
 /// A row of `predictions`.
@@ -133,6 +135,10 @@ impl RowWriter {
 
     /// Writes an entry; what may still change before the commit is kept back.
     pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+        if let Some(params) = &entry.params {
+            self.params = params.clone();
+            self.ledger.go_on_with(params.clone());
+        }
         let facts = &entry.facts;
         self.words.write(transaction, facts, &self.params)?;
         self.usage(transaction, facts)?;

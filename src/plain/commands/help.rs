@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
-use super::{COMMANDS, NEXT, inbox, problem, readings, rules, tool_called, words, xray};
+use super::{COMMANDS, NEXT, inbox, parameters, problem, readings, rules, tool_called, words, xray};
 use crate::database;
 use crate::glossary;
 use crate::notation::nearest;
@@ -69,6 +69,7 @@ fn in_full(name: &str, led: bool) -> Option<String> {
         "xray" if !led => xray::IN_FULL,
         "pause" => PAUSE,
         "break" => BREAK,
+        "set" => parameters::IN_FULL,
         _ if NEXT.contains(&name) => return Some(next_in_full(led)),
         _ => return None,
     };
@@ -79,7 +80,8 @@ fn in_full(name: &str, led: bool) -> Option<String> {
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
 /// Not for participants of a study: refused in their runs.
-const NOT_LED: [&str; 8] = ["branch", "step", "xray", "break", "run", "back", "find", "who"];
+const NOT_LED: [&str; 11] =
+    ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "back", "find", "who"];
 
 /// The commands, for participants of a study or others.
 fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -107,7 +109,8 @@ pub(super) fn help(
         );
         return Ok(Answer::done("help", text, json!({ "commands": lines, "tools": tools })));
     };
-    if let Some(text) = in_full(name, led) {
+    let is_theirs = !led || !NOT_LED.contains(&name);
+    if let Some(text) = in_full(name, led).filter(|_| is_theirs) {
         return Ok(Answer::done("help", text.clone(), json!({ "command": text })));
     }
     if let Some((_, line)) = commands(led).find(|(command, _)| *command == name) {

@@ -189,11 +189,12 @@ impl Interpreter {
         let refused: Vec<Value> = adopted
             .refused
             .iter()
-            .map(|(day, tool, refusal)| json!({ "day": day, "tool": tool.name(), "error": refusal }))
+            .map(|(day, what, refusal)| json!({ "day": day, "what": what, "error": refusal }))
             .collect();
-        let told = adopted.refused.iter().map(|(day, tool, refusal)| {
-            format!("\nday {day}: {} was refused: {}", tool.name(), refusal.message)
-        });
+        let told = adopted
+            .refused
+            .iter()
+            .map(|(day, what, refusal)| format!("\nday {day}: {what} was refused: {}", refusal.message));
         let text = format!(
             "run {run} stands on day {day} with the decisions of its parent · {mode} · {}{}",
             name(decided),

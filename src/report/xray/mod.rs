@@ -3,6 +3,7 @@
 mod breakpoints;
 mod company;
 mod customer;
+mod difference;
 mod leads;
 mod market;
 mod quality;
@@ -14,6 +15,7 @@ mod writes;
 pub use breakpoints::{breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words};
 pub use company::company_in_words;
 pub use customer::customer_in_words;
+pub use difference::{difference_as_data, difference_in_words, runs_in_words};
 pub use leads::leads_in_words;
 pub use market::{drift_in_words, rivals_in_words};
 pub use quality::quality_in_words;

@@ -10,6 +10,7 @@ use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::StateHash;
+use crate::session::play::overrides::{ParameterChange, Taken};
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
 use crate::tools::bounds;
@@ -131,8 +132,9 @@ impl<'a> OpenBranch<'a> {
         let told = hashed || has_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
         let feed = if told { start.feed.clone() } else { Default::default() };
-        let given = (params, start.streams.clone(), start.names.clone());
-        let simulation = Simulation::at(given, start.world.clone(), feed);
+        let overrides = start.overrides.over(&params, &edits.dropped);
+        let given = (start.streams.clone(), start.names.clone());
+        let simulation = Simulation::at((params, overrides), given, start.world.clone(), feed);
         let mut branch = OpenBranch {
             edits,
             moves,
@@ -170,7 +172,10 @@ impl<'a> OpenBranch<'a> {
             match step {
                 // What is decided on the last day is none of its business.
                 Move::Call(call) if call.day >= until => break,
+                Move::Parameter(setting) if setting.day >= until => break,
                 Move::Call(call) => self.make(call),
+                Move::Parameter(setting) if self.edits.dropped.contains(&setting.change.seq) => {}
+                Move::Parameter(setting) => self.set(&setting.change),
                 Move::Days(days) => {
                     self.run_days(days.until.min(until), progress)?;
                     if days.until > until {
@@ -237,6 +242,15 @@ impl<'a> OpenBranch<'a> {
         Ok(())
     }
 
+    /// Sets a parameter. A value that does not fit the parameters of the branch is left out, as one that waits is.
+    fn set(&mut self, change: &ParameterChange) {
+        let taken = self.simulation.overrides.take(&self.simulation.params, change.clone());
+        if let Ok(Taken { now, .. }) = taken {
+            self.simulation.use_params(now, self.projection.entries());
+            self.numbers = OnceLock::new();
+        }
+    }
+
     fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
         while self.simulation.world.day < until && !self.is_over() {
             self.follow_edits();
@@ -274,7 +288,11 @@ impl<'a> OpenBranch<'a> {
 
     fn run_day(&mut self) {
         let day_before = self.left_to_tell.then(Vec::new);
+        let params = self.simulation.params.clone();
         let figures = self.simulation.simulate_day(&self.edits.held, self.projection.entries(), day_before);
+        if !Arc::ptr_eq(&params, &self.simulation.params) {
+            self.numbers = OnceLock::new();
+        }
         self.left_to_tell = self.told;
         self.simulation.judge_own_posts(self.projection.entries());
         let Simulation { facts, params, world, .. } = &self.simulation;

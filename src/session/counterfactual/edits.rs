@@ -14,7 +14,7 @@ use crate::world::params::Params;
 pub(in crate::session) struct Edits {
     /// Calls that are made before everything else.
     pub opening: Vec<(ToolId, Value)>,
-    /// Lines of calls that are not made.
+    /// Lines of calls that are not made, and of parameters that are not set.
     pub dropped: BTreeSet<u64>,
     /// Other arguments of calls, by line.
     pub changed: BTreeMap<u64, Value>,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::feed::Feed;
+use crate::session::play::overrides::Overrides;
 use crate::session::play::simulation::Simulation;
 use crate::voice::CompanyNames;
 use crate::world::params::Params;
@@ -13,8 +14,10 @@ use crate::world::state::World;
 /// A company at the end of a day, before anything is decided on it.
 #[derive(Clone)]
 pub(in crate::session) struct KeptState {
-    /// Parameters of the run.
+    /// Parameters in force.
     pub params: Arc<Params>,
+    /// What was set of them, and what waits for its day.
+    pub overrides: Overrides,
     /// Its luck.
     pub streams: Streams,
     /// What its companies are called.
@@ -33,7 +36,7 @@ impl KeptState {
 
     /// The moment a simulation has come to.
     pub(in crate::session) fn of(simulation: Simulation) -> KeptState {
-        let Simulation { params, streams, names, world, feed, .. } = simulation;
-        KeptState { params, streams, names, world, feed }
+        let Simulation { params, overrides, streams, names, world, feed, .. } = simulation;
+        KeptState { params, overrides, streams, names, world, feed }
     }
 }

@@ -57,7 +57,7 @@ impl Past {
     pub(in crate::session) fn last_day(&self) -> u32 {
         let days = self.moves.iter().rev().find_map(|step| match step {
             Move::Days(days) => Some(days.until),
-            Move::Call(_) => None,
+            Move::Call(_) | Move::Parameter(_) => None,
         });
         days.unwrap_or(0)
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use crate::session::play::overrides::ParameterChange;
 use crate::session::trajectory::record::{Call, Outcome};
 use crate::session::trajectory::{Line, Record};
 use crate::tools::{Kind, ToolId};
@@ -13,6 +14,8 @@ use crate::tools::{Kind, ToolId};
 pub(in crate::session) enum Move {
     /// A call that could act on the company.
     Call(PastCall),
+    /// A parameter was set.
+    Parameter(PastSetting),
     /// Days passed.
     Days(PastDays),
 }
@@ -30,6 +33,15 @@ pub struct PastCall {
     pub args: Value,
     /// Whether it was accepted.
     pub accepted: bool,
+}
+
+/// A parameter that was set in the past.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct PastSetting {
+    /// Day on which it was set.
+    pub day: u32,
+    /// What was set.
+    pub change: ParameterChange,
 }
 
 /// Days of the past.
@@ -53,6 +65,10 @@ fn move_of(line: &Line) -> Option<Move> {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
         return Some(Move::Days(PastDays { until: line.day, state_hash, parts }));
     }
+    if let Record::Override(setting) = &line.record {
+        let change = ParameterChange::of(line.seq, setting)?;
+        return Some(Move::Parameter(PastSetting { day: line.day, change }));
+    }
     let Record::Call(Call { tool, args, outcome, .. }) = &line.record else { return None };
     let kind = tool.tool().spec().kind;
     (kind.acts() && kind != Kind::Time).then(|| {
@@ -66,6 +82,7 @@ pub(in crate::session) fn between(moves: &[Move], from: u32, until: u32) -> &[Mo
     let after = |day: u32| {
         let before = |step: &Move| match step {
             Move::Call(call) => call.day < day,
+            Move::Parameter(setting) => setting.day < day,
             Move::Days(days) => days.until <= day,
         };
         moves.partition_point(before)
@@ -80,6 +97,6 @@ pub(in crate::session) fn has_replies(moves: &[Move]) -> bool {
         Move::Call(call) => {
             call.accepted && call.tool == ToolId::PostSocialMedia && !call.args["reply_to_post_id"].is_null()
         }
-        Move::Days(_) => false,
+        Move::Parameter(_) | Move::Days(_) => false,
     })
 }

@@ -2,16 +2,21 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::branch::*;
 use super::edits::{AddedCall, Edits};
 use super::kept_state::KeptState;
 use super::past::Past;
 use super::script::{Move, moves};
+use crate::session::folder::configuration::Configuration;
+use crate::session::folder::create::{NewRun, Storage};
+use crate::session::folder::mode::Mode;
 use crate::session::playback::{Origin, read};
+use crate::session::state::Session;
+use crate::session::trajectory::record::Via;
 use crate::tools::ToolId;
 use crate::world::held::Held;
 
@@ -37,7 +42,7 @@ fn without_an_edit_every_recorded_state_is_reached_again() {
             .iter()
             .filter_map(|step| match step {
                 Move::Days(days) => Some((days.until, days.state_hash.clone())),
-                Move::Call(_) => None,
+                Move::Call(_) | Move::Parameter(_) => None,
             })
             .collect();
         assert!(recorded.len() > 3, "{name}");
@@ -109,4 +114,104 @@ fn inputs_are_held_for_the_days_that_are_simulated_and_work_can_be_stopped() {
         if day == 38 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert!(stopped.is_none());
+}
+
+/// A debug run of six weeks, in which parameters are set if they are to be.
+fn with_parameters(folder: &Path, set: bool) -> Session {
+    let new = NewRun {
+        mode: Mode::Debug,
+        seed: Some(7),
+        days: Some(140),
+        storage: Storage::Runs(folder.to_owned()),
+        projection: false,
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    for (tool, args) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 750}}})),
+        ("set_capacity_tier", json!({"tier": 1})),
+    ] {
+        session.call(tool, &args, Via::Script).expect(tool);
+    }
+    for week in 1..=6 {
+        let forecasts = session.naive_forecasts();
+        session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        let put = |session: &mut Session, key: &str, value: Value, from| {
+            session.set_parameter(key, &value, from).expect(key);
+        };
+        match week {
+            2 if set => put(&mut session, "group.S1.c_max_mean", json!(30), Some(18)),
+            3 if set => put(&mut session, "leads.lead_acquisition_cost", json!(20), None),
+            4 if set => {
+                put(&mut session, "calendar.weekly", json!([3, 3, 3, 3, 3, 3, 3]), Some(36));
+                put(&mut session, "satisfaction.satisfaction_ema_alpha", json!(0.6), Some(40));
+            }
+            _ => {}
+        }
+    }
+    session
+}
+
+#[test]
+fn without_an_edit_a_run_with_set_parameters_reaches_its_states_from_wherever_it_is_begun() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = with_parameters(folder.path(), true);
+    let mut past = Past::read(session.folder().expect("a folder")).expect("a run");
+    for day in [42, 35, 14, 21, 28, 0, 7, 42] {
+        past.moment(day, &mut on).expect("the recorded state").expect("it is not stopped");
+    }
+    // What waits for its day is kept with a moment.
+    let eve = past.moment(28, &mut on).expect("the recorded state").expect("it is not stopped");
+    assert_eq!(eve.overrides.waiting().count(), 0, "what is decided on a day follows it");
+    let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
+    assert_eq!(later.overrides.waiting().count(), 2);
+    let outcome = counterfactual(&later, past.between(35, 42), &Edits::default(), 42, &mut on);
+    assert_eq!(outcome.expect("it is not stopped").end.world.part_hashes(), {
+        let end = past.moment(42, &mut on).expect("the recorded state").expect("it is not stopped");
+        end.world.part_hashes()
+    });
+}
+
+#[test]
+fn a_run_whose_settings_of_parameters_are_dropped_is_the_run_without_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let changed = with_parameters(folder.path(), true);
+    let plain = with_parameters(folder.path(), false);
+    let mut past = Past::read(changed.folder().expect("a folder")).expect("a run");
+    let opening = past.moment(0, &mut on).expect("the opening").expect("it is not stopped");
+    let set = |step: &Move| match step {
+        Move::Parameter(setting) => Some(setting.change.seq),
+        Move::Call(_) | Move::Days(_) => None,
+    };
+    let dropped = past.between(0, 42).iter().filter_map(set).collect();
+    let edits = Edits { dropped, ..Edits::default() };
+    let outcome = counterfactual(&opening, past.between(0, 42), &edits, 42, &mut on).expect("an outcome");
+    assert_eq!(outcome.weeks, plain.weeks());
+    assert_ne!(outcome.weeks, changed.weeks());
+    // And so for those that wait at a moment.
+    let later = past.moment(35, &mut on).expect("the recorded state").expect("it is not stopped");
+    let dropped = later.overrides.waiting().map(|change| change.seq).collect();
+    let edits = Edits { dropped, ..Edits::default() };
+    let outcome = counterfactual(&later, past.between(35, 42), &edits, 42, &mut on).expect("an outcome");
+    assert!(
+        outcome.weeks[0].new_individual_leads * 2 < changed.weeks()[5].new_individual_leads,
+        "three times as many leads came"
+    );
+}
+
+#[test]
+fn a_parameter_that_was_set_is_a_cause_like_others() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = with_parameters(folder.path(), true);
+    let mut causes =
+        crate::session::why::Causes::read(session.folder().expect("a folder")).expect("a debug run");
+    let figure = crate::session::WeekFigure::named("individual leads").expect("a figure");
+    let why =
+        causes.why(figure, Some(6), &|_| ControlFlow::Continue(())).expect("causes").expect("an answer");
+    let part = why.parts.iter().find(|part| part.cause == crate::session::Cause::Parameters);
+    assert!(part.is_some_and(|part| part.amount > 1_000.0), "{why:?}");
+    let plain =
+        causes.why(figure, Some(2), &|_| ControlFlow::Continue(())).expect("causes").expect("an answer");
+    assert!(plain.parts.iter().all(|part| part.cause != crate::session::Cause::Parameters));
 }

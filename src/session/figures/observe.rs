@@ -122,7 +122,7 @@ impl Session {
             mode: self.manifest.mode,
             seed: Some(self.manifest.seed).filter(|_| self.manifest.study.is_none()),
             scenario: self.manifest.scenario.clone(),
-            has_own_parameters: *self.own_parameters.get_or_init(|| self.manifest.has_own_parameters()),
+            has_own_parameters: self.has_own_parameters(),
             participant: self.manifest.participant.clone(),
             day: self.simulation.world.day,
             last_day: self.manifest.days,

@@ -164,6 +164,7 @@ impl Session {
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
             shadow: None,
+            is_shadow: false,
             diary: Arc::default(),
             breakpoints: Breakpoints::default(),
             hidden_tables: None,

@@ -12,9 +12,9 @@ use crate::session::error::RunError;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::session::study::stamp::EarlierRun;
-use crate::session::trajectory::open_regular_file;
 use crate::session::trajectory::record::Ended;
 use crate::session::trajectory::{Line, Record};
+use crate::session::trajectory::{open_regular_file, read_regular_file};
 
 /// A run in the list.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -131,7 +131,8 @@ fn summarise(folder: &Path) -> RunSummary {
     });
     RunSummary {
         id,
-        has_own_parameters: manifest.has_own_parameters(),
+        has_own_parameters: manifest.has_own_parameters()
+            || (manifest.mode == Mode::Debug && sets_parameters(&folder.join("trajectory.jsonl"))),
         created: manifest.created.clone(),
         played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
@@ -150,6 +151,13 @@ fn summarise(folder: &Path) -> RunSummary {
         ended,
         problem,
     }
+}
+
+/// Whether a debug run has set a parameter while it went on.
+fn sets_parameters(trajectory: &Path) -> bool {
+    let Ok(bytes) = read_regular_file(trajectory) else { return false };
+    let kind = br#""kind":"override""#;
+    bytes.windows(kind.len()).any(|window| window == kind)
 }
 
 fn unreadable(id: String, problem: String) -> RunSummary {

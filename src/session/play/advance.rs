@@ -1,5 +1,7 @@
 //! Letting time pass.
 
+use std::sync::Arc;
+
 use serde_json::{Map, Value, json};
 
 use super::act::not_saved;
@@ -198,6 +200,7 @@ impl Session {
         let week_end = self.next_decision_day();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
+        let params = self.simulation.params.clone();
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
             let day = self.simulation.world.day;
             if day > from && !goes_on(day) {
@@ -209,10 +212,13 @@ impl Session {
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
             let debug = self.manifest.mode == crate::session::folder::mode::Mode::Debug;
-            let xray = debug.then(|| Xray::new(self));
+            let xray = (debug || self.is_shadow).then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();
             day_before = Some(notices);
+        }
+        if !Arc::ptr_eq(&params, &self.simulation.params) {
+            self.renew_what_follows_from_parameters();
         }
         self.simulation.end_days(self.projection.entries(), day_before)
     }

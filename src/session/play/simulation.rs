@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::entry::entry_of;
 use super::facts_chain::{FactsChain, StateHash, state_hash};
 use super::feed::Feed;
+use super::overrides::Overrides;
 use super::projection::Entries;
 use crate::database::Entry;
 use crate::session::folder::manifest::Manifest;
@@ -27,6 +28,8 @@ use crate::world::state::World;
 /// The company, its words, and how far it has come.
 pub(in crate::session) struct Simulation {
     pub(in crate::session) params: Arc<Params>,
+    /// What was set of them since the run began.
+    pub(in crate::session) overrides: Overrides,
     pub(in crate::session) streams: Streams,
     pub(in crate::session) world: World,
     /// Facts of the last day or call.
@@ -62,6 +65,7 @@ impl Simulation {
         Simulation {
             names: CompanyNames::new(manifest.seed, &params.personas.email),
             params,
+            overrides: Overrides::default(),
             streams: Streams::new(manifest.seed),
             world,
             facts: facts.into(),
@@ -75,12 +79,14 @@ impl Simulation {
 
     /// A company at some moment of a run, and what was written in public until then.
     pub(in crate::session) fn at(
-        (params, streams, names): (Arc<Params>, Streams, CompanyNames),
+        (params, overrides): (Arc<Params>, Overrides),
+        (streams, names): (Streams, CompanyNames),
         world: World,
         feed: Feed,
     ) -> Simulation {
         Simulation {
             params,
+            overrides,
             streams,
             world,
             facts: Arc::default(),
@@ -122,6 +128,14 @@ impl Simulation {
         (&mut self.world, to_fill(&mut self.facts, entries), &self.params, &self.streams)
     }
 
+    /// Goes on with other parameters.
+    pub(in crate::session) fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
+        if !Arc::ptr_eq(&self.params, &params) {
+            entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
+            self.params = params;
+        }
+    }
+
     /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,
     /// with its notices.
     pub(in crate::session) fn simulate_day(
@@ -131,14 +145,17 @@ impl Simulation {
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
         std::mem::swap(&mut self.facts, &mut self.facts_before);
+        // The day before is told with the parameters it ran with.
+        let due = self.overrides.due(self.world.day + 1).unwrap_or_else(|| self.params.clone());
         let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, watch, .. } = self;
         let today = to_fill(facts, entries);
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
-            || step_day_watched(world, params, streams, held, today, &**watch),
+            || step_day_watched(world, &due, streams, held, today, &**watch),
             || follow_up.follow(facts_before, day_before, None),
         );
         self.trace = trace;
+        self.use_params(due, entries);
         figures
     }
 

@@ -18,7 +18,8 @@ impl Session {
     /// Starts a branch at the beginning of a week, counted from 1, and opens it.
     ///
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `week_unknown`, `not_saved`.
+    /// `not_in_this_mode` for an unfinished baseline run, a baseline branch, and one that is no debug run though parameters
+    /// were set in its past; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
@@ -53,7 +54,8 @@ fn not_saved(error: RunError) -> Refusal {
 /// Starts a run beside another that shares some of its lines, and opens it.
 ///
 /// # Errors
-/// `not_in_this_mode` for a baseline branch, `not_saved`.
+/// `not_in_this_mode` for a baseline branch, and for one that is no debug run though parameters were set in its past;
+/// `not_saved`.
 pub(in crate::session) fn branch_of(
     folder: &Path,
     parent: &Manifest,
@@ -64,6 +66,10 @@ pub(in crate::session) fn branch_of(
         return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
     }
     let shared = shared_lines(lines);
+    if mode != Mode::Debug && shared.iter().any(|line| matches!(line.record, Record::Override(_))) {
+        let message = "parameters were set in its past, so a branch of it is a debug run";
+        return Err(Refusal::new("not_in_this_mode", message));
+    }
     let manifest = Manifest {
         id: new_id(),
         version: env!("CARGO_PKG_VERSION").to_owned(),

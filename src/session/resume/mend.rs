@@ -31,13 +31,14 @@ impl Session {
         let path = folder.join("trajectory.jsonl");
         let read = Trajectory::read(&path)?;
         let sound = is_consistent(&Location::File(folder.join("world.db")));
-        let run = (&self.manifest, &self.simulation.params);
-        let database = open_projector(&folder, Access::Write, run, &read, sound)?;
+        // The beginning is made with the parameters of the beginning.
+        let params = Arc::new(self.manifest.params()?);
+        let database = open_projector(&folder, Access::Write, (&self.manifest, &params), &read, sound)?;
         let integrity = Integrity::of(&folder, &self.manifest, &self.seal_key);
         let rows = database.1.as_ref().map_or(0, |position| position.seq);
         let snapshot = usable(&integrity, &self.manifest, &read, Some(rows));
-        let (manifest, params) = (self.manifest.clone(), Arc::clone(&self.simulation.params));
-        let (mut other, seen) = Session::before_replay(manifest, &folder, params, snapshot);
+        let manifest = self.manifest.clone();
+        let (mut other, seen) = Session::before_replay(manifest, &folder, params, &read.lines, snapshot);
         other.replay(&path, &read, seen, Some(database), &mut |_| {})?;
         other.projection.wait()?;
         self.projection = other.projection;

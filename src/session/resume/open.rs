@@ -6,11 +6,12 @@ use std::sync::Arc;
 use super::integrity::Integrity;
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
-use crate::database::{Location, Position, Projector};
+use crate::database::{Entry, Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
+use crate::session::play::advance::DayReport;
 use crate::session::play::facts_chain::StateHash;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -85,7 +86,8 @@ impl Session {
         // The number of the line up to which rows are there; rows that lack need the facts before them.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = usable(&integrity, &manifest, &trajectory, rows);
-        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
+        let lines = &trajectory.lines;
+        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
         session.seal_key = key;
         session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
@@ -115,10 +117,12 @@ impl Session {
         manifest: Manifest,
         folder: &Path,
         params: Arc<Params>,
+        lines: &[Line],
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
         let own = Some(folder.to_owned());
-        let recalled = snapshot.and_then(|snapshot| Some((snapshot.recall(&manifest, &params)?, snapshot)));
+        let recall = |snapshot: &Snapshot| snapshot.recall(&manifest, &params, lines);
+        let recalled = snapshot.and_then(|snapshot| Some((recall(snapshot)?, snapshot)));
         let Some((Recalled { simulation, history, notebook }, snapshot)) = recalled else {
             return (Session::unwritten(manifest, own, params, None), 0);
         };
@@ -144,25 +148,44 @@ impl Session {
         for line in trajectory.lines.iter().skip(seen) {
             let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
             if missing && projector.is_some() {
-                self.projection = Projection::of(projector.take());
+                self.go_on_with(projector.take());
             }
             self.apply_line(path, line)?;
             reached(self.simulation.world.day);
         }
         if projector.is_some() {
-            self.projection = Projection::of(projector);
+            self.go_on_with(projector);
         }
         Ok(())
     }
 
-    /// Applies a line of a file again.
-    pub(in crate::session) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
-        self.position = line.position();
-        let damaged = damaged_at(path);
-        self.replay_line(line).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+    /// From here on rows are made, with the parameters in force.
+    fn go_on_with(&mut self, projector: Option<Projector>) {
+        self.projection = Projection::of(projector);
+        if self.simulation.overrides.is_used() {
+            let params = self.simulation.params.clone();
+            self.projection.entries().write(|| Entry { params: Some(params), ..Entry::default() });
+        }
     }
 
-    fn replay_line(&mut self, line: &Line) -> Result<(), String> {
+    /// Applies a line of a file again.
+    pub(in crate::session) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+        self.apply_line_telling(path, line, &mut |_| {})
+    }
+
+    /// The same, and tells of each day that it simulates.
+    pub(in crate::session) fn apply_line_telling(
+        &mut self,
+        path: &Path,
+        line: &Line,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
+        self.position = line.position();
+        let damaged = damaged_at(path);
+        self.replay_line(line, tell).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+    }
+
+    fn replay_line(&mut self, line: &Line, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
         match &line.record {
             Record::Start(_) => self.project_opening(),
             Record::Call(call) => {
@@ -173,7 +196,7 @@ impl Session {
             Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
-                let state = self.run_days(from.saturating_add(closing.days_run), &mut |_| {});
+                let state = self.run_days(from.saturating_add(closing.days_run), tell);
                 self.compare(from, &state, closing)?;
                 self.commit_projection();
             }
@@ -181,12 +204,12 @@ impl Session {
                 self.history.ended = Some(end.reason);
                 self.commit_projection();
             }
+            Record::Override(change) => self.replay_override(line.seq, change)?,
             Record::Query(query) => self.remember_query(&query.sql),
             Record::Activity(_)
             | Record::Memo(_)
             | Record::Note(_)
             | Record::Branch(_)
-            | Record::Override(_)
             | Record::Unknown(_) => {}
         }
         Ok(())

@@ -36,7 +36,8 @@ pub fn rebuild_database(
     let rows = database.1.as_ref().map_or(0, |position| position.seq);
     let snapshot = usable(&integrity, &manifest, &trajectory, Some(rows));
     let days = manifest.days;
-    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, snapshot);
+    let lines = &trajectory.lines;
+    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
     session.projection.wait()?;
     // The file is another one now: what vouched for the old one would call it damaged.

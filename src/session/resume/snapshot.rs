@@ -28,12 +28,13 @@ use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
 use crate::session::play::history::History;
 use crate::session::play::irrevocable::Irrevocable;
+use crate::session::play::overrides::Overrides;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::Calculated;
 use crate::session::play::this_week::{Step, ThisWeek};
 use crate::session::state::Session;
-use crate::session::trajectory::hash_of_first_line;
 use crate::session::trajectory::record::Ended;
+use crate::session::trajectory::{Line, hash_of_first_line};
 use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::params::Params;
@@ -170,8 +171,13 @@ impl Snapshot {
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
-    /// The state of a run; none if it is not the one it claims to be.
-    pub(in crate::session) fn recall(&self, manifest: &Manifest, params: &Arc<Params>) -> Option<Recalled> {
+    /// The state of a run that began with some parameters and has these lines; none if it is not the one it claims to be.
+    pub(in crate::session) fn recall(
+        &self,
+        manifest: &Manifest,
+        params: &Arc<Params>,
+        lines: &[Line],
+    ) -> Option<Recalled> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
         let notes = Notes::unpacked(&reader.read::<Vec<u8>>()?)?;
         // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
@@ -181,6 +187,8 @@ impl Snapshot {
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
         let past = (reader.read()?, reader.read()?);
         let mut simulation = Simulation::of(manifest, params.clone(), past);
+        let seen = lines.get(..=self.header.seq as usize)?;
+        (simulation.params, simulation.overrides) = Overrides::after(params, seen, simulation.world.day)?;
         simulation.trace = reader.read()?;
         simulation.facts_chain = FactsChain::resume(chain, notes.facts_chain.1);
         simulation.feed = notes.feed.into_owned();

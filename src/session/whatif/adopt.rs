@@ -18,8 +18,8 @@ use crate::tools::{Refusal, ToolId};
 pub struct Adopted {
     /// The branch.
     pub session: Session,
-    /// Calls that it refused: day, tool, why.
-    pub refused: Vec<(u32, ToolId, Refusal)>,
+    /// Calls that it refused, and parameters that it could not set: day, tool or key, why.
+    pub refused: Vec<(u32, String, Refusal)>,
 }
 
 impl Session {
@@ -65,6 +65,7 @@ impl Adopted {
             if self.session.ended().is_some() {
                 return;
             }
+            let seq = line.seq;
             match (&line.record, moves(std::slice::from_ref(line)).first()) {
                 (_, Some(Move::Call(call))) => self.make(call, edits),
                 (Record::Advance(filed), _) => {
@@ -73,10 +74,15 @@ impl Adopted {
                     if let Err(refusal) =
                         self.session.advance(&filed.rationale, &forecasts, Via::Branch, &mut |_| {})
                     {
-                        return self.refused.push((self.session.day(), ToolId::NextWeek, refusal));
+                        return self.refuse(ToolId::NextWeek.name(), refusal);
                     }
                     if progress(self.session.day()).is_break() {
                         return;
+                    }
+                }
+                (Record::Override(line), _) if !edits.dropped.contains(&seq) => {
+                    if let Err(refusal) = self.session.set_parameter(&line.key, &line.new, line.from_day) {
+                        self.refuse(&line.key, refusal);
                     }
                 }
                 _ => {}
@@ -109,7 +115,11 @@ impl Adopted {
 
     fn call(&mut self, tool: ToolId, args: &serde_json::Value) {
         if let Err(refusal) = self.session.call(tool, args, Via::Branch) {
-            self.refused.push((self.session.day(), tool, refusal));
+            self.refuse(tool.name(), refusal);
         }
+    }
+
+    fn refuse(&mut self, what: &str, refusal: Refusal) {
+        self.refused.push((self.session.day(), what.to_owned(), refusal));
     }
 }

@@ -119,7 +119,7 @@ fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifferen
     let added = edits.added.iter().map(|call| new(call.day, call.tool, &call.args));
     let of_run = moves.iter().filter_map(|step| match step {
         Move::Call(call) => of_call(edits, call),
-        Move::Days(_) => None,
+        Move::Parameter(_) | Move::Days(_) => None,
     });
     let mut all: Vec<DecisionDifference> = opening.chain(of_run).chain(added).collect();
     all.sort_by_key(|call| call.day);

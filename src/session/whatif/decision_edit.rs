@@ -119,7 +119,7 @@ impl DecisionEdit {
 fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
     moves.iter().filter_map(|step| match step {
         Move::Call(call) => Some(call),
-        Move::Days(_) => None,
+        Move::Parameter(_) | Move::Days(_) => None,
     })
 }
 

@@ -79,7 +79,7 @@ impl WhatIf {
         let moves = self.past.between(from, self.past.manifest.days);
         let calls = moves.iter().filter_map(|step| match step {
             Move::Call(call) => Some(call.clone()),
-            Move::Days(_) => None,
+            Move::Parameter(_) | Move::Days(_) => None,
         });
         Ok(calls.collect())
     }

@@ -8,6 +8,8 @@ use crate::tools::ToolId;
 pub enum Cause {
     /// Calls of a tool.
     Calls(ToolId),
+    /// Parameters that were set in a debug run.
+    Parameters,
     /// Several tools whose calls did least.
     OtherCalls,
     /// Everything about the market that the player cannot see.
@@ -35,6 +37,7 @@ impl Cause {
     pub fn name(self) -> &'static str {
         match self {
             Cause::Calls(tool) => name_of_calls(tool),
+            Cause::Parameters => "parameters",
             Cause::OtherCalls => "other decisions",
             Cause::Market => "market",
             Cause::Rivals => "rivals",
@@ -50,7 +53,7 @@ impl Cause {
 
     /// Whether it is something the player decided.
     pub fn is_own(self) -> bool {
-        matches!(self, Cause::Calls(_) | Cause::OtherCalls)
+        matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls)
     }
 }
 

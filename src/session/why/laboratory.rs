@@ -80,7 +80,8 @@ impl Laboratory {
         let two = TwoWeeks { between: &between, before: &before, after: &after };
         let input = |(cause, details)| Candidate { cause, details, lines: BTreeSet::new() };
         let inputs = two.differing().into_iter().map(input).collect();
-        let calls = decided(&between, &moves, &after);
+        let mut calls = decided(&between, &moves, &after);
+        calls.extend(set_parameters(&between, &moves, end));
         let actual = Without { calls: 0, inputs: 0 };
         let known = BTreeMap::from([(actual, figures(&after))]);
         let undone = Vec::new();
@@ -195,6 +196,18 @@ fn decided(eve: &KeptState, moves: &[Move], after: &BranchOutcome) -> Vec<Candid
         true
     });
     by_tool
+}
+
+/// Parameters that were set in the week, or began to act in it.
+fn set_parameters(eve: &KeptState, moves: &[Move], end: u32) -> Option<Candidate> {
+    let set = moves.iter().filter_map(|step| match step {
+        Move::Parameter(setting) => Some(&setting.change),
+        Move::Call(_) | Move::Days(_) => None,
+    });
+    let acting = eve.overrides.waiting().chain(set).filter(|change| change.from_day <= Some(end));
+    let lines: BTreeSet<u64> = acting.map(|change| change.seq).collect();
+    let details = vec![Detail::Happened(lines.len(), "setting")];
+    (!lines.is_empty()).then_some(Candidate { cause: Cause::Parameters, details, lines })
 }
 
 fn accepted(step: &Move) -> Option<&PastCall> {

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::hidden_day::{Diary, HiddenDay};
 use crate::session::error::RunError;
+use crate::session::play::advance::DayReport;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
 use crate::tools::Refusal;
@@ -81,7 +82,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
-    fn new_shadow(&self, watch: Arc<dyn DayWatch>) -> Result<Box<Session>, Refusal> {
+    pub(in crate::session) fn new_shadow(&self, watch: Arc<dyn DayWatch>) -> Result<Box<Session>, Refusal> {
         if self.folder.is_none() {
             let message = "a run in memory keeps no lines, so its past days cannot be simulated again";
             return Err(Refusal::new("not_possible", message));
@@ -98,6 +99,19 @@ impl Session {
     /// # Errors
     /// `not_readable`.
     fn lead(&self, shadow: &mut Session, goes_on: impl Fn(&Session) -> bool) -> Result<(), Refusal> {
+        self.lead_telling(shadow, goes_on, &mut |_| {})
+    }
+
+    /// The same, and tells of each day.
+    ///
+    /// # Errors
+    /// `not_readable`.
+    pub(in crate::session) fn lead_telling(
+        &self,
+        shadow: &mut Session,
+        goes_on: impl Fn(&Session) -> bool,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), Refusal> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let has_begun = !shadow.position.line_hash.is_empty();
         if has_begun && shadow.position == self.position {
@@ -111,7 +125,7 @@ impl Session {
             if !goes_on(shadow) {
                 break;
             }
-            shadow.apply_line(&path, line).map_err(not_readable)?;
+            shadow.apply_line_telling(&path, line, tell).map_err(not_readable)?;
         }
         Ok(())
     }

@@ -68,6 +68,18 @@ macro_rules! columns {
             }
         }
 
+        impl $Row {
+            /// The columns in which another row differs: name, own value, the other's.
+            pub fn differing(&self, other: &$Row) -> Vec<(&'static str, String, String)> {
+                let mut found = Vec::new();
+                $(if self.$column != other.$column {
+                    let (own, other) = (format!("{:?}", self.$column), format!("{:?}", other.$column));
+                    found.push((stringify!($column), own, other));
+                })*
+                found
+            }
+        }
+
         impl Canonical for $Row {
             fn feed(&self, hasher: &mut CanonicalHasher) {
                 $(self.$column.feed(hasher);)*

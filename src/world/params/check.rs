@@ -134,6 +134,43 @@ pub(super) fn ranges(tables: &Table) -> Result<(), Problem> {
     })
 }
 
+/// Names of bounds: that of the lower one, that of the upper one, and whether the lower one has to be smaller.
+const BOUNDS: [(&str, &str, bool); 3] =
+    [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
+
+/// Checks that no lower bound is above the upper bound of the same name, wherever a table has both.
+pub(super) fn bounds(tables: &Table) -> Result<(), Problem> {
+    tables.iter().try_for_each(|(name, value)| match value {
+        Value::Table(table) => bounds_of(table, name),
+        _ => Ok(()),
+    })
+}
+
+fn bounds_of(table: &Table, path: &str) -> Result<(), Problem> {
+    table.iter().try_for_each(|(name, value)| {
+        let key = format!("{path}.{name}");
+        if let Value::Table(inner) = value {
+            return bounds_of(inner, &key);
+        }
+        BOUNDS.iter().try_for_each(|(lower, upper, is_below)| {
+            let upper = name.strip_suffix(lower).and_then(|start| table.get(&format!("{start}{upper}")));
+            let (Some(low), Some(high)) = (as_number(value), upper.and_then(as_number)) else {
+                return Ok(());
+            };
+            let holds = if *is_below { low < high } else { low <= high };
+            require(holds, &key, || format!("the lower bound {low} is above the upper bound {high}"))
+        })
+    })
+}
+
+fn as_number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(number) => Some(*number),
+        Value::Integer(number) => Some(*number as f64),
+        _ => None,
+    }
+}
+
 /// No number of the world is without bounds.
 fn finite(value: &Value, path: String) -> Result<(), Problem> {
     match value {
@@ -168,11 +205,7 @@ fn check_value(value: &Value, rest: &[&str], range: &Range, path: String) -> Res
 }
 
 fn check_number(value: &Value, range: &Range, path: String) -> Result<(), Problem> {
-    let number = match value {
-        Value::Float(number) => *number,
-        Value::Integer(number) => *number as f64,
-        _ => return Ok(()),
-    };
+    let Some(number) = as_number(value) else { return Ok(()) };
     let &Range(_, low, high) = range;
     if number >= low && number <= high {
         return Ok(());
@@ -216,52 +249,10 @@ fn require(holds: bool, key: &str, problem: impl FnOnce() -> String) -> Result<(
 }
 
 fn ordered_pairs(params: &Params) -> Result<(), Problem> {
-    let competitor = &params.competitor;
-    let pairs = [
-        (
-            "competitor.competitor_feedback_u_min",
-            competitor.competitor_feedback_u_min,
-            competitor.competitor_feedback_u_max,
-        ),
-        (
-            "competitor.competitor_segment_drain_u_min",
-            competitor.competitor_segment_drain_u_min,
-            competitor.competitor_segment_drain_u_max,
-        ),
-        (
-            "competitor.competitor_event_boost_min",
-            competitor.competitor_event_boost_min,
-            competitor.competitor_event_boost_max,
-        ),
-        (
-            "quality.initial_decision_noise_min",
-            params.quality.initial_decision_noise_min,
-            params.quality.initial_decision_noise_max,
-        ),
-        (
-            "quality.negotiation_quality_min",
-            params.quality.negotiation_quality_min,
-            params.quality.negotiation_quality_max,
-        ),
-        ("macro.macro_pmi_floor", params.economy.macro_pmi_floor, params.economy.macro_pmi_ceiling),
-        (
-            "issues.issue_probability_min",
-            params.issues.issue_probability_min,
-            params.issues.issue_probability_max,
-        ),
-        (
-            "enterprise.relationship_min",
-            params.enterprise.relationship_min,
-            params.enterprise.relationship_max,
-        ),
-        (
-            "demand_surge.duration_days_low",
-            f64::from(params.demand_surge.duration_days_low) + 1.0,
-            f64::from(params.demand_surge.duration_days_high_exclusive),
-        ),
-    ];
-    pairs.into_iter().try_for_each(|(key, low, high)| {
-        require(low <= high, key, || format!("the lower bound {low} is above the upper bound {high}"))
+    let economy = &params.economy;
+    let (low, high) = (economy.macro_pmi_floor, economy.macro_pmi_ceiling);
+    require(low <= high, "macro.macro_pmi_floor", || {
+        format!("the lower bound {low} is above the upper bound {high}")
     })
 }
 

@@ -2,9 +2,12 @@
 
 use std::fmt;
 
-use toml::{Table, Value};
+use toml::de::DeValue;
+use toml::{Spanned, Table, Value};
 
+use super::names::{name_in, named, nearest_keys, place_in};
 use super::{Params, check};
+use crate::identifiers::Group;
 
 /// A text that holds parameters, with the name people know it by.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,11 +98,21 @@ impl Params {
                 .map_err(|(key, problem)| locate(&[source], &key, &problem))?;
         }
         let sources: Vec<&ParameterSource> = overrides.iter().rev().chain(base).collect();
-        check::ranges(&merged).map_err(|(key, problem)| locate(&sources, &key, &problem))?;
-        let params = read(merged, &sources)?;
-        check::relations(&params).map_err(|(key, problem)| locate(&sources, &key, &problem))?;
-        Ok(params)
+        checked(merged).map_err(|(key, problem)| locate(&sources, &key, &problem))
     }
+}
+
+/// The parameters of tables that hold every key, if their values are allowed.
+///
+/// # Errors
+/// (key, problem) of the first that is not.
+pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
+    let with_names = |(key, problem): (String, String)| (named(&tables, &key), problem);
+    check::ranges(&tables).map_err(with_names)?;
+    check::bounds(&tables).map_err(with_names)?;
+    let params = read(tables.clone()).map_err(with_names)?;
+    check::relations(&params).map_err(with_names)?;
+    Ok(params)
 }
 
 fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
@@ -111,10 +124,10 @@ fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
     })
 }
 
-fn read(merged: Table, sources: &[&ParameterSource]) -> Result<Params, ParameterError> {
-    serde_path_to_error::deserialize(Value::Table(merged)).map_err(|error| {
+fn read(tables: Table) -> Result<Params, (String, String)> {
+    serde_path_to_error::deserialize(Value::Table(tables)).map_err(|error| {
         let key = error.path().to_string().replace(['[', ']'], "");
-        locate(sources, &key, &in_plain_words(error.inner().message()))
+        (key, in_plain_words(error.inner().message()))
     })
 }
 
@@ -132,30 +145,98 @@ fn in_plain_words(message: &str) -> String {
     format!("{found}, expected {words}")
 }
 
-/// Lays `above` over `below`: tables are merged key by key, everything else is replaced.
+/// Lays `above` over `below`: tables are merged key by key, elements of lists are found by their names, everything else is
+/// replaced.
 ///
 /// # Errors
-/// (key, problem) when a key does not exist below: an override never adds a parameter.
+/// (key, problem) when a key does not exist below, for an override never adds a parameter; or when it is a table or a list
+/// and the value is none.
 pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, String)> {
-    for (key, value) in above {
-        match (below.get_mut(&key), value) {
-            (Some(Value::Table(inner)), Value::Table(over)) => {
-                override_table(inner, over).map_err(|(path, problem)| (format!("{key}.{path}"), problem))?;
-            }
-            (Some(slot), value) => *slot = value,
-            (None, _) => {
-                let near = super::nearest(&key, below.keys().map(String::as_str));
-                let help = if near.is_empty() {
-                    String::new()
-                } else {
-                    format!("; did you mean {}?", near.join(" or "))
+    lay_over(below, above).map_err(|Misfit { key, kind }| {
+        let problem = match kind {
+            MisfitKind::Unknown => {
+                let near = nearest_keys(below, &key);
+                let help = match near.is_empty() {
+                    true => String::new(),
+                    false => format!("; did you mean {}?", near.join(" or ")),
                 };
-                let problem = format!("there is no such parameter{help}");
-                return Err((key, problem));
+                format!("there is no such parameter{help}")
             }
+            MisfitKind::Table(part) => {
+                format!("is a table; name one of its parameters, for instance {key}.{part}")
+            }
+            MisfitKind::List(part) => {
+                format!("is a list; name one of its elements, for instance {key}.{part}")
+            }
+            MisfitKind::Single => "is a single value, not a table".to_owned(),
+        };
+        (key, problem)
+    })
+}
+
+/// A value that cannot be laid over what is there.
+struct Misfit {
+    key: String,
+    kind: MisfitKind,
+}
+
+/// What is there.
+enum MisfitKind {
+    /// Nothing.
+    Unknown,
+    /// A table, with this part.
+    Table(String),
+    /// A list, with this element.
+    List(String),
+    /// A single value.
+    Single,
+}
+
+impl MisfitKind {
+    fn at(self, key: impl Into<String>) -> Misfit {
+        Misfit { key: key.into(), kind: self }
+    }
+}
+
+impl Misfit {
+    fn below(self, name: &str) -> Misfit {
+        let key = if self.key.is_empty() { name.to_owned() } else { format!("{name}.{}", self.key) };
+        Misfit { key, ..self }
+    }
+}
+
+fn lay_over(below: &mut Table, above: Table) -> Result<(), Misfit> {
+    above.into_iter().try_for_each(|(name, value)| {
+        let slot = below.get_mut(&name).ok_or_else(|| MisfitKind::Unknown.at(name.clone()))?;
+        replace(slot, value).map_err(|misfit| misfit.below(&name))
+    })
+}
+
+fn replace(slot: &mut Value, value: Value) -> Result<(), Misfit> {
+    match (slot, value) {
+        (Value::Table(inner), Value::Table(over)) => lay_over(inner, over),
+        (Value::Table(inner), _) => {
+            let first = inner.keys().next().cloned().unwrap_or_default();
+            Err(MisfitKind::Table(first).at(""))
+        }
+        (Value::Array(list), Value::Table(over)) => over.into_iter().try_for_each(|(name, value)| {
+            let at = place_in(list, &name).ok_or_else(|| MisfitKind::Unknown.at(name.clone()))?;
+            replace(&mut list[at], value).map_err(|misfit| misfit.below(&name))
+        }),
+        (slot @ Value::Array(_), Value::Array(values)) => {
+            *slot = Value::Array(values);
+            Ok(())
+        }
+        (Value::Array(list), _) => Err(MisfitKind::List(name_in(list, 0)).at("")),
+        (_, Value::Table(over)) => Err(match over.into_iter().next() {
+            Some((name, _)) => MisfitKind::Unknown.at(name),
+            None => MisfitKind::Single.at(""),
+        }),
+        (slot, value) => {
+            *slot = value;
+            Ok(())
         }
     }
-    Ok(())
 }
 
 /// An error at the place where the first of `sources` that holds `key` has it.
@@ -175,19 +256,24 @@ fn line_of(text: &str, offset: usize) -> usize {
     text[..offset.min(text.len())].matches('\n').count() + 1
 }
 
-/// Line of the deepest part of a dotted key that stands in the text; elements of lists are numbered from 0.
+/// Line of the deepest part of a dotted key that stands in the text; elements of lists have their names, or are numbered from
+/// 0.
 pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     let document = toml::de::DeTable::parse(text).ok()?;
     let mut line = None;
-    let mut here = Some(toml::de::DeValue::Table(document.into_inner()));
+    let mut here = Some(DeValue::Table(document.into_inner()));
     for part in key.split('.') {
         let (span, next) = match here.take()? {
-            toml::de::DeValue::Table(table) => {
+            DeValue::Table(table) => {
                 let (found, value) = table.into_iter().find(|(name, _)| name.get_ref() == part)?;
                 (found.span(), value.into_inner())
             }
-            toml::de::DeValue::Array(values) => {
-                let value = values.into_iter().nth(part.parse().ok()?)?;
+            DeValue::Array(values) => {
+                let called = |value: &Spanned<DeValue<'_>>| name_of(value.get_ref()).as_deref() == Some(part);
+                let of_group =
+                    || Group::parse(part).map(Group::index).filter(|_| values.len() == Group::COUNT);
+                let at = values.iter().position(called).or_else(of_group).or_else(|| part.parse().ok())?;
+                let value = values.into_iter().nth(at)?;
                 (value.span(), value.into_inner())
             }
             _ => return line,
@@ -196,6 +282,16 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
         here = Some(next);
     }
     line
+}
+
+/// What an entry of a list is called.
+fn name_of(entry: &DeValue<'_>) -> Option<String> {
+    let DeValue::Table(fields) = entry else { return None };
+    ["id", "tier", "level"].iter().find_map(|field| match fields.get(*field)?.get_ref() {
+        DeValue::String(id) => Some(id.to_string()),
+        DeValue::Integer(number) => Some(number.as_str().to_owned()),
+        _ => None,
+    })
 }
 
 #[cfg(test)]

@@ -3,12 +3,14 @@
 //! The pages of `docs/mechanics/README.md` explain every key. A scenario is a small file that overrides
 //! some of them; the merged result has a digest that every run records.
 
+mod change;
 mod check;
 mod customers;
 mod discovery;
 mod enterprise;
 mod load;
 mod market;
+mod names;
 mod nearest;
 mod product;
 mod retention;
@@ -19,6 +21,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use change::Difference;
 pub use customers::*;
 pub use discovery::*;
 pub use enterprise::*;

@@ -12,6 +12,7 @@ use serde_json::Value;
 use super::games::week;
 use super::run::{copy, create, open, runs};
 use crate::support::company::open_shop;
+use crate::support::forging::forge;
 
 const MACHINE: &str = "lab-3";
 
@@ -73,27 +74,6 @@ fn remove_what_remembers(folder: &Path) {
     for name in ["world.db", "world.db-wal", "world.db-shm", "snapshot.bin"] {
         let _ = fs::remove_file(folder.join(name));
     }
-}
-
-/// Changes lines and forges sums and chain anew, as twenty lines of a script can.
-fn forge(folder: &Path, change: impl Fn(usize, &mut Value)) {
-    let path = folder.join("trajectory.jsonl");
-    let text = fs::read_to_string(&path).expect("a trajectory");
-    let mut previous = blake3::hash(b"").to_hex().to_string();
-    let mut forged = String::new();
-    for (at, line) in text.lines().enumerate() {
-        let mut line: Value = serde_json::from_str(line).expect("JSON");
-        change(at, &mut line);
-        line["prev"] = previous.into();
-        line.as_object_mut().expect("an object").shift_remove("sum");
-        let bare = line.to_string();
-        let sum = blake3::hash(bare.as_bytes()).to_hex()[..16].to_owned();
-        let line = format!("{},\"sum\":\"{sum}\"}}", &bare[..bare.len() - 1]);
-        previous = blake3::hash(line.as_bytes()).to_hex().to_string();
-        forged.push_str(&line);
-        forged.push('\n');
-    }
-    fs::write(path, forged).expect("written");
 }
 
 #[test]

@@ -79,12 +79,15 @@ pub struct Closing {
 /// A change of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Override {
-    /// Parameter, `table.key`.
+    /// Parameter, or a list or table of them: `table.key`, `group.S1.c_max_mean`.
     pub key: String,
-    /// Value before.
+    /// Value when it was set.
     pub old: Value,
-    /// Value from here on.
+    /// Value from here on, or from a later day.
     pub new: Value,
+    /// First day that is simulated with the new value; none where it acts at once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_day: Option<u32>,
 }
 
 /// Where a branch comes from.

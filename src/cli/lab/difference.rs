@@ -1,0 +1,56 @@
+//! `novamind lab diff`: two runs on a day.
+
+use clap::Args;
+use serde_json::json;
+
+use crate::cli::{Context, Failure, print};
+use crate::notation::printable;
+use crate::report::xray::{difference_as_data, runs_in_words};
+use crate::session::{Session, find_run_to_read};
+
+/// Options of `lab diff`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// A debug run, or one that is over.
+    #[arg(value_name = "RUN_A")]
+    one: String,
+    /// Another.
+    #[arg(value_name = "RUN_B")]
+    other: String,
+    /// Day that is compared [default: the first on which something differs].
+    #[arg(value_name = "DAY")]
+    day: Option<u32>,
+    /// Print as one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command; nothing of the runs is changed but that the look is recorded.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let runs = context.runs()?;
+    let open = |name: &str| -> Result<Session, Failure> {
+        let folder = find_run_to_read(&runs, name)?;
+        context.check_look(&folder)?;
+        Ok(Session::open_to_look_inside(&folder, context.seal_key()?)?)
+    };
+    let mut one = open(&options.one)?;
+    if one.folder() == Some(&*find_run_to_read(&runs, &options.other)?) {
+        return Err(Failure::usage("name two runs; `diff DAY DAY` in plain mode compares two days of one"));
+    }
+    let mut other = open(&options.other)?;
+    let found = one.difference_to(&mut other, options.day);
+    let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
+    let ids = [&one, &other].map(|run| run.manifest().id.clone());
+    if options.json {
+        let object = json!({
+            "runs": ids,
+            "last_day": found.last_day,
+            "first_day": found.first_day,
+            "day": found.difference.as_ref().map(|own| own.days.0),
+            "difference": found.difference.as_ref().map(difference_as_data),
+        });
+        return print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"));
+    }
+    let lines = runs_in_words(&found, (&ids[0], &ids[1]));
+    print(&printable(&(lines.join("\n") + "\n")))
+}

@@ -1,0 +1,33 @@
+//! `novamind lab metrics`: the figures of a run day by day, hidden ones included.
+
+use clap::Args;
+
+use crate::cli::run::figure_rows;
+use crate::cli::{Context, Failure, print};
+use crate::lab::Collector;
+use crate::session::{Session, find_run_to_read};
+
+/// Options of `lab metrics`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Run, or `latest`: the newest; a debug run, or one that is over.
+    #[arg(value_name = "RUN")]
+    run: String,
+}
+
+/// Runs the command; nothing of the run is changed but that the look is recorded.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    context.check_look(&folder)?;
+    let mut session = Session::open_to_look_inside(&folder, context.seal_key()?)?;
+    let mut collector = Collector::new(None);
+    let told = session.tell_days_again(&mut |day| collector.day(day));
+    told.map_err(|refusal| Failure::failed(refusal.message))?;
+    let manifest = session.manifest();
+    // A participant of a study does not learn the seed.
+    let seed = match manifest.study.is_none() || context.is_experimenter {
+        true => manifest.seed.to_string(),
+        false => String::new(),
+    };
+    print(&figure_rows(&seed, &collector.finish(manifest.days)))
+}

@@ -1,0 +1,85 @@
+//! Parameters that a debug run has set, in words.
+
+use serde_json::Value;
+
+use crate::session::{ChangedParameter, ChangedParameters};
+
+/// `group.S1.c_max_mean: 50 → 300, from day 30 on`
+pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {
+    let ChangedParameter { key, old, new, from_day } = set;
+    let change = if old == new { format!("{new}, as before") } else { format!("{old} → {new}") };
+    match from_day {
+        Some(day) => format!("{key}: {change}, from day {day} on"),
+        None => format!("{key}: {change}, from now on; day {} is simulated with it", today + 1),
+    }
+}
+
+/// What differs from the scenario, one parameter in a line, and what waits for its day.
+pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
+    let against = match &changed.scenario {
+        Some(name) => format!("scenario {name}"),
+        None => "the start of the run".to_owned(),
+    };
+    let mut lines = match changed.in_force.len() {
+        0 => vec![format!("no parameter differs from {against}")],
+        1 => vec![format!("1 parameter differs from {against}:")],
+        count => vec![format!("{count} parameters differ from {against}:")],
+    };
+    lines.extend(
+        changed.in_force.iter().map(|own| format!("  {}: {} → {}", own.key, shown(&own.old), own.new)),
+    );
+    if !changed.waiting.is_empty() {
+        lines.push("set from a later day on:".to_owned());
+    }
+    lines.extend(
+        changed.waiting.iter().map(|own| {
+            format!("  {}: {} from day {} on", own.key, own.new, own.from_day.unwrap_or_default())
+        }),
+    );
+    lines
+}
+
+fn shown(value: &Value) -> String {
+    if value.is_null() { "nothing".to_owned() } else { value.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn changed(key: &str, old: Value, new: Value, from_day: Option<u32>) -> ChangedParameter {
+        ChangedParameter { key: key.to_owned(), old, new, from_day }
+    }
+
+    #[test]
+    fn a_change_says_what_was_what_is_and_from_when() {
+        let now = changed("a.b", json!(50), json!(300), None);
+        assert_eq!(set_in_words(&now, 7), "a.b: 50 → 300, from now on; day 8 is simulated with it");
+        let later = changed("a.b", json!(0.5), json!([1, 2]), Some(30));
+        assert_eq!(set_in_words(&later, 7), "a.b: 0.5 → [1,2], from day 30 on");
+        assert_eq!(
+            set_in_words(&changed("a.b", json!(1), json!(1), Some(9)), 7),
+            "a.b: 1, as before, from day 9 on"
+        );
+    }
+
+    #[test]
+    fn the_list_names_the_scenario_and_what_waits() {
+        let mut all =
+            ChangedParameters { scenario: Some("default".to_owned()), in_force: vec![], waiting: vec![] };
+        assert_eq!(changed_in_words(&all), ["no parameter differs from scenario default"]);
+        all.in_force = vec![changed("a.b", json!(50), json!(300), None)];
+        all.waiting = vec![changed("c.d", json!(1), json!(2), Some(30))];
+        all.scenario = None;
+        assert_eq!(
+            changed_in_words(&all),
+            [
+                "1 parameter differs from the start of the run:",
+                "  a.b: 50 → 300",
+                "set from a later day on:",
+                "  c.d: 2 from day 30 on",
+            ]
+        );
+    }
+}

@@ -1,0 +1,142 @@
+//! What differs between two days, or between two runs on a day, in words.
+
+use serde_json::{Value, json};
+
+use super::table;
+use crate::notation::grouped;
+use crate::session::{CustomerDifference, Difference, RunDifference};
+
+/// Figures that are told; a state has some hundred.
+const FIGURES_TOLD: usize = 40;
+
+/// What differs between two ends of days that are called so.
+pub fn difference_in_words(found: &Difference, names: (&str, &str)) -> Vec<String> {
+    if found.is_none() {
+        return vec!["nothing differs".to_owned()];
+    }
+    let mut lines = vec![format!("differs: {}", found.parts.join(", "))];
+    if !found.alike.is_empty() {
+        lines.push(format!("alike: {}", found.alike.join(", ")));
+    }
+    lines.extend(figures(found, names));
+    lines.extend(customers(found, names));
+    lines
+}
+
+/// What differs between two runs that are called so.
+pub fn runs_in_words(found: &RunDifference, names: (&str, &str)) -> Vec<String> {
+    let mut lines = vec![match found.first_day {
+        None => format!("the runs are alike on every day up to day {}", found.last_day),
+        Some(day) => format!("the runs differ from day {day} on"),
+    }];
+    if let Some(difference) = &found.difference {
+        lines.push(format!("day {}", difference.days.0));
+        lines.extend(difference_in_words(difference, names));
+    }
+    lines
+}
+
+/// The same for programs.
+pub fn difference_as_data(found: &Difference) -> Value {
+    let figure = |(name, own, other): &(String, f64, f64)| json!({ "figure": name, "values": [own, other] });
+    let customer = |own: &CustomerDifference| {
+        let columns = own.columns.iter();
+        let columns = columns.map(|(name, one, other)| json!({ "column": name, "values": [one, other] }));
+        json!({
+            "customer_id": own.customer,
+            "group": own.group.id(),
+            "subscribes": [own.subscribes.0, own.subscribes.1],
+            "columns": columns.collect::<Vec<Value>>(),
+        })
+    };
+    json!({
+        "differs": found.parts,
+        "alike": found.alike,
+        "figures": found.figures.iter().map(figure).collect::<Vec<Value>>(),
+        "customers": found.customers,
+        "only": [found.only.0, found.only.1],
+        "first_customers": found.first_customers.iter().map(customer).collect::<Vec<Value>>(),
+    })
+}
+
+fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
+    let row = |(name, own, other): &(String, f64, f64)| vec![name.clone(), number(*own), number(*other)];
+    let rows: Vec<Vec<String>> = found.figures.iter().take(FIGURES_TOLD).map(row).collect();
+    if rows.is_empty() {
+        return vec!["figures are alike".to_owned()];
+    }
+    let mut lines = table(&["figure", names.0, names.1], &rows);
+    let more = found.figures.len().saturating_sub(FIGURES_TOLD);
+    lines.extend((more > 0).then(|| format!("  and {more} more figures")));
+    lines
+}
+
+fn customers(found: &Difference, names: (&str, &str)) -> Vec<String> {
+    let count = |count: usize| grouped(count as f64, 0);
+    let mut lines = vec![format!(
+        "customers: {} differ, {} subscribe only in {}, {} only in {}",
+        count(found.customers),
+        count(found.only.0),
+        names.0,
+        count(found.only.1),
+        names.1
+    )];
+    lines.extend(found.first_customers.iter().map(|own| customer(own, names)));
+    lines
+}
+
+fn customer(own: &CustomerDifference, names: (&str, &str)) -> String {
+    let what = match own.subscribes {
+        (true, false) => format!("subscribes only in {}", names.0),
+        (false, _) => format!("subscribes only in {}", names.1),
+        (true, true) => {
+            let columns = own.columns.iter().map(|(name, one, other)| format!("{name} {one} → {other}"));
+            columns.collect::<Vec<String>>().join(", ")
+        }
+    };
+    format!("  {} {}: {what}", own.customer, own.group)
+}
+
+fn number(value: f64) -> String {
+    let whole = value.fract() == 0.0 && value.abs() < 1e15;
+    if whole { grouped(value, 0) } else { value.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::identifiers::Group;
+
+    #[test]
+    fn a_difference_names_parts_then_figures_then_customers() {
+        let group = Group::at(0).expect("a group");
+        let customer =
+            |customer, subscribes, columns| CustomerDifference { customer, group, subscribes, columns };
+        let found = Difference {
+            days: (3, 3),
+            parts: vec!["money", "customers"],
+            alike: vec!["market"],
+            figures: vec![("cash".to_owned(), 1_000.0, 999.5)],
+            customers: 1,
+            only: (1, 0),
+            first_customers: vec![
+                customer(4, (true, true), vec![("plan", "A".to_owned(), "B".to_owned())]),
+                customer(9, (true, false), Vec::new()),
+            ],
+        };
+        assert_eq!(
+            difference_in_words(&found, ("one", "other")),
+            [
+                "differs: money, customers",
+                "alike: market",
+                "  figure  one    other",
+                "  cash    1,000  999.5",
+                "customers: 1 differ, 1 subscribe only in one, 0 only in other",
+                "  4 S1: plan A → B",
+                "  9 S1: subscribes only in one",
+            ]
+        );
+        let alike = RunDifference { last_day: 28, first_day: None, difference: None };
+        assert_eq!(runs_in_words(&alike, ("a", "b")), ["the runs are alike on every day up to day 28"]);
+    }
+}

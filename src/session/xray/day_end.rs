@@ -1,0 +1,121 @@
+//! What is kept of the end of a day, so that two of them can be held against each other.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use crate::world::canonical::hash_of;
+use crate::world::customers::columns::Subscriber;
+use crate::world::day::closing_figures;
+use crate::world::day::watch::DayWatch;
+use crate::world::events::Facts;
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+use crate::world::state::{PartHash, World};
+
+/// The end of a day.
+#[derive(Debug, Clone)]
+pub(in crate::session) struct DayEnd {
+    /// Hashes of the parts of the state, and of the facts of the day.
+    pub(in crate::session) parts: Vec<PartHash>,
+    /// Figures by name, hidden ones included, in one order.
+    pub(in crate::session) figures: Vec<(String, f64)>,
+    /// Active subscribers by customer number.
+    pub(in crate::session) customers: BTreeMap<u32, (Group, Subscriber)>,
+}
+
+impl DayEnd {
+    fn of(world: &World, facts: &Facts) -> DayEnd {
+        let rows = world.customers.blocks();
+        let rows = rows.flat_map(|(group, block)| (0..block.len()).map(move |at| (group, block.row(at))));
+        DayEnd {
+            parts: parts_of(world, facts),
+            figures: figures_of(world, facts),
+            customers: rows.map(|(group, row)| (row.customer, (group, row))).collect(),
+        }
+    }
+}
+
+/// Hashes of the parts of a state, and of what happened on its day.
+fn parts_of(world: &World, facts: &Facts) -> Vec<PartHash> {
+    let mut parts = world.part_hashes();
+    parts.push(PartHash { part: "facts", hash: hash_of(facts) });
+    parts
+}
+
+fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
+    let closing = closing_figures(world);
+    let open = |days: &&u32| **days > 0;
+    let issues = world.customers.blocks().map(|(_, block)| block.open_issue_days.iter().filter(open).count());
+    let market = &world.market;
+    let mut figures: Vec<(String, f64)> = [
+        ("cash", closing.cash),
+        ("recurring revenue", closing.mrr),
+        ("individual subscribers", f64::from(closing.individual_subscribers)),
+        ("enterprise seats", f64::from(closing.enterprise_seats)),
+        ("leads of the day", facts.arrivals.len() as f64),
+        ("departures of the day", facts.endings.len() as f64),
+        ("customers so far", f64::from(world.customers.next_customer)),
+        ("open issues", issues.sum::<usize>() as f64),
+        ("threads so far", f64::from(world.enterprise.next_thread)),
+        ("shared quality", world.product.shared_bonus),
+        ("index of the economy", market.economy.pmi),
+        ("moves of rivals so far", market.competitors.len() as f64),
+        ("drift of quality", market.drift.global_quality),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into();
+    let by_group = |name: &str, group: Group, value: f64| (format!("{name} of {group}"), value);
+    for group in Group::all() {
+        let active = f64::from(world.customers.groups[group].active());
+        figures.push(by_group("subscribers", group, active));
+        figures.push(by_group("reputation", group, market.reputation.of(group)));
+        figures.push(by_group("targeted quality", group, world.product.group_bonus[group]));
+        figures.push(by_group("drift of quality", group, market.drift.quality[group]));
+        figures.push(by_group("drift of budgets", group, market.drift.c_max[group]));
+    }
+    figures
+}
+
+/// Keeps the ends of some days.
+pub(in crate::session) struct Album {
+    wanted: Vec<u32>,
+    moments: Mutex<BTreeMap<u32, DayEnd>>,
+}
+
+impl Album {
+    /// Of these days.
+    pub(in crate::session) fn of(wanted: &[u32]) -> Album {
+        Album { wanted: wanted.to_vec(), moments: Mutex::default() }
+    }
+
+    /// The end of a day that has been seen.
+    pub(in crate::session) fn take(&self, day: u32) -> Option<DayEnd> {
+        self.moments.lock().unwrap_or_else(PoisonError::into_inner).remove(&day)
+    }
+}
+
+impl DayWatch for Album {
+    fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
+        if self.wanted.contains(&world.day) {
+            let moment = DayEnd::of(world, facts);
+            self.moments.lock().unwrap_or_else(PoisonError::into_inner).insert(world.day, moment);
+        }
+    }
+}
+
+/// Keeps the hashes of every day, day 1 first.
+#[derive(Default)]
+pub(in crate::session) struct Fingerprints(Mutex<Vec<Vec<PartHash>>>);
+
+impl Fingerprints {
+    /// The hashes of all days so far.
+    pub(in crate::session) fn all(&self) -> Vec<Vec<PartHash>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl DayWatch for Fingerprints {
+    fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(parts_of(world, facts));
+    }
+}

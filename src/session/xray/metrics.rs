@@ -1,0 +1,47 @@
+//! The days of a run, simulated again and told one by one with their hidden state: for figures of any run that may be looked
+//! into, one that a person played included.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::session::error::RunError;
+use crate::session::folder::derived::manifest_of;
+use crate::session::folder::mode::Mode;
+use crate::session::play::advance::DayReport;
+use crate::session::resume::open::Access;
+use crate::session::resume::sealing::SealKey;
+use crate::session::state::Session;
+use crate::session::trajectory::Trajectory;
+use crate::tools::Refusal;
+use crate::world::day::watch::Unwatched;
+
+impl Session {
+    /// Opens a run to look into it: a debug run, or one that is over. Nothing but looks is recorded.
+    ///
+    /// # Errors
+    /// `NotPossible` for any other run, which is not opened then; as [`Session::open`].
+    pub fn open_to_look_inside(folder: &Path, key: SealKey) -> Result<Session, RunError> {
+        let mode = manifest_of(folder)?.mode;
+        if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end().is_none() {
+            let message = "the x-ray works in debug runs and in runs that are over";
+            return Err(RunError::NotPossible(message.to_owned()));
+        }
+        let session = Session::open_sealed(folder, Access::Write, false, key)?;
+        match session.refuse_to_look_inside() {
+            Ok(()) => Ok(session),
+            Err(refusal) => Err(RunError::NotPossible(refusal.message)),
+        }
+    }
+
+    /// Tells every day of the run again, with its hidden state. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn tell_days_again(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Refusal> {
+        self.refuse_to_look_inside()?;
+        self.record_look_inside("metrics", "days", self.day())?;
+        let mut shadow = self.new_shadow(Arc::new(Unwatched))?;
+        shadow.is_shadow = true;
+        self.lead_telling(&mut shadow, |_| true, tell)
+    }
+}

@@ -1,0 +1,167 @@
+//! Parameters that change while a run goes on.
+
+use toml::{Table, Value};
+
+use super::Params;
+use super::load::{ParameterError, checked, override_table};
+use super::names::{keys, nearest_keys, value_at};
+
+/// Parameters, whole tables or lists of them, that act when a run begins and never again, or are words of what was
+/// recorded already.
+const OF_THE_START: [&str; 6] =
+    ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];
+/// Parameters of day 0 that act on every customer who comes.
+const OF_EVERY_CUSTOMER: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
+
+/// A single parameter whose value differs between two sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Full key.
+    pub key: String,
+    /// Its value in the first set; none if it has none.
+    pub old: Option<Value>,
+    /// Its value in the second.
+    pub new: Option<Value>,
+}
+
+impl Params {
+    /// The value of a parameter, or of a list or table of them.
+    ///
+    /// # Errors
+    /// There is none of this name; the nearest ones are named.
+    pub fn value(&self, key: &str) -> Result<Value, ParameterError> {
+        let tables = self.tables();
+        value_at(&tables, key).cloned().ok_or_else(|| {
+            let near = nearest_keys(&tables, key);
+            let help = if near.is_empty() {
+                String::new()
+            } else {
+                format!("; did you mean {}?", near.join(" or "))
+            };
+            wrong(key, format!("there is no such parameter{help}"))
+        })
+    }
+
+    /// These parameters with another value of one of them, or of a list or table of them.
+    ///
+    /// # Errors
+    /// As [`Params::load`] for a single override; the parameter acts only when a run begins.
+    pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
+        self.value(key)?;
+        let nested = key
+            .rsplit('.')
+            .fold(value, |inner, part| Value::Table(Table::from_iter([(part.to_owned(), inner)])));
+        let mut tables = self.tables();
+        if let Value::Table(nested) = nested {
+            override_table(&mut tables, nested).map_err(|(key, problem)| wrong(&key, problem))?;
+        }
+        let other = checked(tables).map_err(|(key, problem)| wrong(&key, problem))?;
+        match self.differences(&other).into_iter().find(|own| acts_only_at_the_start(&own.key)) {
+            None => Ok(other),
+            Some(own) => {
+                let problem = "acts only when a run begins; begin one with --set to change it".to_owned();
+                Err(wrong(&own.key, problem))
+            }
+        }
+    }
+
+    /// The single parameters in which another set differs from this one.
+    pub fn differences(&self, other: &Params) -> Vec<Difference> {
+        if self == other {
+            return Vec::new();
+        }
+        let (own, other) = (self.tables(), other.tables());
+        let mut all = keys(&own);
+        all.extend(keys(&other));
+        all.sort_unstable();
+        all.dedup();
+        let difference = |key: String| Difference {
+            old: value_at(&own, &key).cloned(),
+            new: value_at(&other, &key).cloned(),
+            key,
+        };
+        all.into_iter().map(difference).filter(|found| found.old != found.new).collect()
+    }
+
+    fn tables(&self) -> Table {
+        Table::try_from(self).unwrap_or_default()
+    }
+}
+
+fn wrong(key: &str, problem: String) -> ParameterError {
+    ParameterError { source: String::new(), line: None, key: key.to_owned(), problem }
+}
+
+fn acts_only_at_the_start(key: &str) -> bool {
+    let is_of = |table: &str| {
+        let rest = key.strip_prefix(table);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    OF_THE_START.into_iter().any(is_of) && !OF_EVERY_CUSTOMER.contains(&key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(key: &str, value: impl Into<Value>) -> Result<Params, ParameterError> {
+        Params::shipped().with(key, value.into())
+    }
+
+    #[test]
+    fn a_parameter_a_list_and_a_table_are_set_by_their_names() {
+        let dear = set("group.S1.c_max_mean", 300).expect("a whole number is a number");
+        assert_eq!(dear.group[0].c_max_mean, 300.0);
+        let found = Params::shipped().differences(&dear);
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            (found[0].key.as_str(), &found[0].new),
+            ("group.S1.c_max_mean", &Some(Value::Float(300.0)))
+        );
+        let large = set("capacity_tier.3.capacity_units", 5_000_000).expect("units");
+        assert_eq!(large.capacity(3).capacity_units, 5_000_000);
+        let influence = set("reputation_influence.S1.S3", 0.5).expect("a weight");
+        assert_eq!(influence.reputation_influence["S1"][2], 0.5);
+        let weekly = Value::try_from([1.0; 7]).expect("a list");
+        assert_eq!(set("calendar.weekly", weekly).expect("a list").calendar.weekly, [1.0; 7]);
+        let table = Table::from_iter([("base_outage_prob".to_owned(), Value::Float(0.5))]);
+        assert_eq!(set("operations", table).expect("a part of a table").operations.base_outage_prob, 0.5);
+    }
+
+    #[test]
+    fn what_is_wrong_names_the_key_and_what_is_allowed() {
+        for (key, value, part) in [
+            (
+                "group.S1.c_max_std",
+                Value::Float(-1.0),
+                "group.S1.c_max_std: is -1, but must be between 0 and",
+            ),
+            ("capacity_tier.3.capacity_units", Value::Integer(0), "must be between 1 and"),
+            ("operations.base_outage_prob", Value::Float(f64::NAN), "must be a finite number"),
+            ("operations.base_outage_prob", Value::String("often".to_owned()), "expected a number"),
+            (
+                "operations",
+                Value::Integer(3),
+                "is a table; name one of its parameters, for instance operations.",
+            ),
+            ("group", Value::Integer(3), "is a list; name one of its elements, for instance group.S1"),
+            ("operations.base_outage_prob.x", Value::Integer(3), "no such parameter"),
+            ("operations.base_outage_prob", Value::Table(Table::new()), "is a single value"),
+            ("group.S9.c_max_mean", Value::Integer(3), "did you mean group.S"),
+            ("c_max_mean", Value::Integer(3), "did you mean group."),
+            ("", Value::Integer(3), "no such parameter"),
+            ("..", Value::Integer(3), "no such parameter"),
+            ("competitor.competitor_feedback_u_min", Value::Float(0.9), "above the upper bound"),
+            ("group.S1.id", Value::String("S2".to_owned()), "the order asks for S1"),
+            ("initial.initial_cash", Value::Integer(5), "acts only when a run begins"),
+            ("personas.email.last_names", Value::Array(Vec::new()), "acts only when a run begins"),
+            ("run.seed", Value::Integer(5), "acts only when a run begins"),
+        ] {
+            let error = set(key, value).expect_err(key);
+            let told = format!("{}: {}", error.key, error.problem);
+            assert!(told.contains(part), "{key}: {told}");
+        }
+        assert!(set("initial.customer_satisfaction", 0.1).is_ok());
+        assert!(set("run.bankruptcy_cash_threshold", -5).is_ok());
+    }
+}

@@ -1,0 +1,154 @@
+//! What parameters are called: `table.key`. Elements of lists have names of their own: `group.S1.c_max_mean`,
+//! `capacity_tier.3.capacity_units`, `reputation_influence.S1.S3`, or else their place from 0.
+
+use toml::{Table, Value};
+
+use super::super::identifiers::Group;
+use super::nearest;
+
+/// Fields that name the entries of a list.
+const NAMING: [&str; 3] = ["id", "tier", "level"];
+
+/// What an element of a list is called.
+pub(super) fn name_in(list: &[Value], at: usize) -> String {
+    let own = NAMING.iter().find_map(|field| match list.get(at)?.get(field)? {
+        Value::String(id) => Some(id.clone()),
+        Value::Integer(number) => Some(number.to_string()),
+        _ => None,
+    });
+    let of_group = || Group::all().nth(at).filter(|_| is_by_group(list)).map(|group| group.id().to_owned());
+    own.or_else(of_group).unwrap_or_else(|| at.to_string())
+}
+
+/// Where the element of a list with a name stands.
+pub(super) fn place_in(list: &[Value], name: &str) -> Option<usize> {
+    (0..list.len()).find(|at| name_in(list, *at) == name)
+}
+
+/// Whether a list holds a number for each group.
+fn is_by_group(list: &[Value]) -> bool {
+    let is_number = |value: &Value| matches!(value, Value::Float(_) | Value::Integer(_));
+    list.len() == Group::COUNT && list.iter().all(is_number)
+}
+
+/// A key whose elements of lists are counted from 0, with their names instead.
+pub(super) fn named(tables: &Table, counted: &str) -> String {
+    let mut parts = counted.split('.');
+    let Some(first) = parts.next() else { return String::new() };
+    let (mut key, mut here) = (first.to_owned(), tables.get(first));
+    for part in parts {
+        let at = part.parse::<usize>().ok();
+        let (name, next) = match (here, at) {
+            (Some(Value::Array(list)), Some(at)) => (name_in(list, at), list.get(at)),
+            (value, _) => (part.to_owned(), value.and_then(|value| value.get(part))),
+        };
+        key = format!("{key}.{name}");
+        here = next;
+    }
+    key
+}
+
+/// The value with a name: of a single parameter, of a list, or of a table.
+pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
+    let mut parts = key.split('.');
+    let first = tables.get(parts.next()?)?;
+    parts.try_fold(first, |here, part| match here {
+        Value::Array(list) => list.get(place_in(list, part)?),
+        value => value.get(part),
+    })
+}
+
+/// Names of all single parameters.
+pub(super) fn keys(tables: &Table) -> Vec<String> {
+    let mut all = Vec::new();
+    tables.iter().for_each(|(key, value)| collect(key.clone(), value, &mut all));
+    all
+}
+
+fn collect(path: String, value: &Value, all: &mut Vec<String>) {
+    match value {
+        Value::Table(table) => {
+            table.iter().for_each(|(key, inner)| collect(format!("{path}.{key}"), inner, all));
+        }
+        Value::Array(list) => {
+            let inner = list.iter().enumerate();
+            inner.for_each(|(at, inner)| collect(format!("{path}.{}", name_in(list, at)), inner, all));
+        }
+        _ => all.push(path),
+    }
+}
+
+/// The full keys that look most like one that does not exist, best first: those that end as it does come first.
+pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
+    let all = keys(tables);
+    let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
+    let own = last(key);
+    let is_place = own.parse::<usize>().is_ok();
+    let ends_alike = |one: &&String| !is_place && last(one) == own;
+    let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
+    let near = match alike.is_empty() {
+        // However far it is: one that ends in the same name is what was meant.
+        false => by_distance(key, alike),
+        true => nearest(key, all.iter().map(String::as_str)),
+    };
+    near.into_iter().map(str::to_owned).collect()
+}
+
+fn by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {
+    alike.sort_by_key(|one| strsim::damerau_levenshtein(key, one));
+    alike.truncate(3);
+    alike
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Params;
+
+    fn tables() -> Table {
+        Table::try_from(Params::shipped()).expect("parameters are tables")
+    }
+
+    #[test]
+    fn every_parameter_has_a_name_of_its_own_and_is_found_by_it() {
+        let tables = tables();
+        let all = keys(&tables);
+        let once: std::collections::BTreeSet<&String> = all.iter().collect();
+        assert_eq!(once.len(), all.len());
+        for key in &all {
+            assert!(
+                value_at(&tables, key).is_some_and(|value| !value.is_table() && !value.is_array()),
+                "{key}"
+            );
+        }
+        for key in ["group.S1.c_max_mean", "capacity_tier.3.capacity_units", "reputation_influence.S1.S3"] {
+            assert!(once.contains(&key.to_owned()), "{key}");
+        }
+    }
+
+    #[test]
+    fn elements_of_lists_are_called_as_people_call_them() {
+        let tables = tables();
+        for (counted, key) in [
+            ("group.0.c_max_mean", "group.S1.c_max_mean"),
+            ("model_tier.0.unit_cost", "model_tier.1.unit_cost"),
+            ("reputation_influence.S1.2", "reputation_influence.S1.S3"),
+            ("calendar.weekly.6", "calendar.weekly.6"),
+            ("group.99.x", "group.99.x"),
+            ("nothing.1.x", "nothing.1.x"),
+            ("", ""),
+        ] {
+            assert_eq!(named(&tables, counted), key);
+        }
+    }
+
+    #[test]
+    fn a_key_that_does_not_exist_is_near_those_that_end_as_it_does() {
+        let tables = tables();
+        assert_eq!(nearest_keys(&tables, "group.S2.c_max_meen")[0], "group.S2.c_max_mean");
+        assert_eq!(nearest_keys(&tables, "groups.S2.c_max_mean")[0], "group.S2.c_max_mean");
+        assert_eq!(nearest_keys(&tables, "base_product_quality"), ["quality.base_product_quality"]);
+        assert_eq!(nearest_keys(&tables, "capacity_tier.9.capacity_units").len(), 3);
+        assert_eq!(nearest_keys(&tables, "reputation_influence.S2.0")[0], "reputation_influence.S2.S1");
+    }
+}

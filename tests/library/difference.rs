@@ -1,0 +1,145 @@
+//! Two days of a run, and two runs on a day: what differs is what was changed, and looking is recorded.
+
+use std::path::Path;
+
+use novamind::session::{
+    Configuration, Mode, NewRun, Session, Storage, Trajectory, Via, lines_afterwards, verify,
+};
+use serde_json::json;
+
+use crate::support::company::{open_shop, week, weeks};
+
+fn run_in(folder: &Path, mode: Mode) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(56),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    open_shop(&mut session);
+    session
+}
+
+#[test]
+fn two_runs_differ_from_the_day_on_which_something_was_changed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [mut one, mut other] = [(); 2].map(|()| run_in(folder.path(), Mode::Debug));
+    for session in [&mut one, &mut other] {
+        weeks(session, 2);
+    }
+    let alike = one.difference_to(&mut other, None).expect("a look");
+    assert_eq!((alike.last_day, alike.first_day, alike.difference), (14, None, None));
+    assert!(
+        one.difference_to(&mut other, Some(9)).expect("a look").difference.expect("it was asked").is_none()
+    );
+    other.call("set_prices", &json!({"A": 40}), Via::Script).expect("a price");
+    weeks(&mut one, 2);
+    week(&mut other);
+    let found = one.difference_to(&mut other, None).expect("a look");
+    assert_eq!((found.last_day, found.first_day), (21, Some(15)));
+    let first = found.difference.expect("they differ");
+    assert_eq!(first.days, (15, 15));
+    assert!(first.parts.contains(&"settings") && first.alike.contains(&"calendar"), "{first:?}");
+    assert!(first.alike.contains(&"product"), "a price develops nothing");
+    let last = one.difference_to(&mut other, Some(21)).expect("a look").difference.expect("it was asked");
+    let told = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
+    assert_eq!((told.1, told.2), (one.cash_by_day()[21], other.cash_by_day()[21]));
+    let subscribers =
+        |name: &str| last.figures.iter().find(|(own, ..)| own == name).map(|own| (own.1, own.2));
+    let (own, others) = subscribers("individual subscribers").expect("they differ");
+    let (only_own, only_others) = last.only;
+    assert_eq!(own - others, only_own as f64 - only_others as f64, "{last:?}");
+    assert!(last.first_customers.len() <= 10 && last.customers + only_own + only_others > 10);
+    assert_eq!(one.difference_to(&mut other, Some(22)).expect_err("no such day").code, "day_unknown");
+    assert_eq!(one.difference_to(&mut other, Some(0)).expect_err("no such day").code, "day_unknown");
+}
+
+#[test]
+fn two_days_differ_in_what_happened_between_them_and_looking_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    weeks(&mut session, 3);
+    let (place, hash) = (session.folder().expect("a folder").to_owned(), session.state_hash());
+    let found = session.difference_of_days(11, 18).expect("a look");
+    assert!(found.parts.contains(&"calendar") && found.alike.contains(&"settings"), "{found:?}");
+    let cash = found.figures.iter().find(|(name, ..)| name == "cash").expect("cash");
+    assert_eq!((cash.1, cash.2), (session.cash_by_day()[11], session.cash_by_day()[18]));
+    assert!(found.only.1 > 0, "somebody came");
+    let customer = found.first_customers.iter().find(|own| own.subscribes == (true, true)).expect("one");
+    assert!(customer.columns.iter().any(|(name, ..)| *name == "satisfaction"), "{customer:?}");
+    assert!(session.difference_of_days(9, 9).expect("a look").is_none());
+    assert_eq!(session.difference_of_days(9, 22).expect_err("no such day").code, "day_unknown");
+    assert_eq!(session.state_hash(), hash);
+    drop(session);
+    let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
+    assert_eq!(lines.iter().filter(|line| line.record.kind() == "xray").count(), 2);
+    verify(&place).expect("it verifies");
+}
+
+#[test]
+fn figures_of_days_are_told_again_as_they_were() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut live = Vec::new();
+    for _ in 0..3 {
+        let forecasts = session.naive_forecasts();
+        let mut keep = |day: &novamind::session::DayReport<'_>| {
+            live.push((
+                day.figures.day,
+                day.figures.cash,
+                day.xray.expect("a debug run").facts().arrivals.len(),
+            ));
+        };
+        session.advance("wait", &forecasts, Via::Script, &mut keep).expect("a week");
+    }
+    let mut again = Vec::new();
+    let told = session.tell_days_again(&mut |day| {
+        again.push((
+            day.figures.day,
+            day.figures.cash,
+            day.xray.expect("hidden state").facts().arrivals.len(),
+        ));
+    });
+    told.expect("a look");
+    assert_eq!(again, live);
+}
+
+#[test]
+fn nobody_looks_into_an_unfinished_run_and_once_it_is_over_the_look_is_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut debug = run_in(folder.path(), Mode::Debug);
+    week(&mut debug);
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode);
+        week(&mut session);
+        let place = session.folder().expect("a folder").to_owned();
+        let told = [
+            session.difference_of_days(1, 2).expect_err("hidden").to_string(),
+            session.difference_of_days(0, 9000).expect_err("hidden").to_string(),
+            session.difference_to(&mut debug, Some(9000)).expect_err("hidden").to_string(),
+            debug.difference_to(&mut session, None).expect_err("hidden").to_string(),
+            session.tell_days_again(&mut |_| panic!("hidden")).expect_err("hidden").to_string(),
+        ];
+        assert!(told.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray works")), "{told:?}");
+        drop(session);
+        let refused =
+            Session::open_to_look_inside(&place, Default::default()).err().expect("hidden").to_string();
+        assert!(refused.contains("debug runs and in runs that are over"), "{refused}");
+        let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
+        assert!(lines.iter().all(|line| line.record.kind() != "xray"));
+        let mut session = Session::open(&place, novamind::session::Access::Write, false).expect("it goes on");
+        session.end().expect("it ends");
+        drop(session);
+        let mut session = Session::open_to_look_inside(&place, Default::default()).expect("it is over");
+        session.difference_of_days(1, 7).expect("a look");
+        let mut days = 0;
+        session.tell_days_again(&mut |day| days += u32::from(day.xray.is_some())).expect("a look");
+        assert_eq!(days, 7);
+        let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
+        let after = lines_afterwards(&place, &trajectory).expect("lines").lines;
+        assert_eq!(after.iter().filter(|line| line.record.kind() == "xray").count(), 2);
+    }
+}

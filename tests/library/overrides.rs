@@ -1,0 +1,416 @@
+//! Parameters that are set while a debug run goes on: the run is what its lines make of it, wherever it is opened again.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use novamind::session::{
+    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Storage, Trajectory,
+    list_runs, rescue, verify,
+};
+use novamind::world::identifiers::Group;
+use serde_json::{Value, json};
+
+use crate::support::company::{call, open_shop, rows, week, weeks};
+use crate::support::forging::forge;
+
+fn run_in(folder: &Path, mode: Mode) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(140),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
+}
+
+fn set(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
+    session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
+}
+
+/// A run of eight weeks in which parameters of all shapes are set: at once, in the middle of a week, and from later days on.
+fn changed(folder: &Path) -> Session {
+    let mut session = run_in(folder, Mode::Debug);
+    open_shop(&mut session);
+    weeks(&mut session, 2);
+    set(&mut session, "group.S1.c_max_mean", json!(90), None);
+    set(&mut session, "capacity_tier.0.capacity_units", json!(1_000), Some(24));
+    set(&mut session, "capacity_tier.0.capacity_units", json!(2_000_000), Some(40));
+    week(&mut session);
+    set(&mut session, "reputation_influence.S1.S3", json!(2.5), None);
+    set(&mut session, "leads.lead_acquisition_cost", json!(9.5), Some(26));
+    session.step(3, &mut |_| {}).expect("days");
+    set(&mut session, "calendar.weekly", json!([2, 2, 2, 2, 2, 2, 2]), None);
+    set(&mut session, "satisfaction.satisfaction_ema_alpha", json!(0.5), Some(52));
+    call(&mut session, "set_prices", json!({"A": 14}));
+    weeks(&mut session, 3);
+    set(&mut session, "research_tier.1.cost", json!(10), None);
+    call(&mut session, "start_research_project", json!({"tier": 1}));
+    weeks(&mut session, 2);
+    session
+}
+
+fn place(session: &Session) -> PathBuf {
+    session.folder().expect("a folder").to_owned()
+}
+
+fn states(folder: &Path) -> Vec<(u32, String)> {
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
+    let state = |line: &novamind::session::Line| match &line.record {
+        Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.state_hash.clone())),
+        _ => None,
+    };
+    trajectory.lines.iter().filter_map(state).collect()
+}
+
+/// Everything that a database holds of money and customers.
+fn tables(session: &mut Session) -> Vec<Vec<novamind::session::Cell>> {
+    let mut all = Vec::new();
+    for sql in [
+        "SELECT day, category, sum(amount), count(*) FROM ledger GROUP BY day, category ORDER BY day, category",
+        "SELECT group_id, count(*), max(customer_id) FROM customers GROUP BY group_id ORDER BY group_id",
+        "SELECT status, plan, count(*), max(end_day) FROM subscriptions GROUP BY status, plan ORDER BY 1, 2",
+    ] {
+        all.extend(rows(session, sql));
+    }
+    all
+}
+
+#[test]
+fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = changed(folder.path());
+    let (own, day, hash) = (place(&session), session.day(), session.state_hash());
+    let seen = tables(&mut session);
+    let unchanged = {
+        let mut other = run_in(folder.path(), Mode::Debug);
+        open_shop(&mut other);
+        weeks(&mut other, 8);
+        other.state_hash()
+    };
+    assert_ne!(unchanged, hash, "the parameters act");
+    session.save().expect("saved");
+    let charged = "SELECT DISTINCT amount FROM ledger WHERE category = 'lead_acquisition_cost' ORDER BY 1";
+    assert_eq!(rows(&mut session, charged).len(), 2, "rows are made with the parameters of their day");
+    drop(session);
+    let kinds = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
+    assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
+
+    // By replaying every line, by the snapshot, and by a part of both.
+    assert_eq!(verify(&own).expect("it verifies").day, day);
+    for gone in [&[][..], &["snapshot.bin"], &["world.db"], &["snapshot.bin", "world.db"]] {
+        for name in gone {
+            std::fs::remove_file(own.join(name)).expect("removed");
+        }
+        let mut again = Session::open(&own, Access::Write, true).expect("it opens");
+        assert_eq!((again.day(), again.state_hash()), (day, hash.clone()), "{gone:?}");
+        assert_eq!(tables(&mut again), seen, "{gone:?}");
+        again.save().expect("saved");
+    }
+
+    // Forward and back.
+    let mut playback = Playback::open(&own).expect("it opens");
+    let on = &mut |_| ControlFlow::Continue(());
+    for goal in [Goal::Last, Goal::Week(3), Goal::Week(5), Goal::First, Goal::Week(8), Goal::Last] {
+        playback.go(goal, on).expect("every state is reached");
+    }
+    assert_eq!(playback.session().state_hash(), hash);
+
+    // The x-ray simulates the days again.
+    let mut again = Session::open(&own, Access::Write, false).expect("it opens");
+    let s1 = Group::parse("S1").expect("a group");
+    assert_eq!(again.lead_equations(s1, Some(day)).expect("a look").len(), 28);
+}
+
+#[test]
+fn a_run_that_was_killed_goes_on_with_what_was_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut whole = changed(folder.path());
+    set(&mut whole, "operations.base_outage_prob", json!(0.9), Some(70));
+    weeks(&mut whole, 4);
+    let expected = states(&place(&whole));
+    let path = place(&whole).join("trajectory.jsonl");
+    drop(whole);
+    let text = std::fs::read_to_string(&path).expect("lines");
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    // Killed after any line of a setting, after the line before a week, and in the middle of a line.
+    let kind = |line: &str| {
+        ["override", "advance", "week"]
+            .into_iter()
+            .find(|kind| line.contains(&format!("\"kind\":\"{kind}\"")))
+    };
+    for (at, _) in lines.iter().enumerate().filter(|(at, line)| *at > 8 && kind(line).is_some()).step_by(3) {
+        for name in ["world.db", "snapshot.bin"] {
+            let _ = std::fs::remove_file(path.with_file_name(name));
+        }
+        std::fs::write(&path, lines[..=at].concat() + "{\"seq\"").expect("written");
+        let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
+        let reached = states(&place(&again));
+        assert_eq!(reached, expected[..reached.len()], "cut after line {}", at + 1);
+        if again.day() == 56 {
+            // Whatever waited for its day still does, also once a snapshot was made.
+            again.save().expect("saved");
+            drop(again);
+            let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
+            let waiting = again.changed_parameters().expect("a debug run").waiting;
+            let outages = waiting.iter().any(|own| own.key == "operations.base_outage_prob");
+            if outages {
+                weeks(&mut again, 4);
+                assert_eq!(states(&place(&again)), expected);
+            }
+        }
+    }
+}
+
+fn place_of(path: &Path) -> PathBuf {
+    path.parent().expect("a folder").to_owned()
+}
+
+#[test]
+fn branches_and_rescued_runs_keep_what_was_set_before_them_and_are_debug_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = changed(folder.path());
+    let expected = states(&place(&session));
+    for (week, count) in [(1, 0), (3, 0), (4, 2), (9, 8)] {
+        let mut branch = session.branch(week, Mode::Debug).expect("a branch");
+        let lines = Trajectory::read(&place(&branch).join("trajectory.jsonl")).expect("lines").lines;
+        let set = lines.iter().filter(|line| line.record.kind() == "override").count();
+        assert!(set >= count, "week {week}: {set}");
+        self::week(&mut branch);
+        let own = place(&branch);
+        drop(branch);
+        let reached = states(&own);
+        assert_eq!(reached[..reached.len() - 1], expected[..reached.len() - 1], "week {week}");
+        verify(&own).expect("it verifies");
+    }
+    let refused = session.branch(9, Mode::Sandbox).err().expect("no sandbox");
+    assert_eq!(refused.code, "not_in_this_mode");
+    assert!(session.branch(2, Mode::Sandbox).is_ok(), "nothing was set before week 2");
+    let own = place(&session);
+    drop(session);
+    let path = own.join("trajectory.jsonl");
+    let mut bytes = std::fs::read(&path).expect("lines");
+    let at = bytes.len() - 40;
+    bytes[at] ^= 1;
+    std::fs::write(&path, bytes).expect("written");
+    let found = rescue(&own, &SealKey::default()).expect("a branch");
+    assert_eq!(found.mode, Mode::Debug);
+    verify(&own.with_file_name(found.run)).expect("it verifies");
+}
+
+#[test]
+fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run_in(folder.path(), mode);
+        open_shop(&mut session);
+        let before = states(&place(&session)).len();
+        let tried = |session: &mut Session| {
+            let mut told = Vec::new();
+            for (key, value, from) in [
+                ("group.S1.c_max_mean", json!(300), None),
+                ("no.such.key", json!(null), Some(0)),
+                ("", json!({}), Some(u32::MAX)),
+            ] {
+                told.push(session.set_parameter(key, &value, from).expect_err("refused").to_string());
+                told.push(session.parameter(key).expect_err("refused").to_string());
+            }
+            told.push(session.changed_parameters().expect_err("refused").to_string());
+            told
+        };
+        let told = tried(&mut session);
+        assert!(told.iter().all(|one| *one == "not_in_this_mode: parameters can be set in debug runs only"));
+        session.end().expect("it ends");
+        assert_eq!(tried(&mut session), told, "{mode}");
+        assert_eq!(states(&place(&session)).len(), before);
+    }
+    let mut session = run_in(folder.path(), Mode::Debug);
+    session.end().expect("it ends");
+    let refused = session.set_parameter("group.S1.c_max_mean", &json!(300), None).expect_err("it is over");
+    assert_eq!(refused.code, "run_over");
+    assert!(session.changed_parameters().is_ok());
+}
+
+#[test]
+fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    week(&mut session);
+    let own = place(&session);
+    let lines = || Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines.len();
+    let (before, hash) = (lines(), session.state_hash());
+    let mut deep = json!(1);
+    for _ in 0..100 {
+        deep = json!([deep]);
+    }
+    for (key, value, from, code, part) in [
+        ("group.S9.c_max_mean", json!(1), None, "parameter_unknown", "did you mean group.S"),
+        ("c_max_mean", json!(1), None, "parameter_unknown", "group.S"),
+        ("", json!(1), None, "parameter_unknown", "no such parameter"),
+        ("quality.", json!(1), None, "parameter_unknown", "no such parameter"),
+        ("größe.\u{7}", json!(1), None, "parameter_unknown", "no such parameter"),
+        ("operations.base_outage_prob", json!(1.5), None, "parameter_not_allowed", "between 0 and 1"),
+        ("operations.base_outage_prob", json!(1e308), Some(9), "parameter_not_allowed", "between 0 and 1"),
+        ("operations.base_outage_prob", json!("x"), None, "parameter_not_allowed", "a number"),
+        ("operations.base_outage_prob", json!(null), None, "parameter_not_allowed", "null"),
+        ("operations.base_outage_prob", deep, None, "parameter_not_allowed", ""),
+        ("operations", json!({"base_outage_prob": [null]}), None, "parameter_not_allowed", "null"),
+        ("operations", json!({"nothing": 1}), None, "parameter_not_allowed", "no such parameter"),
+        ("capacity_tier.3.tier", json!(4), None, "parameter_not_allowed", "numbered"),
+        ("capacity_tier", json!([]), None, "parameter_not_allowed", "numbered"),
+        ("capacity_tier.3.capacity_units", json!(u64::MAX), None, "parameter_not_allowed", ""),
+        ("run.seed", json!(1), None, "parameter_not_allowed", "acts only when a run begins"),
+        ("operations.base_outage_prob", json!(0.5), Some(7), "day_unknown", "from day 8 to 140"),
+        ("operations.base_outage_prob", json!(0.5), Some(141), "day_unknown", "from day 8 to 140"),
+    ] {
+        let refused = session.set_parameter(key, &value, from).expect_err(key);
+        assert_eq!(refused.code, code, "{key}: {refused}");
+        assert!(refused.message.contains(part), "{key}: {refused}");
+    }
+    assert_eq!(session.parameter("group.S9").expect_err("no group").code, "parameter_unknown");
+    assert_eq!((lines(), session.state_hash()), (before, hash));
+}
+
+#[test]
+fn a_line_that_sets_a_parameter_cannot_be_forged() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    set(&mut session, "operations.base_outage_prob", json!(0.9), Some(10));
+    weeks(&mut session, 2);
+    let own = place(&session);
+    drop(session);
+    let path = own.join("trajectory.jsonl");
+    let good = std::fs::read(&path).expect("lines");
+    let told = |field: &str, value: Value| {
+        std::fs::write(&path, &good).expect("written");
+        for name in ["world.db", "snapshot.bin"] {
+            let _ = std::fs::remove_file(own.join(name));
+        }
+        forge(&own, |_, line| {
+            if line["kind"] == "override" {
+                line[field] = value.clone();
+            }
+        });
+        verify(&own).expect_err(field).to_string()
+    };
+    for (field, value, part) in [
+        ("new", json!(0.01), "the state on day 14 is not the recorded one"),
+        ("from_day", json!(12), "the state on day 14 is not the recorded one"),
+        ("from_day", json!(0), "has passed"),
+        ("old", json!(0.5), "was not 0.5 before it"),
+        ("key", json!("operations.nothing"), "no such parameter"),
+        ("new", json!(null), "none that a parameter can have"),
+        ("new", json!(7), "between 0 and 1"),
+        ("new", json!("often"), "expected a number"),
+    ] {
+        let words = told(field, value);
+        assert!(words.contains(part), "{field}: {words}");
+        assert!(Session::open(&own, Access::Write, false).is_err(), "{field}");
+    }
+    // A run of another mode cannot be given such a line.
+    std::fs::write(&path, &good).expect("written");
+    forge(&own, |_, line| {
+        if line["kind"] == "start" {
+            line["mode"] = "sandbox".into();
+            line["rules"] = Value::Null;
+        }
+    });
+    let words = verify(&own).expect_err("a sandbox").to_string();
+    assert!(words.contains("only a debug run can"), "{words}");
+}
+
+#[test]
+fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    assert!(!session.observe().has_own_parameters);
+    let own = |id: &str| {
+        let list = list_runs(folder.path()).expect("a list");
+        list.into_iter().find(|run| run.id == id).expect("the run").has_own_parameters
+    };
+    let id = session.manifest().id.clone();
+    assert!(!own(&id));
+    let before = session.parameter("operations.base_outage_prob").expect("a value");
+    set(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
+    assert!(session.observe().has_own_parameters && own(&id));
+    set(&mut session, "operations.base_outage_prob", before, None);
+    assert!(session.observe().has_own_parameters, "what was set stays on record");
+    let changed = session.changed_parameters().expect("a debug run");
+    assert_eq!(
+        (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),
+        (Some("default"), 0, 1)
+    );
+    week(&mut session);
+    drop(session);
+    let again = Session::open(&folder.path().join(id), Access::Write, true).expect("it opens");
+    assert!(again.observe().has_own_parameters);
+}
+
+/// Every kind of parameter once: `group.*.c_max_mean` and not 26 of them.
+fn kinds(params: &Value) -> Vec<String> {
+    fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
+        let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        match value {
+            Value::Object(fields) => fields.iter().for_each(|(name, own)| walk(&below(name), own, found)),
+            Value::Array(list) => {
+                let groups: Vec<&str> = Group::all().map(Group::id).collect();
+                let is_by_group = list.len() == groups.len() && list.iter().all(Value::is_number);
+                for (at, own) in list.iter().enumerate() {
+                    let place = if is_by_group { groups[at].to_owned() } else { at.to_string() };
+                    let name = ["id", "tier", "level"].iter().find_map(|field| match own.get(*field)? {
+                        Value::String(id) => Some(id.clone()),
+                        number => Some(number.to_string()),
+                    });
+                    walk(&below(&name.unwrap_or(place)), own, found);
+                }
+            }
+            Value::Null => {}
+            _ => {
+                let is_name = |part: &str| Group::parse(part).is_some() || part.parse::<u32>().is_ok();
+                let kind = path.split('.').map(|part| if is_name(part) { "*" } else { part });
+                let kind: Vec<&str> = kind.collect();
+                found.entry(kind.join(".")).or_insert_with(|| path.to_owned());
+            }
+        }
+    }
+    let mut found = std::collections::BTreeMap::new();
+    walk("", params, &mut found);
+    found.into_values().collect()
+}
+
+#[test]
+fn whatever_is_set_the_days_go_on() {
+    let new = NewRun {
+        mode: Mode::Debug,
+        seed: Some(7),
+        days: Some(50_000),
+        cash: Some(1e12),
+        projection: false,
+        ..NewRun::default()
+    };
+    let configuration = Configuration::shipped();
+    let fresh = || {
+        let mut session = Session::create(new.clone(), &configuration).expect("the run begins");
+        open_shop(&mut session);
+        weeks(&mut session, 6);
+        session
+    };
+    let mut session = fresh();
+    let (mut accepted, mut refused) = (0, 0);
+    let all = kinds(&serde_json::to_value(session.params()).expect("JSON"));
+    for (at, key) in all.into_iter().enumerate() {
+        let old = session.parameter(&key).expect("its value");
+        let value = [json!(0), json!(8)][at % 2].clone();
+        if session.set_parameter(&key, &value, None).is_err() {
+            refused += 1;
+            continue;
+        }
+        accepted += 1;
+        session.step(2, &mut |_| {}).expect("days");
+        if session.ended().is_some() || session.set_parameter(&key, &old, None).is_err() {
+            session = fresh();
+        }
+    }
+    assert!(accepted > 150 && refused > 50, "{accepted} {refused}");
+}

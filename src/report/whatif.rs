@@ -43,7 +43,7 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
 /// What is decided otherwise, what is refused now, and what would be accepted now; nothing is left out.
 pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
-    let differing = branch.differences.iter().map(|call| difference(call, week(call.day)));
+    let differing = alike(&branch.differences).into_iter().map(|calls| difference(&calls, week));
     let refused = branch.refused.iter().map(|(day, tool, refusal)| {
         format!("week {}: {} is refused: {}", week(*day), tool.name(), refusal.message)
     });
@@ -57,13 +57,41 @@ pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     differing.chain(refused).chain(possible).map(|line| printable(&line).into_owned()).collect()
 }
 
-fn difference(call: &DecisionDifference, week: u32) -> String {
+/// Calls that differ in the same way, together.
+fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
+    let mut all: Vec<Vec<&DecisionDifference>> = Vec::new();
+    for call in differences {
+        let same = |own: &&mut Vec<&DecisionDifference>| {
+            (own[0].tool, &own[0].was, &own[0].is) == (call.tool, &call.was, &call.is)
+        };
+        match all.iter_mut().find(same) {
+            Some(own) => own.push(call),
+            None => all.push(vec![call]),
+        }
+    }
+    all
+}
+
+/// What differs about some calls in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
+fn difference(calls: &[&DecisionDifference], week: impl Fn(u32) -> u32) -> String {
+    let [first, .., last] = calls else {
+        return calls.first().map_or(String::new(), |only| {
+            let line = only.seq.map_or(String::new(), |line| format!(" (line {line})"));
+            format!("week {}: {}{line}", week(only.day), otherwise(only))
+        });
+    };
+    let (from, to) = (week(first.day), week(last.day));
+    let weeks = if from == to { format!("week {from}") } else { format!("weeks {from} to {to}") };
+    format!("{weeks}: {} ({})", otherwise(first), count(calls.len() as u32, "call"))
+}
+
+fn otherwise(call: &DecisionDifference) -> String {
     let tool = call.tool.name();
-    match (&call.seq, &call.was, &call.is) {
-        (Some(line), Some(was), Some(is)) => format!("week {week}: {tool} {was} → {is} (line {line})"),
-        (Some(line), Some(was), None) => format!("week {week}: {tool} {was} is not made (line {line})"),
-        (_, _, Some(is)) => format!("week {week}: {tool} {is} is new"),
-        _ => format!("week {week}: {tool}"),
+    match (&call.was, &call.is) {
+        (Some(was), Some(is)) => format!("{tool} {was} → {is}"),
+        (Some(was), None) => format!("{tool} {was} is not made"),
+        (None, Some(is)) => format!("{tool} {is} is new"),
+        (None, None) => tool.to_owned(),
     }
 }
 
@@ -173,4 +201,38 @@ pub fn kin_line(kin: &Kin, own: &str) -> String {
         run.days,
         crate::notation::dollars(run.cash)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn calls_that_differ_alike_are_told_together() {
+        let call = |day, seq, was: Option<f64>, is: Option<f64>| DecisionDifference {
+            day,
+            tool: ToolId::SetPrices,
+            seq,
+            was: was.map(|price| json!({ "B": price })),
+            is: is.map(|price| json!({ "B": price })),
+        };
+        let differences = [
+            call(7, None, None, Some(9.5)),
+            call(7, Some(12), Some(10.0), Some(9.5)),
+            call(14, Some(20), Some(30.0), None),
+            call(21, Some(31), Some(10.0), Some(9.5)),
+        ];
+        let told: Vec<String> =
+            alike(&differences).iter().map(|calls| difference(calls, |day| day / 7 + 1)).collect();
+        assert_eq!(
+            told,
+            [
+                "week 2: set_prices {\"B\":9.5} is new",
+                "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",
+                "week 3: set_prices {\"B\":30.0} is not made (line 20)",
+            ]
+        );
+    }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::company::{Company, Keep, Lap, Market, POLICY, SEED};
 use super::machine::{folder_size, peak_memory};
-use super::{Bench, BenchError, BenchFigure, Case, Samples, Unit, queries};
+use super::{Bench, BenchError, BenchFigure, Case, Samples, Unit, queries, resimulation};
 use crate::lab::statistics::median;
 use crate::lab::{Collector, Policy, RunSpec, play};
 use crate::session::{Access, Session, find_run};
@@ -81,6 +81,13 @@ pub const CASES: &[Case] = &[
         fresh: false,
         long: false,
         measure: week,
+    },
+    Case {
+        name: "resimulation",
+        figures: resimulation::FIGURES,
+        fresh: false,
+        long: true,
+        measure: resimulation::resimulation,
     },
     Case { name: "queries", figures: queries::FIGURES, fresh: false, long: true, measure: queries::queries },
     Case {

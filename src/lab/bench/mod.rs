@@ -65,6 +65,7 @@ mod cases;
 mod company;
 mod machine;
 mod queries;
+mod resimulation;
 
 use std::fmt;
 use std::path::PathBuf;

@@ -79,8 +79,14 @@ impl Figures {
 
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let mut rest = area;
-        self.draw_branches(canvas, &mut rest);
         let table = self.comparison.milestones(self.days_per_week).len() as u16 + 1;
+        // In a small window figures go before what is known from the title.
+        if area.height > table + self.comparison.branches.len() as u16 {
+            let row = take(&mut rest, 1);
+            let heading = heading(&self.comparison, self.days_per_week);
+            canvas.text(row, &fit(&heading, row.width as usize), Role::Dim);
+        }
+        self.draw_branches(canvas, &mut rest);
         let room = rest.height.saturating_sub(table + 2);
         if room >= LEAST_CHART {
             let height = room.saturating_sub(room / 3).min(MOST_CHART);
@@ -93,11 +99,8 @@ impl Figures {
         }
     }
 
-    /// When, and each branch with the role of its curve.
+    /// Each branch with the role of its curve.
     fn draw_branches(&self, canvas: &mut Canvas<'_>, rest: &mut Rect) {
-        let row = take(rest, 1);
-        let heading = heading(&self.comparison, self.days_per_week);
-        canvas.text(row, &fit(&heading, row.width as usize), Role::Dim);
         for (number, branch) in self.comparison.branches.iter().enumerate() {
             let row = take(rest, 1);
             let here = number == self.selected;

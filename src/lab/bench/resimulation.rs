@@ -1,0 +1,65 @@
+//! What it costs to simulate days of a run again: what would have been, and why a figure changed.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::company::{Company, Keep};
+use super::{Bench, BenchError, BenchFigure, Samples, Unit};
+use crate::session::{Causes, DecisionEdit, Session, WeekFigure, WhatIf};
+
+/// Subscribers of the smaller company.
+const SMALL: u32 = 20_000;
+/// Subscribers of the larger one.
+const LARGE: u32 = 165_000;
+/// Weeks of a branch.
+const WEEKS: u32 = 12;
+/// What the branches beside the run as it was decide otherwise.
+const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "keep set_capacity_tier"];
+
+/// The first answer about a run reads its record and simulates it from day 0; the next one goes on from there.
+pub const FIGURES: &[BenchFigure] = &[
+    BenchFigure::aimed("what if, 4 branches of 12 weeks at 20,000: next answer", Unit::Seconds, 0.5, None),
+    BenchFigure::shown("what if, 4 branches of 12 weeks at 20,000: first answer", Unit::Seconds),
+    BenchFigure::aimed("why of a week at 20,000: first answer", Unit::Seconds, 1.0, None),
+    BenchFigure::aimed("why of a week at 165,000: first answer", Unit::Seconds, 8.0, None),
+];
+
+/// Asks a company when it has as many subscribers as the figures name.
+pub fn resimulation(bench: &Bench) -> Result<Samples, BenchError> {
+    let mut company = Company::grown(SMALL, Keep::Disk, bench)?;
+    let parting = company.session.weeks().len() as u32 + 1;
+    let (mut first, mut next) = (Vec::new(), Vec::new());
+    for _ in 0..bench.repetitions {
+        let started = Instant::now();
+        let mut what_if = WhatIf::read(&company.session.folder_of_causes()?)?;
+        ask(&mut what_if, parting)?;
+        first.push(started.elapsed().as_secs_f64());
+        let again = Instant::now();
+        ask(&mut what_if, parting)?;
+        next.push(again.elapsed().as_secs_f64());
+    }
+    let small = why(&company.session, bench.repetitions)?;
+    company.grow_to(LARGE)?;
+    let large = why(&company.session, bench.repetitions)?;
+    Ok(vec![next, first, small, large])
+}
+
+/// Four branches, from a week on.
+fn ask(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
+    let read = |edit: &str| edit.parse::<DecisionEdit>().map_err(BenchError);
+    let alternatives = ALTERNATIVES.into_iter().map(|edit| Ok(vec![read(edit)?]));
+    let alternatives = alternatives.collect::<Result<Vec<_>, BenchError>>()?;
+    what_if.compare(week, Some(week + WEEKS - 1), &alternatives, &|_, _| ControlFlow::Continue(()))?;
+    Ok(())
+}
+
+/// Seconds until it is known why the cancellations of the last week changed.
+fn why(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
+    let folder = session.folder_of_causes()?;
+    let once = |_| {
+        let started = Instant::now();
+        Causes::read(&folder)?.why(WeekFigure::Cancellations, None, &|_| ControlFlow::Continue(()))?;
+        Ok(started.elapsed().as_secs_f64())
+    };
+    (0..repetitions).map(once).collect()
+}

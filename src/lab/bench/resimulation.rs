@@ -14,7 +14,7 @@ const LARGE: u32 = 165_000;
 /// Weeks of a branch.
 const WEEKS: u32 = 12;
 /// What the branches beside the run as it was decide otherwise.
-const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "keep set_capacity_tier"];
+const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
 
 /// The first answer about a run reads its record and simulates it from day 0; the next one goes on from there.
 pub const FIGURES: &[BenchFigure] = &[

@@ -102,10 +102,8 @@ impl WhatIf {
         let Parting { start, earlier, moves, until } = &parting;
         let from = start.world.day;
         let branches = all.iter().zip(&edits).zip(&outcomes).map(|((decided, made), outcome)| {
-            let differs_on = match decided.is_empty() {
-                true => None,
-                false => first_difference(start, moves, (&edits[0], made), *until),
-            };
+            let differs_on = differs_by(&outcomes[0], outcome)
+                .and_then(|day| first_difference(start, moves, (&edits[0], made), day));
             BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on)
         });
         let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
@@ -219,6 +217,17 @@ impl Parting {
             counterfactual(&self.start, &self.moves, own, self.until, &mut go_on)
         })
     }
+}
+
+/// The last day on which two branches can have become different companies: the first one of which they have other figures, or
+/// the end; none where they have the same all the way.
+fn differs_by(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
+    let other_figures = one.days.iter().zip(&other.days).find(|(own, their)| own != their);
+    if let Some((day, _)) = other_figures {
+        return Some(day.day);
+    }
+    let (one, other) = (&one.end.world, &other.end.world);
+    (one.day != other.day || one.part_hashes() != other.part_hashes()).then_some(one.day.max(other.day))
 }
 
 /// What each branch decides, the run as it was first, and how its days are edited for it.

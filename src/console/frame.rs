@@ -246,18 +246,20 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
             if here { format!(" {key} {title} ") } else { format!(" {key}{}", badge.trim()) }
         },
     ];
+    let screens: Vec<ScreenId> =
+        ScreenId::ALL.into_iter().filter(|screen| screen.is_shown_in(&run.company)).collect();
     let texts = |way: &Way| {
-        ScreenId::ALL.map(|screen| {
+        let text = |screen: &ScreenId| {
             let key = app.keys.label(screen.action()).unwrap_or_default();
-            way(&key, screen.action().entry().title, &badge(run, screen), screen == run.here)
-        })
+            way(&key, screen.action().entry().title, &badge(run, *screen), *screen == run.here)
+        };
+        screens.iter().map(text).collect::<Vec<String>>()
     };
-    let fits = |texts: &[String; ScreenId::ALL.len()]| {
-        texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize
-    };
+    let fits =
+        |texts: &Vec<String>| texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize;
     let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[5]));
     let mut x = row.x;
-    for (screen, text) in ScreenId::ALL.into_iter().zip(fitting) {
+    for (screen, text) in screens.iter().copied().zip(fitting) {
         let width = text.width() as u16;
         if x + width > row.right() {
             break;

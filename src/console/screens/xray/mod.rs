@@ -12,7 +12,7 @@ mod view;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::typing::{Expected, Typed, Typing};
+use self::typing::{Expected, Typed, TypedLine};
 use self::view::{Choices, View};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
@@ -44,7 +44,7 @@ pub enum XrayPane {
 /// Narrowest window in which the lists stay beside what was seen while that has the focus.
 const WIDE: u16 = 90;
 /// Columns of the lists.
-const LISTS: u16 = 20;
+const LISTS: u16 = 16;
 /// Lowest window in which both lists stand below each other.
 const HIGH: u16 = 20;
 
@@ -74,7 +74,7 @@ pub struct Xray {
     held: Vec<LeadFactor>,
     /// The factor under the cursor.
     factor: usize,
-    typing: Option<Typing>,
+    typing: Option<TypedLine>,
     /// What is wrong with what was typed.
     problem: Option<String>,
     /// The question that is being answered.
@@ -222,9 +222,7 @@ impl Xray {
         let known = &company.seen.known_groups;
         let row = |group: Group| match known.contains(&group) {
             true => vec![Cell::words(group.id()), Cell::words("found")],
-            false => {
-                vec![Cell::words(group.id()).role(Role::Dim), Cell::words("not found").role(Role::Dim)]
-            }
+            false => vec![Cell::words(group.id()).role(Role::Dim)],
         };
         self.groups.set_rows(Group::all().map(row).collect());
     }
@@ -261,7 +259,7 @@ impl Xray {
             return vec![Effect::Complain("nothing is chosen in this view but the day".to_owned())];
         };
         (self.focus, self.problem) = (XrayPane::Seen, None);
-        self.typing = Some(Typing { expected, field: Field::default() });
+        self.typing = Some(TypedLine { expected, field: Field::default() });
         Vec::new()
     }
 

@@ -2,6 +2,7 @@
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
 use super::typing::Expected;
 use super::view::{Choices, View};
@@ -286,7 +287,7 @@ fn draw_lines(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>)
             (0, _) if role == Role::Text => Role::Header,
             _ => role,
         };
-        wrapped(line, width).into_iter().map(move |part| (part, role))
+        broken_into(line, width).into_iter().map(move |part| (part, role))
     };
     let rows: Vec<(String, Role)> = lines.iter().enumerate().flat_map(broken).collect();
     let height = usize::from(seat.area.height);
@@ -324,4 +325,46 @@ fn lines_of(xray: &Xray, look: &Look<'_>) -> (Vec<String>, Role) {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Columns by which what goes on in the next row is set back.
+const SET_BACK: usize = 6;
+
+/// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
+/// each other; the cells that do not go on in the next row.
+fn broken_into(line: &str, width: usize) -> Vec<String> {
+    if line.width() <= width || !line.trim_start().contains("  ") {
+        return wrapped(line, width);
+    }
+    let mut rows = Vec::new();
+    let mut rest = line.to_owned();
+    while rest.width() > width && width > 2 * SET_BACK {
+        let mut blanks = rest.match_indices(' ').map(|(at, _)| at);
+        let fits = |at: &usize| rest[..*at].width() <= width && !rest[..*at].trim().is_empty();
+        let Some(cut) = blanks.rfind(fits) else { break };
+        rows.push(rest[..cut].trim_end().to_owned());
+        rest = format!("{}{}", " ".repeat(SET_BACK), rest[cut..].trim_start());
+        if rest.trim().is_empty() {
+            return rows;
+        }
+    }
+    rows.extend(wrapped(&rest, width));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_tables_keep_their_columns_as_far_as_they_fit() {
+        let rows = |line: &str| broken_into(line, 26);
+        assert_eq!(rows("  plan  price  quality  required"), ["  plan  price  quality", "      required"]);
+        assert_eq!(rows("  A     12.00  0.21     0.26"), ["  A     12.00  0.21", "      0.26"]);
+        assert_eq!(rows("  words that are no row of a table"), ["  words that are no row of", "  a table"]);
+        assert_eq!(rows("short  line"), ["short  line"]);
+        for width in 0..40 {
+            broken_into("  plan  price  averyveryverylongwordthatfitsnowhere  required", width);
+        }
+    }
 }

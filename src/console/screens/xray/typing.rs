@@ -38,7 +38,7 @@ pub enum Typed {
 
 /// A line that is being typed.
 #[derive(Debug)]
-pub struct Typing {
+pub struct TypedLine {
     /// What is expected.
     pub expected: Expected,
     /// The line.

@@ -208,11 +208,41 @@ fn a_run_that_is_over_is_looked_into_in_its_replay_and_each_look_is_recorded() {
         // Nothing is run in a replay.
         console.press("; k r '7' enter");
         console.shows("this is a replay");
-        drop(console);
+        // Whoever leaves the replay can open the run: it is held no longer than that.
+        console.press("esc Q");
         let folder = folder_of(runs.path());
+        let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
+        console.open(&id).expect("it opens");
+        drop(console);
         let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");
         assert_eq!(looks(&after), ["leads S1 14"]);
     }
+}
+
+#[test]
+fn a_run_that_is_only_read_keeps_the_line_of_a_look() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Sandbox, 2);
+    session.end().expect("it ends");
+    drop(session);
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.look_at("latest").expect("it opens");
+    console.press("esc g x");
+    console.shows("leads of S1 on day 14");
+    drop(console);
+    let folder = folder_of(runs.path());
+    let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");
+    assert_eq!(looks(&after), ["leads S1 14"]);
+}
+
+#[test]
+fn a_debug_run_that_somebody_else_plays_is_not_looked_into_from_its_replay() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let held = run(runs.path(), Mode::Debug, 2);
+    let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
+    console.press("g x");
+    assert!(!console.screen().contains("leads of S1 on day"), "{}", console.screen());
+    drop(held);
 }
 
 #[test]

@@ -330,18 +330,21 @@ fn capital(text: &str) -> String {
 /// Columns by which what goes on in the next row is set back.
 const SET_BACK: usize = 6;
 
+/// What stands between two columns of a table at least.
+const GAP: &str = "  ";
+
 /// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
 /// each other; the cells that do not go on in the next row.
 fn broken_into(line: &str, width: usize) -> Vec<String> {
-    if line.width() <= width || !line.trim_start().contains("  ") {
+    if line.width() <= width || !line.trim_start().contains(GAP) {
         return wrapped(line, width);
     }
     let mut rows = Vec::new();
     let mut rest = line.to_owned();
     while rest.width() > width && width > 2 * SET_BACK {
-        let mut blanks = rest.match_indices(' ').map(|(at, _)| at);
+        let gaps = rest.match_indices(GAP).map(|(at, _)| at);
         let fits = |at: &usize| rest[..*at].width() <= width && !rest[..*at].trim().is_empty();
-        let Some(cut) = blanks.rfind(fits) else { break };
+        let Some(cut) = gaps.filter(fits).last() else { break };
         rows.push(rest[..cut].trim_end().to_owned());
         rest = format!("{}{}", " ".repeat(SET_BACK), rest[cut..].trim_start());
         if rest.trim().is_empty() {

@@ -45,6 +45,8 @@ pub enum Scope {
     Decisions,
     /// Branches side by side.
     Branches,
+    /// Hidden state of the run.
+    Xray,
     /// The offer of texts that were typed and not sent.
     Unsent,
     /// The cover while the clock is stopped.
@@ -53,7 +55,7 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 23] = [
+    pub const ALL: [Scope; 24] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -68,6 +70,7 @@ impl Scope {
         Scope::Memo,
         Scope::Social,
         Scope::Market,
+        Scope::Xray,
         Scope::Dialog,
         Scope::Menu,
         Scope::Final,
@@ -103,6 +106,7 @@ impl Scope {
             Scope::Visit => "visit",
             Scope::Decisions => "decisions",
             Scope::Branches => "branches",
+            Scope::Xray => "xray",
             Scope::Unsent => "unsent",
             Scope::Cover => "cover",
         }
@@ -132,6 +136,7 @@ impl Scope {
             Scope::Visit => "Pages of a participant",
             Scope::Decisions => "What if: decisions",
             Scope::Branches => "What if: figures",
+            Scope::Xray => "X-ray",
             Scope::Unsent => "Unsent text",
             Scope::Cover => "While the clock is stopped",
         }
@@ -187,6 +192,8 @@ actions! {
         Tools "tools" "Tools" "Show the forms of all tools."
         Sql "sql" "SQL" "Query the database."
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
+        Xray "xray" "X-ray" "Show the hidden state of the run: in debug runs and in runs that are over."
+        Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set one, run to it, or see since when its condition holds. In debug runs and in runs that are over."
         NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast, and run the week."
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
         Help "help" "help" "Show every key that works here, those of the focused pane first."
@@ -327,6 +334,15 @@ actions! {
         StudyGroup "study-group" "study" "Order a study of the selected group to the chosen level, after confirmation."
         LevelUp "level-up" "level up" "Choose a higher level for the study."
         LevelDown "level-down" "level down" "Choose a lower level for the study."
+    }
+    Xray {
+        TypeChoice "type" "type" "Type a group, a part, the number of a customer, or the condition of a breakpoint."
+        DayWeekBefore "week-before" "week before" "Show the day a week earlier; left shows the day before."
+        DayWeekAfter "week-after" "week after" "Show the day a week later, at most the last one; right shows the day after."
+        HoldFactor "hold" "hold" "Hold the selected factor of the leads at 1 and show the expected leads beside, or let it go."
+        RunDays "run-days" "run" "Type how many days of a debug run to simulate; it stops on the first day on which a breakpoint becomes true."
+        LookBack "look-back" "since when" "Say since when the condition of each breakpoint is true or false."
+        RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
     Dialog {
         Confirm "confirm" "yes" "Confirm."

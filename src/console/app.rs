@@ -229,6 +229,8 @@ pub struct App {
     why_question: u64,
     /// Number of the last question what would have been.
     branches_question: u64,
+    /// Number of the last look at hidden state.
+    look_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
     /// The run that is being started shows the tour.
@@ -298,6 +300,7 @@ impl App {
             rows_question: 0,
             why_question: 0,
             branches_question: 0,
+            look_question: 0,
             closing: None,
             tour_planned: false,
             visit: None,
@@ -452,6 +455,8 @@ impl App {
                 Order::Job(Job::Ask(question))
             });
         }
+        let asks = self.with_screen(|screen, look| screen.ask_run(look)).unwrap_or_default();
+        self.follow(asks);
     }
 
     /// The screen that is shown, and what it may look at.

@@ -89,6 +89,8 @@ pub struct Company {
     pub remarks: Vec<String>,
     /// It is a moment of a recorded run that is played again: nothing can be done.
     pub replayed: bool,
+    /// Whether hidden state may be shown.
+    pub may_look_inside: bool,
     /// By which rules it is played.
     pub rules: SessionRules,
     /// The study it belongs to.
@@ -137,6 +139,7 @@ impl Company {
             studies: session.running_studies(),
             remarks: session.remarks().to_vec(),
             replayed: false,
+            may_look_inside: session.may_look_inside(),
             rules: session.rules(),
             study: session.manifest().study.clone(),
         }

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use serde_json::Value;
 
 use super::action::Action;
+use super::look_inside::LookQuestion;
 use super::readings::Reading;
 use super::request::Request;
 use super::resimulation::BranchesQuestion;
@@ -51,6 +52,8 @@ pub enum Effect {
     AskBehind(String),
     /// Find out what would have been; the flag ends the work.
     AskBranches(BranchesQuestion, Arc<AtomicBool>),
+    /// Look at hidden state of the run.
+    LookInside(LookQuestion),
     /// Stop what the person asked.
     CancelQuery,
     /// Ask the database for a screen.

@@ -246,18 +246,25 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
             if here { format!(" {key} {title} ") } else { format!(" {key}{}", badge.trim()) }
         },
     ];
-    let texts = |way: &Way| {
-        ScreenId::ALL.map(|screen| {
+    let is_shown = |screen: &ScreenId| screen.is_shown_in(&run.company);
+    let all: Vec<ScreenId> = ScreenId::ALL.into_iter().filter(is_shown).collect();
+    // The X-ray gives way before the names of the others do.
+    let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.here == ScreenId::Xray;
+    let fewer: Vec<ScreenId> = all.iter().copied().filter(others).collect();
+    let texts = |screens: &[ScreenId], way: &Way| {
+        let text = |screen: &ScreenId| {
             let key = app.keys.label(screen.action()).unwrap_or_default();
-            way(&key, screen.action().entry().title, &badge(run, screen), screen == run.here)
-        })
+            way(&key, screen.action().entry().title, &badge(run, *screen), *screen == run.here)
+        };
+        screens.iter().map(|screen| (*screen, text(screen))).collect::<Vec<(ScreenId, String)>>()
     };
-    let fits = |texts: &[String; ScreenId::ALL.len()]| {
-        texts.iter().map(|text| text.width()).sum::<usize>() <= row.width as usize
+    let fits = |texts: &Vec<(ScreenId, String)>| {
+        texts.iter().map(|(_, text)| text.width()).sum::<usize>() <= row.width as usize
     };
-    let fitting = ways.iter().map(texts).find(fits).unwrap_or_else(|| texts(&ways[5]));
+    let named = |screens| ways[..5].iter().map(move |way| texts(screens, way));
+    let fitting = named(&all).chain(named(&fewer)).find(fits).unwrap_or_else(|| texts(&all, &ways[5]));
     let mut x = row.x;
-    for (screen, text) in ScreenId::ALL.into_iter().zip(fitting) {
+    for (screen, text) in fitting {
         let width = text.width() as u16;
         if x + width > row.right() {
             break;

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crossterm::event::Event;
 
 use super::company::Company;
+use super::look_inside::{DaysRan, LookFound};
 use super::readings::Reading;
 use super::resimulation::BranchesFound;
 use crate::report::Story;
@@ -110,6 +111,10 @@ pub enum News {
     BranchesProgress(u64, usize, usize),
     /// What would have been.
     Branches(u64, Box<Result<BranchesFound, Refusal>>),
+    /// What was seen of the run from within; the number says which question it answers.
+    LookedInside(u64, Box<Result<LookFound, Refusal>>),
+    /// Days of a debug run were simulated up to a breakpoint.
+    Ran(Result<DaysRan, Refusal>, Arc<Company>),
     /// How far a question why has come; the number says which.
     WhyProgress(u64, WhyProgress),
     /// It was answered.

@@ -60,6 +60,8 @@ pub enum Request {
         /// Forecasts of cash.
         forecasts: Forecasts,
     },
+    /// Simulate days of a debug run, up to a breakpoint.
+    RunDays(u32),
     /// Keep the notes.
     SetMemo(String),
     /// Tell the story of the run for the final page.
@@ -127,7 +129,12 @@ pub enum Recorded {
 impl Request {
     /// Whether it would change the run.
     pub fn changes_run(&self) -> bool {
-        self.waits_for_week() || matches!(self, Request::Advance { .. } | Request::SetMemo(_))
+        self.waits_for_week() || self.lets_time_pass() || matches!(self, Request::SetMemo(_))
+    }
+
+    /// Whether days are simulated by it.
+    pub fn lets_time_pass(&self) -> bool {
+        matches!(self, Request::Advance { .. } | Request::RunDays(_))
     }
 
     /// Whether it is refused while a week runs: it was meant for the company as it was before.
@@ -148,6 +155,7 @@ impl Request {
             | Request::Replay { .. }
             | Request::TakeOver(_)
             | Request::AdoptBranch { .. }
+            | Request::RunDays(_)
             | Request::WriteReport => true,
             Request::Call { .. }
             | Request::Undo
@@ -169,6 +177,7 @@ impl Request {
             Request::TakeOver(_) => "starting a run from here",
             Request::AdoptBranch { .. } => "playing the branch",
             Request::Advance { .. } => "the week runs",
+            Request::RunDays(_) => "simulating",
             Request::Visit(VisitRequest::Play) => "opening the run",
             _ => return None,
         })

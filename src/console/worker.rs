@@ -8,6 +8,7 @@ mod branches;
 mod causes;
 mod desk;
 mod folder;
+mod inside;
 mod limits;
 mod mending;
 mod player;
@@ -26,6 +27,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use super::company::Company;
+use super::look_inside::LookQuestion;
 use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
@@ -60,6 +62,8 @@ pub enum Job {
     FindCauses(WhyAsked),
     /// Find out what would have been.
     FindBranches(BranchesAsked),
+    /// Look at hidden state of the run.
+    LookInside(u64, LookQuestion),
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
@@ -115,6 +119,7 @@ impl Workers {
                 minutes_left: Vec::new(),
                 causes: Arc::default(),
                 branches: Arc::default(),
+                inside: None,
                 news,
                 runs,
                 queries: for_session,
@@ -191,6 +196,8 @@ struct SessionThread {
     causes: Arc<Mutex<LastRead<Causes>>>,
     /// What was simulated to answer the last question what would have been.
     branches: Arc<Mutex<LastRead<WhatIf>>>,
+    /// The run that is looked into where the one that is open keeps no lines.
+    inside: Option<Box<Session>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -259,6 +266,7 @@ impl SessionThread {
             }),
             Job::FindCauses(asked) => self.find_causes(asked),
             Job::FindBranches(asked) => self.find_branches(asked),
+            Job::LookInside(number, question) => self.look_inside(number, &question),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
             Job::NotePresence(event, idle_ms, window) => {
@@ -314,6 +322,7 @@ impl SessionThread {
     fn close(&mut self, cause: LeavingCause) {
         let problem = self.put_down(cause).err();
         (self.open, self.company, self.due, self.mending, self.limits) = (None, None, None, None, None);
+        self.inside = None;
         self.say(News::Closed(problem.map(|error| error.to_string())));
     }
 
@@ -336,6 +345,7 @@ impl SessionThread {
             Request::Advance { rationale, forecasts } => {
                 self.with_run(|run| run.advance(&rationale, &forecasts));
             }
+            Request::RunDays(days) => self.with_run(|run| run.run_days(days)),
             Request::SetMemo(text) => self.with_run(|run| run.set_memo(&text)),
             Request::TellStory => self.with_run(|run| run.tell_story()),
             Request::WriteReport => self.with_run(|run| run.write_report()),

@@ -135,6 +135,7 @@ pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
 pub use xray::lens::Lens;
 pub use xray::next_draws::{Draw, DrawnPart, Follows, KeyedDraws, MOST_DRAWS, NextDraws};
+pub use xray::permission::REFUSED_LOOK;
 pub use xray::quality_equation::{PlanDelivered, QualityEquation, SharedGains};
 pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, ReputationEquation, Spillover};
 pub use xray::rival_state::{NextRivalMove, RivalState};

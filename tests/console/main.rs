@@ -18,3 +18,4 @@ mod stories;
 mod support;
 mod tasks;
 mod visits;
+mod xray;

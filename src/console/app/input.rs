@@ -289,6 +289,7 @@ impl App {
             Action::Explain => self.explain(),
             Action::Why => self.show_why(),
             Action::Branches => self.show_branches(),
+            Action::Breakpoints => self.show_breakpoints(),
             Action::Glossary => self.show_glossary(),
             Action::Tour => self.show_tour(),
             Action::Forward => self.forward(),
@@ -383,6 +384,15 @@ impl App {
         self.branches_question += 1;
         let asked = BranchesAsked { number: self.branches_question, question, stop };
         self.orders.push(Order::Job(Job::FindBranches(asked)));
+    }
+
+    /// The breakpoints on the X-ray screen.
+    fn show_breakpoints(&mut self) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.forget_trail();
+            run.screens.xray.show_breakpoints();
+        }
+        self.show(ScreenId::Xray);
     }
 
     fn next_theme(&mut self) {

@@ -10,6 +10,7 @@ use crate::console::dialogs::filing::FilingDialog;
 use crate::console::dialogs::final_page::FinalPage;
 use crate::console::dialogs::report::Report;
 use crate::console::effect::Effect;
+use crate::console::look_inside::DaysRan;
 use crate::console::message::{Instead, News};
 use crate::console::request::Request;
 use crate::console::screens::{Look, ScreenId, Screens};
@@ -67,6 +68,7 @@ impl App {
                 }
             }
             News::Advanced(week, company) => self.advanced(week, company),
+            News::Ran(ran, company) => self.ran(ran, company),
             News::Closed(problem) => self.closed(problem),
             News::Crashed(words) => {
                 let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
@@ -133,6 +135,8 @@ impl App {
                 }
                 return;
             }
+            News::LookedInside(number, _) if *number != self.look_question => return,
+            News::LookedInside(..) => ScreenId::Xray,
             News::Answered(number, ..) if *number != self.sql_question => return,
             News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,
@@ -351,6 +355,30 @@ impl App {
                 let remark = (!remark.is_empty()).then_some(remark);
                 self.lay(Layer::Dialog(Box::new(Report::new(remark))));
             }
+        }
+    }
+}
+
+impl App {
+    /// Days of a debug run were simulated, up to a breakpoint perhaps.
+    fn ran(&mut self, ran: Result<DaysRan, Refusal>, company: Arc<Company>) {
+        self.busy = None;
+        let now = self.stopwatch.now();
+        if let Stage::Run(run) = &mut self.stage {
+            run.look_again(now);
+            if let Ok(ran) = &ran {
+                run.screens.xray.tell(ran);
+            }
+        }
+        self.changed(company);
+        match ran {
+            Ok(ran) => {
+                self.say(ran.lines.first().cloned().unwrap_or_default());
+                if ran.is_over {
+                    self.show_end();
+                }
+            }
+            Err(refusal) => self.complain(refusal.to_string()),
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
+use crate::console::company::Company;
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::reader::Reader;
 use crate::console::effect::Effect;
@@ -11,6 +12,14 @@ use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
 use crate::session::QuerySource;
 use crate::session::record::DraftOutcome;
+
+/// The last day that a request simulates, unless something stops it before.
+fn last_day_of(request: &Request, company: &Company) -> u32 {
+    match request {
+        Request::RunDays(days) => company.seen.day.saturating_add(*days).min(company.seen.last_day),
+        _ => company.next_decision_day,
+    }
+}
 
 impl App {
     /// Lets effects follow, in their order.
@@ -45,6 +54,10 @@ impl App {
             }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
             Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
+            Effect::LookInside(question) => {
+                self.look_question += 1;
+                self.orders.push(Order::Job(Job::LookInside(self.look_question, question)));
+            }
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -148,10 +161,10 @@ impl App {
             self.put_down();
         }
         if let Some(what) = request.busy_with() {
-            let is_advance = matches!(request, Request::Advance { .. });
+            let is_advance = request.lets_time_pass();
             if self.busy.is_some() {
                 return if is_advance {
-                    self.complain("a week is running already")
+                    self.complain("days are running already")
                 };
             }
             if is_advance {
@@ -165,7 +178,7 @@ impl App {
             let days = self
                 .run()
                 .filter(|_| is_advance)
-                .map(|run| DaysRun::between(run.company.seen.day, run.company.next_decision_day));
+                .map(|run| DaysRun::between(run.company.seen.day, last_day_of(&request, &run.company)));
             self.busy = Some(Busy { what, days, since: Instant::now() });
         }
         self.send_texts(&request);

@@ -224,7 +224,11 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
 
 fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntry> {
     let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
-    let commands = ACTIONS.iter().filter(|entry| everywhere(entry.scope) && entry.action != Action::Palette);
+    let hidden =
+        |action: Action| !company.may_look_inside && matches!(action, Action::Xray | Action::Breakpoints);
+    let commands = ACTIONS
+        .iter()
+        .filter(|entry| everywhere(entry.scope) && entry.action != Action::Palette && !hidden(entry.action));
     let mut list: Vec<PaletteEntry> = commands
         .map(|entry| PaletteEntry {
             kind: "command",

@@ -74,12 +74,19 @@ screens! {
     Sql in sql,
     /// What was done.
     Journal in journal,
+    /// Hidden state, where it may be shown.
+    Xray in xray,
 }
 
 impl ScreenId {
     /// Name for the trajectory.
     pub fn id(self) -> &'static str {
         self.action().entry().name
+    }
+
+    /// Whether it stands among the screens of a run: the X-ray only where hidden state may be shown.
+    pub fn is_shown_in(self, company: &Company) -> bool {
+        self != ScreenId::Xray || company.may_look_inside
     }
 }
 
@@ -142,6 +149,11 @@ pub trait ScreenState {
 
     /// Takes what the database answered.
     fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+
+    /// The person sees it now, or the company has changed while they do: what it asks the run for.
+    fn ask_run(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
 
     /// The company has changed.
     fn renew(&mut self, _: &Look<'_>) {}

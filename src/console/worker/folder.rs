@@ -122,7 +122,7 @@ impl SessionThread {
             }
         };
         let interrupt = self.queries.connect(&session);
-        self.mending = None;
+        (self.mending, self.inside) = (None, None);
         let mut company = Company::of(&session);
         company.remarks.extend(remark);
         let company = Arc::new(company);

@@ -95,7 +95,7 @@ impl SessionThread {
         let interrupt = self.queries.connect(playback.session());
         let company = Arc::new(company_of(&playback, None));
         let place = playback.place();
-        (self.company, self.due) = (Some(company.clone()), None);
+        (self.company, self.due, self.inside) = (Some(company.clone()), None, None);
         self.open = Some(Open::Replayed(Box::new(playback)));
         self.say(News::Replays(company, interrupt, Box::new(place)));
     }
@@ -170,5 +170,6 @@ impl SessionThread {
 /// What a moment of a replay shows. Notes that were written later are not there yet.
 fn company_of(playback: &Playback, before: Option<&Company>) -> Company {
     let memo = playback.memo().unwrap_or_default();
-    Company { memo, replayed: true, ..Company::after(playback.session(), before) }
+    let may_look_inside = playback.may_look_inside();
+    Company { memo, replayed: true, may_look_inside, ..Company::after(playback.session(), before) }
 }

@@ -9,9 +9,11 @@ use serde_json::Value;
 use super::BETWEEN_DAYS;
 use super::queries::QueryThreads;
 use crate::console::company::Company;
+use crate::console::look_inside::DaysRan;
 use crate::console::message::{DayTold, Message, News};
+use crate::report::xray::stop_in_words;
 use crate::report::{Story, as_html, as_markdown};
-use crate::session::{Forecasts, Session, Via};
+use crate::session::{Breakpoint, DayReport, Forecasts, Session, Via};
 use crate::tools::ToolId;
 
 /// The run that is open, and where news of it go.
@@ -47,16 +49,19 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> Option<News> {
-        let (mut told, news) = (Instant::now(), self.news);
-        let week = self.session.advance(rationale, forecasts, Via::Form, &mut |report| {
-            if told.elapsed() >= BETWEEN_DAYS {
-                told = Instant::now();
-                let figures = report.figures;
-                let told = DayTold { cash: figures.cash, subscribers: figures.individual_subscribers };
-                let _ = news.send(Message::News(News::Day(figures.day, Some(told))));
-            }
-        });
+        let mut tell = tell_days(self.news);
+        let week = self.session.advance(rationale, forecasts, Via::Form, &mut tell);
         Some(News::Advanced(week.map(Box::new), self.company()))
+    }
+
+    pub(super) fn run_days(&mut self, days: u32) -> Option<News> {
+        let mut tell = tell_days(self.news);
+        let breakpoints = self.session.breakpoints().map_or(0, <[Breakpoint]>::len);
+        let ran = self.session.run_until_breakpoint(days, &mut tell).map(|run| DaysRan {
+            lines: stop_in_words(&run, self.session.day(), breakpoints),
+            is_over: run.week.ended.is_some(),
+        });
+        Some(News::Ran(ran, self.company()))
     }
 
     pub(super) fn set_memo(&mut self, text: &str) -> Option<News> {
@@ -71,5 +76,18 @@ impl OpenRun<'_> {
     pub(super) fn write_report(&mut self) -> Option<News> {
         let story = Story::of(self.session);
         Some(News::Reported(vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))]))
+    }
+}
+
+/// Tells the days that are simulated, not too often.
+fn tell_days(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) {
+    let mut told = Instant::now();
+    move |report| {
+        if told.elapsed() >= BETWEEN_DAYS {
+            told = Instant::now();
+            let figures = report.figures;
+            let told = DayTold { cash: figures.cash, subscribers: figures.individual_subscribers };
+            let _ = news.send(Message::News(News::Day(figures.day, Some(told))));
+        }
     }
 }

@@ -224,6 +224,13 @@ impl Playback {
         self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
+    /// Whether hidden state of the recorded run may be shown, though this moment of it is not its end: what the record says
+    /// counts.
+    pub fn may_look_inside(&self) -> bool {
+        let is_open = self.origin.manifest.mode == Mode::Debug || self.is_recorded_to_the_end();
+        is_open && self.origin.folder.is_some() && !self.session.rules().hides_results()
+    }
+
     fn find_stops(&mut self, from: usize) {
         for line in &self.trajectory.lines[from..] {
             let after = line.seq as usize + 1;

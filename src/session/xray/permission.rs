@@ -6,6 +6,9 @@ use crate::session::trajectory::record::{Activity, XrayLook};
 use crate::session::trajectory::{Durability, Record};
 use crate::tools::Refusal;
 
+/// Said where hidden state is not shown.
+pub const REFUSED_LOOK: &str = "the x-ray works in debug runs and in runs that are over";
+
 impl Session {
     /// Whether hidden state may be shown: in debug runs, and in runs that are over. Not where a study shows no results, as
     /// none does of its practice: its session is still to come.
@@ -23,8 +26,12 @@ impl Session {
         if self.may_look_inside() {
             return Ok(());
         }
-        let message = "the x-ray works in debug runs and in runs that are over";
-        Err(Refusal::new("not_in_this_mode", message))
+        Err(Refusal::new("not_in_this_mode", REFUSED_LOOK))
+    }
+
+    /// Whether a look becomes a line: not where the run is only read, or played again.
+    pub fn records_looks(&self) -> bool {
+        self.recorder.is_some()
     }
 
     /// Records a look, before anything is shown.

@@ -1,0 +1,60 @@
+//! What the X-ray screen asks of the hidden state of a run, and what it is told: the words of plain mode.
+
+use crate::session::{Breakpoint, Condition, DrawnPart, LeadFactor};
+use crate::world::identifiers::Group;
+
+/// A look at hidden state. Days are those that are over.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LookQuestion {
+    /// The equation of a group's leads on a day, with factors held at 1.
+    Leads(Group, u32, Vec<LeadFactor>),
+    /// What was delivered to a group on a day.
+    Quality(Group, u32),
+    /// What moved the satisfaction of a group on a day.
+    Satisfaction(Group, u32),
+    /// What moved the reputation of a group on a day.
+    Reputation(Group, u32),
+    /// How changes of reputation spilled over on a day.
+    Spillover(u32),
+    /// What rivals could copy and did on a day.
+    Rivals(u32),
+    /// What the market has added to expectations and budgets up to a day.
+    Drift(u32),
+    /// The draws of a part on the day after a day.
+    Draws(DrawnPart, u32),
+    /// A customer on a day.
+    Customer(u32, u32),
+    /// Of breakpoints.
+    Breakpoints(BreakpointWork),
+}
+
+/// What is done with breakpoints, besides running to them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BreakpointWork {
+    /// List them.
+    List,
+    /// Set one.
+    Set(Condition),
+    /// Remove one, by its number.
+    Remove(u32),
+    /// Say since when each is true or false.
+    LookBack,
+}
+
+/// What a look has found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LookFound {
+    /// Words.
+    pub lines: Vec<String>,
+    /// The breakpoints that are set; only told where breakpoints are asked for.
+    pub breakpoints: Vec<Breakpoint>,
+}
+
+/// Days of a debug run that were simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DaysRan {
+    /// Why they stopped, in words.
+    pub lines: Vec<String>,
+    /// The run is over.
+    pub is_over: bool,
+}

@@ -1,0 +1,404 @@
+//! Hidden state of a run, where it may be shown: the views of plain mode in the same words, day by day, and breakpoints.
+//!
+//! The session's thread simulates days again for a look. One question is asked at a time; of those that come up meanwhile
+//! only the newest is asked next.
+
+mod panes;
+#[cfg(test)]
+mod tests;
+mod typing;
+mod view;
+
+use ratatui::layout::{Constraint, Layout, Rect};
+use strum::VariantArray;
+
+use self::typing::{Expected, Typed, TypedLine};
+use self::view::{Choices, View};
+use super::panes::{Pane, Paned, draw_pane};
+use super::{Look, ScreenState};
+use crate::console::action::Action;
+use crate::console::canvas::Canvas;
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
+use crate::console::message::News;
+use crate::console::request::Request;
+use crate::console::theme::Role;
+use crate::console::widgets::scroll::Scroll;
+use crate::console::widgets::{Cell, Column, Field, Table};
+use crate::session::{Breakpoint, DrawnPart, LeadFactor, Refusal};
+use crate::world::identifiers::Group;
+
+/// Its panes, in the order of the tab key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
+pub enum XrayPane {
+    /// What can be looked at.
+    #[default]
+    Views,
+    /// The groups, the parts or the breakpoints of the view.
+    Choices,
+    /// What was seen.
+    Seen,
+}
+
+/// Narrowest window in which the lists stay beside what was seen while that has the focus.
+const WIDE: u16 = 90;
+/// Columns of the lists.
+const LISTS: u16 = 16;
+/// Lowest window in which both lists stand below each other.
+const HIGH: u16 = 20;
+
+/// What a look has brought.
+struct Seen {
+    question: LookQuestion,
+    found: Result<Vec<String>, String>,
+}
+
+/// The screen.
+#[derive(Default)]
+pub struct Xray {
+    focus: XrayPane,
+    /// Hidden state may be shown.
+    is_open: bool,
+    views: Table,
+    groups: Table,
+    parts: Table,
+    set: Table,
+    breakpoints: Vec<Breakpoint>,
+    /// The last day that has run.
+    last_day: u32,
+    /// The day that is looked at; none for the last one.
+    day: Option<u32>,
+    customer: Option<u32>,
+    /// Factors of the leads that are held at 1.
+    held: Vec<LeadFactor>,
+    /// The factor under the cursor.
+    factor: usize,
+    typing: Option<TypedLine>,
+    /// What is wrong with what was typed.
+    problem: Option<String>,
+    /// The question that is being answered.
+    asked: Option<LookQuestion>,
+    seen: Option<Seen>,
+    scroll: Scroll,
+}
+
+impl Xray {
+    fn view(&self) -> View {
+        self.views.selected().and_then(|row| View::VARIANTS.get(row)).copied().unwrap_or_default()
+    }
+
+    fn day(&self) -> u32 {
+        self.day.unwrap_or(self.last_day).min(self.last_day)
+    }
+
+    fn group(&self) -> Option<Group> {
+        self.groups.selected().and_then(|row| Group::all().nth(row))
+    }
+
+    fn part(&self) -> Option<DrawnPart> {
+        self.parts.selected().and_then(|row| DrawnPart::ALL.get(row)).copied()
+    }
+
+    fn choices(&self) -> Option<&Table> {
+        match self.view().choices() {
+            Choices::Groups => Some(&self.groups),
+            Choices::Parts => Some(&self.parts),
+            Choices::Breakpoints => Some(&self.set),
+            Choices::Nothing => None,
+        }
+    }
+
+    fn choices_mut(&mut self) -> Option<&mut Table> {
+        match self.view().choices() {
+            Choices::Groups => Some(&mut self.groups),
+            Choices::Parts => Some(&mut self.parts),
+            Choices::Breakpoints => Some(&mut self.set),
+            Choices::Nothing => None,
+        }
+    }
+
+    /// The question whose answer is to be shown; none where something has to be chosen first, or no day has run.
+    fn wanted(&self) -> Option<LookQuestion> {
+        let day = self.day();
+        if !self.is_open || (day == 0 && self.view() != View::Breakpoints) {
+            return None;
+        }
+        Some(match self.view() {
+            View::Leads => LookQuestion::Leads(self.group()?, day, self.held.clone()),
+            View::Quality => LookQuestion::Quality(self.group()?, day),
+            View::Satisfaction => LookQuestion::Satisfaction(self.group()?, day),
+            View::Reputation => LookQuestion::Reputation(self.group()?, day),
+            View::Spillover => LookQuestion::Spillover(day),
+            View::Rivals => LookQuestion::Rivals(day),
+            View::Drift => LookQuestion::Drift(day),
+            View::Streams => LookQuestion::Draws(self.part()?, self.last_day),
+            View::Customer => LookQuestion::Customer(self.customer?, day),
+            View::Breakpoints => LookQuestion::Breakpoints(BreakpointWork::List),
+        })
+    }
+
+    /// Asks for what is to be shown and is not yet, unless a question is being answered.
+    fn ask(&mut self) -> Vec<Effect> {
+        let wanted = self.wanted();
+        let is_known = wanted.as_ref() == self.seen.as_ref().map(|seen| &seen.question);
+        match wanted.filter(|_| !is_known && self.asked.is_none()) {
+            Some(question) => self.send(question),
+            None => Vec::new(),
+        }
+    }
+
+    fn send(&mut self, question: LookQuestion) -> Vec<Effect> {
+        self.asked = Some(question.clone());
+        vec![Effect::LookInside(question)]
+    }
+
+    /// Has something done with breakpoints.
+    fn work(&mut self, work: BreakpointWork) -> Vec<Effect> {
+        match &self.asked {
+            Some(_) => vec![Effect::Complain("days are simulated again; try again when that is done".to_owned())],
+            None => self.send(LookQuestion::Breakpoints(work)),
+        }
+    }
+
+    fn take(&mut self, found: &Result<LookFound, Refusal>) -> Vec<Effect> {
+        let Some(mut question) = self.asked.take() else { return Vec::new() };
+        if let LookQuestion::Breakpoints(work) = &mut question {
+            // What was done is shown like the list, and not done again.
+            *work = BreakpointWork::List;
+            if let Ok(found) = found {
+                self.breakpoints = found.breakpoints.clone();
+                self.list_breakpoints();
+            }
+        }
+        if self.wanted().as_ref() == Some(&question) {
+            let found = match found {
+                Ok(found) => Ok(found.lines.clone()),
+                Err(refusal) => Err(refusal.message.clone()),
+            };
+            self.seen = Some(Seen { question, found });
+            return Vec::new();
+        }
+        self.ask()
+    }
+
+    /// Shows why days stopped that were run from here.
+    pub fn tell(&mut self, ran: &DaysRan) {
+        let question = LookQuestion::Breakpoints(BreakpointWork::List);
+        self.seen = Some(Seen { question, found: Ok(ran.lines.clone()) });
+    }
+
+    /// Turns to the breakpoints.
+    pub fn show_breakpoints(&mut self) {
+        self.show(View::Breakpoints);
+        if self.is_open {
+            self.focus = XrayPane::Seen;
+        }
+    }
+
+    fn show(&mut self, view: View) {
+        self.list_views();
+        self.views.select(view as usize);
+        self.begin_view();
+    }
+
+    /// What belonged to the view before goes with it.
+    fn begin_view(&mut self) {
+        (self.scroll, self.typing, self.problem) = (Scroll::default(), None, None);
+    }
+
+    fn list_views(&mut self) {
+        if self.views.rows().is_empty() {
+            self.views = Table::new(vec![Column::words("look at")]);
+            self.views.set_rows(View::VARIANTS.iter().map(|view| vec![Cell::words(view.title())]).collect());
+            self.parts = Table::new(vec![Column::words("draws")]);
+            self.parts.set_rows(DrawnPart::ALL.iter().map(|part| vec![Cell::words(part.id())]).collect());
+            self.set = Table::new(vec![Column::words("stops when")]);
+            self.groups = Table::new(vec![Column::words("id"), Column::words("")]);
+        }
+    }
+
+    fn list_groups(&mut self, company: &Company) {
+        let known = &company.seen.known_groups;
+        let row = |group: Group| match known.contains(&group) {
+            true => vec![Cell::words(group.id()), Cell::words("found")],
+            false => vec![Cell::words(group.id()).role(Role::Dim)],
+        };
+        self.groups.set_rows(Group::all().map(row).collect());
+    }
+
+    fn list_breakpoints(&mut self) {
+        let row = |own: &Breakpoint| vec![Cell::words(format!("{} {}", own.number, own.condition))];
+        self.set.set_rows(self.breakpoints.iter().map(row).collect());
+    }
+
+    fn walk(&mut self, days: i64) -> Vec<Effect> {
+        if self.last_day == 0 || !self.view().has_day() {
+            return Vec::new();
+        }
+        let last = self.last_day;
+        let day = (i64::from(self.day()) + days).clamp(1, i64::from(last)) as u32;
+        self.day = (day != last).then_some(day);
+        self.ask()
+    }
+
+    fn hold(&mut self) -> Vec<Effect> {
+        if self.view() != View::Leads {
+            return vec![Effect::Complain("only factors of the leads are held".to_owned())];
+        }
+        let factor = LeadFactor::ALL[self.factor.min(LeadFactor::ALL.len() - 1)];
+        match self.held.iter().position(|own| *own == factor) {
+            Some(at) => drop(self.held.remove(at)),
+            None => self.held.push(factor),
+        }
+        self.ask()
+    }
+
+    fn type_in(&mut self, expected: Option<Expected>) -> Vec<Effect> {
+        let Some(expected) = expected else {
+            return vec![Effect::Complain("nothing is chosen in this view but the day".to_owned())];
+        };
+        (self.focus, self.problem) = (XrayPane::Seen, None);
+        self.typing = Some(TypedLine { expected, field: Field::default() });
+        Vec::new()
+    }
+
+    fn commit(&mut self) -> Vec<Effect> {
+        let Some(typing) = self.typing.take() else { return Vec::new() };
+        let typed = match typing.expected.read(typing.field.text()) {
+            Ok(typed) => typed,
+            Err(problem) => {
+                (self.typing, self.problem) = (Some(typing), Some(problem));
+                return Vec::new();
+            }
+        };
+        self.problem = None;
+        match typed {
+            Typed::Group(group) => select(&mut self.groups, Group::all().position(|own| own == group)),
+            Typed::Part(part) => {
+                select(&mut self.parts, DrawnPart::ALL.iter().position(|own| *own == part));
+            }
+            Typed::Customer(customer) => self.customer = Some(customer),
+            Typed::Condition(condition) => return self.work(BreakpointWork::Set(condition)),
+            Typed::Days(days) => return vec![Effect::Request(Request::RunDays(days))],
+        }
+        self.ask()
+    }
+
+    /// What the keys of the breakpoints do.
+    fn act_on_breakpoints(&mut self, action: Action) -> Vec<Effect> {
+        if self.view() != View::Breakpoints {
+            self.show(View::Breakpoints);
+        }
+        match action {
+            Action::RunDays => self.type_in(Some(Expected::Days)),
+            Action::LookBack if self.breakpoints.is_empty() => {
+                vec![Effect::Complain("no breakpoint is set".to_owned())]
+            }
+            Action::LookBack => self.work(BreakpointWork::LookBack),
+            _ => match self.set.selected().and_then(|row| self.breakpoints.get(row)) {
+                Some(own) => self.work(BreakpointWork::Remove(own.number)),
+                None => vec![Effect::Complain("no breakpoint is set".to_owned())],
+            },
+        }
+    }
+}
+
+fn select(table: &mut Table, row: Option<usize>) {
+    if let Some(row) = row {
+        table.act(Action::Close, 1);
+        table.select(row);
+    }
+}
+
+impl ScreenState for Xray {
+    fn renew(&mut self, look: &Look<'_>) {
+        self.list_views();
+        self.list_groups(look.company);
+        (self.last_day, self.is_open) = (look.company.seen.day, look.company.may_look_inside);
+        if !self.is_open {
+            self.focus = XrayPane::Seen;
+        }
+    }
+
+    fn ask_run(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        self.ask()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
+        match news {
+            News::LookedInside(_, found) => self.take(found),
+            _ => Vec::new(),
+        }
+    }
+
+    fn opened(&self) -> usize {
+        usize::from(self.is_open && self.focus != XrayPane::Views)
+    }
+}
+
+impl Paned for Xray {
+    type Name = XrayPane;
+
+    fn panes(&self) -> &'static [XrayPane] {
+        match (self.is_open, self.view().choices()) {
+            (false, _) => &[XrayPane::Seen],
+            (true, Choices::Nothing) => &[XrayPane::Views, XrayPane::Seen],
+            (true, _) => XrayPane::VARIANTS,
+        }
+    }
+
+    fn pane(name: XrayPane) -> &'static dyn Pane<Xray> {
+        match name {
+            XrayPane::Views => &panes::ViewsPane,
+            XrayPane::Choices => &panes::ChoicesPane,
+            XrayPane::Seen => &panes::SeenPane,
+        }
+    }
+
+    fn focused(&self) -> XrayPane {
+        self.focus
+    }
+
+    fn focus_on(&mut self, name: XrayPane) {
+        (self.focus, self.typing, self.problem) = (name, None, None);
+    }
+
+    fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
+        if !self.is_open {
+            return Some(Vec::new());
+        }
+        Some(match action {
+            Action::Left => self.walk(-1),
+            Action::Right => self.walk(1),
+            Action::DayWeekBefore => self.walk(-7),
+            Action::DayWeekAfter => self.walk(7),
+            Action::HoldFactor => self.hold(),
+            Action::TypeChoice => self.type_in(Expected::in_view(self.view())),
+            Action::RunDays | Action::LookBack | Action::RemoveBreakpoint => self.act_on_breakpoints(action),
+            _ => return None,
+        })
+    }
+
+    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let alone = !self.is_open || (self.focus == XrayPane::Seen && area.width < WIDE);
+        let lists = if alone { 0 } else { LISTS.min(area.width / 2) };
+        let [left, right] = Layout::horizontal([Constraint::Length(lists), Constraint::Min(0)]).areas(area);
+        draw_pane(self, XrayPane::Seen, canvas, right, look);
+        if lists == 0 {
+            return;
+        }
+        // Where there is no room for both, the list with the focus stands.
+        let views = View::VARIANTS.len() as u16 + 3;
+        let upper = match (self.focus, area.height >= HIGH && self.choices().is_some()) {
+            (_, true) => views,
+            (XrayPane::Choices, false) => 0,
+            (_, false) => area.height,
+        };
+        let [upper, lower] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(left);
+        draw_pane(self, XrayPane::Views, canvas, upper, look);
+        if self.choices().is_some() {
+            draw_pane(self, XrayPane::Choices, canvas, lower, look);
+        }
+    }
+}

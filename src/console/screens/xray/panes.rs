@@ -1,0 +1,373 @@
+//! The panes of the X-ray: the views, what is chosen in one, and what was seen.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::typing::Expected;
+use super::view::{Choices, View};
+use super::{Xray, XrayPane};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Table;
+use crate::session::{LeadFactor, REFUSED_LOOK};
+
+/// What can be looked at.
+pub struct ViewsPane;
+
+/// The groups, the parts or the breakpoints of the view.
+pub struct ChoicesPane;
+
+/// What was seen.
+pub struct SeenPane;
+
+fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
+    match table {
+        Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
+        _ => vec![Scope::Xray, Scope::List],
+    }
+}
+
+/// Keys of a view.
+fn keys_of(view: View) -> &'static [Action] {
+    match view {
+        View::Leads => &[Action::Left, Action::Right, Action::HoldFactor, Action::TypeChoice],
+        View::Streams => &[Action::TypeChoice],
+        View::Breakpoints => {
+            &[Action::TypeChoice, Action::RunDays, Action::LookBack, Action::RemoveBreakpoint]
+        }
+        _ if Expected::in_view(view).is_none() => &[Action::Left, Action::Right, Action::DayWeekBefore],
+        _ => &[Action::Left, Action::Right, Action::TypeChoice],
+    }
+}
+
+fn figure_of(xray: &Xray) -> Option<Figure> {
+    let view = xray.view();
+    xray.is_open.then(|| Figure { title: view.title().to_owned(), term: view.term(), sql: None, why: None })
+}
+
+impl Pane<Xray> for ViewsPane {
+    fn table<'a>(&self, xray: &'a Xray) -> Option<&'a Table> {
+        Some(&xray.views)
+    }
+
+    fn scopes(&self, xray: &Xray) -> Vec<Scope> {
+        scopes_of_list(Some(&xray.views))
+    }
+
+    fn hints(&self, xray: &Xray) -> Vec<Action> {
+        keys_of(xray.view()).to_vec()
+    }
+
+    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+        figure_of(xray)
+    }
+
+    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        match action {
+            Action::Open => {
+                let is_empty = xray.view() == View::Customer && xray.customer.is_none();
+                match is_empty {
+                    true => return xray.type_in(Some(Expected::Customer)),
+                    false => xray.focus = XrayPane::Seen,
+                }
+            }
+            Action::Sort | Action::Filter => {}
+            action => {
+                let before = xray.view();
+                xray.views.act(action, look.page);
+                if xray.view() != before {
+                    xray.begin_view();
+                }
+            }
+        }
+        xray.ask()
+    }
+
+    fn click(&self, xray: &mut Xray, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        xray.views.select_place(row);
+        xray.begin_view();
+        xray.ask()
+    }
+
+    fn border(&self, _: &Xray, _: Rect, _: &Look<'_>) -> Border {
+        Border { title: "Views".to_owned(), ..Border::default() }
+    }
+
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        xray.views.draw(canvas, seat.area, seat.focused, seat.number);
+    }
+}
+
+impl Pane<Xray> for ChoicesPane {
+    fn table<'a>(&self, xray: &'a Xray) -> Option<&'a Table> {
+        xray.choices()
+    }
+
+    fn table_mut<'a>(&self, xray: &'a mut Xray) -> Option<&'a mut Table> {
+        xray.choices_mut()
+    }
+
+    fn scopes(&self, xray: &Xray) -> Vec<Scope> {
+        scopes_of_list(xray.choices())
+    }
+
+    fn hints(&self, xray: &Xray) -> Vec<Action> {
+        let filter = xray.view().choices() != Choices::Breakpoints;
+        keys_of(xray.view()).iter().copied().chain(filter.then_some(Action::Filter)).collect()
+    }
+
+    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+        figure_of(xray)
+    }
+
+    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let is_filtered = xray.choices().is_some_and(Table::is_filtered);
+        match action {
+            Action::Open => xray.focus = XrayPane::Seen,
+            Action::Close if !is_filtered => xray.focus = XrayPane::Views,
+            Action::Sort => {}
+            action => {
+                if let Some(table) = xray.choices_mut() {
+                    table.act(action, look.page);
+                }
+            }
+        }
+        xray.ask()
+    }
+
+    fn click(&self, xray: &mut Xray, row: usize, _: &Look<'_>) -> Vec<Effect> {
+        if let Some(table) = xray.choices_mut() {
+            table.select_place(row);
+        }
+        xray.ask()
+    }
+
+    fn border(&self, xray: &Xray, _: Rect, _: &Look<'_>) -> Border {
+        Border { title: xray.view().choices().title().to_owned(), ..Border::default() }
+    }
+
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+        if let Some(table) = xray.choices() {
+            table.draw(canvas, seat.area, seat.focused, seat.number);
+        }
+    }
+}
+
+impl Pane<Xray> for SeenPane {
+    fn scopes(&self, xray: &Xray) -> Vec<Scope> {
+        match (xray.is_open, &xray.typing) {
+            (false, _) => vec![Scope::List],
+            (true, Some(_)) => vec![Scope::Field],
+            (true, None) => vec![Scope::Xray, Scope::List],
+        }
+    }
+
+    fn hints(&self, xray: &Xray) -> Vec<Action> {
+        match (xray.is_open, &xray.typing) {
+            (false, _) => Vec::new(),
+            (true, Some(_)) => vec![Action::Commit, Action::Discard],
+            (true, None) => keys_of(xray.view()).to_vec(),
+        }
+    }
+
+    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+        figure_of(xray)
+    }
+
+    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let moves_cursor = xray.view() == View::Leads;
+        match action {
+            Action::Commit | Action::CommitDown => return xray.commit(),
+            Action::Discard => (xray.typing, xray.problem) = (None, None),
+            Action::Open if matches!(xray.view(), View::Customer | View::Breakpoints) => {
+                return xray.type_in(Expected::in_view(xray.view()));
+            }
+            Action::Close => xray.focus = XrayPane::Views,
+            Action::Up if moves_cursor => xray.factor = xray.factor.saturating_sub(1),
+            Action::Down if moves_cursor => {
+                xray.factor = (xray.factor + 1).min(LeadFactor::ALL.len() - 1);
+            }
+            action => drop(xray.scroll.act(action, look.page.into())),
+        }
+        Vec::new()
+    }
+
+    fn key(&self, xray: &mut Xray, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+        xray.problem = None;
+        if let Some(typing) = &mut xray.typing {
+            typing.field.key(key);
+        }
+        Vec::new()
+    }
+
+    fn paste(&self, xray: &mut Xray, text: &str, _: &Look<'_>) -> Vec<Effect> {
+        if let Some(typing) = &mut xray.typing {
+            typing.field.insert(text.trim());
+        }
+        Vec::new()
+    }
+
+    fn border(&self, xray: &Xray, _: Rect, look: &Look<'_>) -> Border {
+        if !xray.is_open {
+            return Border { title: "X-ray".to_owned(), ..Border::default() };
+        }
+        let view = xray.view();
+        let title = match (view, view.choices()) {
+            (View::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
+            (_, Choices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
+            (_, Choices::Parts) => xray.part().map_or(String::new(), |own| format!(" of {}", own.id())),
+            _ => String::new(),
+        };
+        let note = match (&xray.asked, view.has_day()) {
+            (Some(_), _) => "simulating days again …".to_owned(),
+            (None, true) => format!("day {} of {}", xray.day(), xray.last_day),
+            (None, false) => format!("after day {}", xray.last_day),
+        };
+        let label = |action| look.keys.label(action).unwrap_or_default();
+        let days = format!(
+            "{} {} day · {} {} week",
+            label(Action::Left),
+            label(Action::Right),
+            label(Action::DayWeekBefore),
+            label(Action::DayWeekAfter)
+        );
+        let others: Vec<Action> = keys_of(view)
+            .iter()
+            .copied()
+            .filter(|action| !matches!(action, Action::Left | Action::Right | Action::DayWeekBefore))
+            .collect();
+        let others = look.hints(&others);
+        let keys = match (view.has_day(), others.is_empty()) {
+            (true, true) => days,
+            (true, false) => format!("{days} · {others}"),
+            (false, _) => others,
+        };
+        Border { title: format!("{}{title}", capital(view.title())), note, keys, keys_always: true }
+    }
+
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let below = u16::from(xray.typing.is_some()) + u16::from(xray.problem.is_some());
+        let below = below.min(seat.area.height);
+        let area = Rect { height: seat.area.height - below, ..seat.area };
+        draw_lines(xray, canvas, Seat { area, ..seat }, look);
+        let mut rows = rows_of(Rect { y: area.bottom(), height: below, ..seat.area });
+        if let (Some(problem), Some(row)) = (&xray.problem, rows.next()) {
+            canvas.text(row, problem, Role::Bad);
+        }
+        if let (Some(typing), Some(row)) = (&xray.typing, rows.next()) {
+            let prompt = typing.expected.prompt();
+            let before = (prompt.len() as u16 + 1).min(row.width);
+            canvas.text(row, prompt, Role::Key);
+            typing.field.draw(canvas, Rect { x: row.x + before, width: row.width - before, ..row });
+        }
+    }
+}
+
+/// The words that are shown, broken into the width, with the cursor on a factor of the leads.
+fn draw_lines(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    let (lines, role) = lines_of(xray, look);
+    let cursor = (xray.view() == View::Leads && role == Role::Text).then(|| LeadFactor::ALL[xray.factor]);
+    let is_marked = |line: &str| {
+        let mut words = line.split_whitespace();
+        let letter = words.next();
+        // Both the letter and its name: the equation above begins with a letter, too.
+        cursor.is_some_and(|own| letter == Some(own.letter()) && line.contains(own.in_words()))
+    };
+    let width = usize::from(seat.area.width);
+    let broken = |(at, line): (usize, &String)| {
+        let role = match (at, is_marked(line)) {
+            (_, true) if seat.focused => Role::Selection,
+            (_, true) => Role::SelectionIdle,
+            (0, _) if role == Role::Text => Role::Header,
+            _ => role,
+        };
+        broken_into(line, width).into_iter().map(move |part| (part, role))
+    };
+    let rows: Vec<(String, Role)> = lines.iter().enumerate().flat_map(broken).collect();
+    let height = usize::from(seat.area.height);
+    let from = xray.scroll.within(rows.len().saturating_sub(height));
+    if seat.focused {
+        canvas.page = seat.area.height.max(1);
+    }
+    for (row, (text, role)) in rows_of(seat.area).zip(rows.iter().skip(from)) {
+        canvas.text(row, text, *role);
+    }
+}
+
+/// The words that are shown.
+fn lines_of(xray: &Xray, look: &Look<'_>) -> (Vec<String>, Role) {
+    let one = |text: String| vec![text];
+    if !xray.is_open {
+        return (one(capital(REFUSED_LOOK) + "."), Role::Dim);
+    }
+    let wanted = xray.wanted();
+    match &xray.seen {
+        Some(seen) if Some(&seen.question) == wanted.as_ref() => match &seen.found {
+            Ok(lines) => (lines.clone(), Role::Text),
+            Err(problem) => (one(problem.clone()), Role::Bad),
+        },
+        _ if wanted.is_some() => (one("simulating days again …".to_owned()), Role::Dim),
+        _ if xray.last_day == 0 => (one("no day has run yet".to_owned()), Role::Dim),
+        _ if xray.view() == View::Customer => {
+            let key = look.keys.label(Action::TypeChoice).unwrap_or_default();
+            (one(format!("{key} types the number of a customer")), Role::Dim)
+        }
+        _ => (one("nothing is chosen".to_owned()), Role::Dim),
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Columns by which what goes on in the next row is set back.
+const SET_BACK: usize = 6;
+
+/// What stands between two columns of a table at least.
+const GAP: &str = "  ";
+
+/// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
+/// each other; the cells that do not go on in the next row.
+fn broken_into(line: &str, width: usize) -> Vec<String> {
+    if line.width() <= width || !line.trim_start().contains(GAP) {
+        return wrapped(line, width);
+    }
+    let mut rows = Vec::new();
+    let mut rest = line.to_owned();
+    while rest.width() > width && width > 2 * SET_BACK {
+        let gaps = rest.match_indices(GAP).map(|(at, _)| at);
+        let fits = |at: &usize| rest[..*at].width() <= width && !rest[..*at].trim().is_empty();
+        let Some(cut) = gaps.filter(fits).last() else { break };
+        rows.push(rest[..cut].trim_end().to_owned());
+        rest = format!("{}{}", " ".repeat(SET_BACK), rest[cut..].trim_start());
+        if rest.trim().is_empty() {
+            return rows;
+        }
+    }
+    rows.extend(wrapped(&rest, width));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_tables_keep_their_columns_as_far_as_they_fit() {
+        let rows = |line: &str| broken_into(line, 26);
+        assert_eq!(rows("  plan  price  quality  required"), ["  plan  price  quality", "      required"]);
+        assert_eq!(rows("  A     12.00  0.21     0.26"), ["  A     12.00  0.21", "      0.26"]);
+        assert_eq!(rows("  words that are no row of a table"), ["  words that are no row of", "  a table"]);
+        assert_eq!(rows("short  line"), ["short  line"]);
+        for width in 0..40 {
+            broken_into("  plan  price  averyveryverylongwordthatfitsnowhere  required", width);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What is typed on the X-ray screen: a group, a part, the number of a customer, a condition, a number of days.
+
+use super::view::{Choices, View};
+use crate::console::widgets::Field;
+use crate::notation::nearest;
+use crate::session::{Condition, ConditionProblem, DrawnPart};
+use crate::world::identifiers::Group;
+
+/// What is expected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expected {
+    /// A group.
+    Group,
+    /// A part of the world that draws.
+    Part,
+    /// The number of a customer.
+    Customer,
+    /// The condition of a breakpoint.
+    Condition,
+    /// A number of days.
+    Days,
+}
+
+/// What was typed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Typed {
+    /// A group.
+    Group(Group),
+    /// A part of the world that draws.
+    Part(DrawnPart),
+    /// The number of a customer.
+    Customer(u32),
+    /// The condition of a breakpoint.
+    Condition(Condition),
+    /// A number of days, at least 1.
+    Days(u32),
+}
+
+/// A line that is being typed.
+#[derive(Debug)]
+pub struct TypedLine {
+    /// What is expected.
+    pub expected: Expected,
+    /// The line.
+    pub field: Field,
+}
+
+impl Expected {
+    /// What can be typed in a view; none where there is nothing to choose.
+    pub fn in_view(view: View) -> Option<Expected> {
+        match (view, view.choices()) {
+            (View::Customer, _) => Some(Expected::Customer),
+            (_, Choices::Groups) => Some(Expected::Group),
+            (_, Choices::Parts) => Some(Expected::Part),
+            (_, Choices::Breakpoints) => Some(Expected::Condition),
+            (_, Choices::Nothing) => None,
+        }
+    }
+
+    /// What stands before the line.
+    pub fn prompt(self) -> &'static str {
+        match self {
+            Expected::Group => "group",
+            Expected::Part => "part",
+            Expected::Customer => "customer",
+            Expected::Condition => "stop when",
+            Expected::Days => "days to run",
+        }
+    }
+
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// What is expected, or what was meant perhaps.
+    pub fn read(self, text: &str) -> Result<Typed, String> {
+        let text = text.trim();
+        match self {
+            Expected::Group => {
+                let found = Group::all().find(|group| group.id().eq_ignore_ascii_case(text));
+                let ids = || Group::all().map(Group::id);
+                found.map(Typed::Group).ok_or_else(|| unknown("group", text, &nearest(text, ids())))
+            }
+            Expected::Part => {
+                let ids = || DrawnPart::ALL.into_iter().map(DrawnPart::id);
+                let found = DrawnPart::parse(&text.to_ascii_lowercase());
+                found.map(Typed::Part).ok_or_else(|| unknown("part", text, &nearest(text, ids())))
+            }
+            Expected::Customer => text
+                .parse()
+                .map(Typed::Customer)
+                .map_err(|_| "type the number of a customer, for instance 4711".to_owned()),
+            Expected::Condition => text.parse().map(Typed::Condition).map_err(problem_in_words),
+            Expected::Days => {
+                let days = text.parse().ok().filter(|days| *days > 0);
+                days.map(Typed::Days).ok_or_else(|| "type a number of days, for instance 28".to_owned())
+            }
+        }
+    }
+}
+
+fn problem_in_words(problem: ConditionProblem) -> String {
+    problem.message
+}
+
+fn unknown(what: &str, text: &str, near: &[&str]) -> String {
+    match near {
+        [] => format!("there is no {what} {text}"),
+        near => format!("there is no {what} {text}; did you mean {}?", near.join(" or ")),
+    }
+}

@@ -40,13 +40,14 @@ fn company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     if days == STRESSED {
         let key = "reputation.reputation_quality_cancel_damage";
         session.set_parameter(key, &json!(1), None).expect("departures hurt a thousand times as much");
+        call(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
     }
     run(&mut session, days.saturating_sub(28));
     session
 }
 
 /// Days of a run in which departures hurt so much that reputation meets its floor.
-const STRESSED: u32 = 36;
+const STRESSED: u32 = 50;
 
 fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")

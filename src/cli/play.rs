@@ -16,10 +16,9 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Goal, Library, Mode, NewRun, RunError, Session,
+    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Library, Mode, NewRun, RunError, Session,
     Storage, Study, find_run, steady,
 };
-use crate::world::fault::Fault;
 
 /// Options of `play`.
 #[derive(Debug, Args, Clone, Default, PartialEq)]

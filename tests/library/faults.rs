@@ -104,7 +104,7 @@ fn symptom(fault: Fault) -> Symptom {
         Fault::TenureInDays => at(12, |session| {
             let mood = session.satisfaction_equation(group("S1"), Some(12)).expect("a look");
             let most = parameter(session, "quality.stickiness_log_scale")
-                * (1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale")).ln();
+                * libm::log(1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale"));
             mood.term(MoodTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
@@ -147,7 +147,7 @@ fn symptom(fault: Fault) -> Symptom {
             let mut own = |day| session.quality_equation(group("S1"), Some(day)).expect("a look").own;
             let grown = own(5) - own(4);
             let gain = parameter(session, "development.targeted_dev_improvement_coef")
-                * (1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale")).ln();
+                * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
             (grown / gain - 1.0).abs() > 1e-9
         }),
     }

@@ -16,7 +16,7 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Goal, Library, Mode, NewRun, RunError, Session,
+    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Library, Mode, NewRun, RunError, Session,
     Storage, Study, find_run, steady,
 };
 
@@ -24,7 +24,7 @@ use crate::session::{
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct Options {
     /// Open a run; `latest` is the newest unfinished one.
-    #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set"])]
+    #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
     run: Option<String>,
     /// Follow a run read-only while somebody else plays it.
     #[arg(long, requires = "run")]
@@ -56,6 +56,9 @@ pub struct Options {
     /// Set a parameter of a debug run; can be repeated.
     #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
     set: Vec<(String, String)>,
+    /// Make one mechanism of a debug run wrong, without saying which.
+    #[arg(long, value_name = "N", value_parser = parse_fault)]
+    planted: Option<Fault>,
     /// Theme of the console.
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
@@ -84,6 +87,12 @@ fn parse_mode(text: &str) -> Result<Mode, String> {
     })
 }
 
+fn parse_fault(text: &str) -> Result<Fault, String> {
+    let number = text.parse::<u32>().unwrap_or(0);
+    Fault::try_from(number)
+        .map_err(|_| format!("{text} is no number of a fault; choose one from 1 to {}", Fault::ALL.len()))
+}
+
 impl Options {
     fn asks_for_new_run(&self) -> bool {
         self.new
@@ -94,6 +103,7 @@ impl Options {
             || self.mode.is_some()
             || self.participant.is_some()
             || !self.set.is_empty()
+            || self.planted.is_some()
     }
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
@@ -105,6 +115,7 @@ impl Options {
             cash: self.cash,
             scenario: self.scenario.clone().unwrap_or(standard.scenario),
             overrides: self.set.clone(),
+            fault: self.planted,
             mode: self.mode.unwrap_or(standard.mode),
             participant: self.participant.clone(),
             agreed: self.consent.then(|| ConsentGiven::on_paper().now()),

@@ -199,6 +199,7 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
         cash: spec.cash.or(policy.start.cash),
         scenario: spec.scenario.clone().or(policy.start.scenario.clone()).unwrap_or(standard.scenario),
         overrides,
+        fault: None,
         mode: Mode::Debug,
         participant: None,
         agreed: None,

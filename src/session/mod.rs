@@ -150,6 +150,7 @@ pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
 pub use crate::world::enterprise::Answer as CompanyAnswer;
 pub use crate::world::events::{Category, EndCause, Severity, Source};
+pub use crate::world::fault::Fault;
 pub use crate::world::market::competitors::Event as RivalEvent;
 pub use crate::world::market::drift::Expectation;
 pub use crate::world::market::reputation::{ReputationCause, Spill, SpillOver};

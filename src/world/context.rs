@@ -49,7 +49,7 @@ pub(crate) mod tests {
         check: impl FnOnce(&DayContext<'_>) -> R,
     ) -> R {
         let ads = AdLoad::of(&settings.ads_strength, params);
-        let tenure = TenureTable::up_to(600, &params.quality);
+        let tenure = TenureTable::up_to(600, params);
         let (ads, tenure) = (&ads, &tenure);
         check(&DayContext { morning, settings, service, service_penalty: 0.0, ads, tenure, params, streams })
     }

@@ -102,7 +102,7 @@ pub fn step_day_watched(
         service: &service,
         service_penalty: service_penalty(service.overload, service.outage, &params.quality),
         ads: &AdLoad::of(&settings.ads_strength, params),
-        tenure: &TenureTable::up_to(day, &params.quality),
+        tenure: &TenureTable::up_to(day, params),
         params,
         streams,
     };

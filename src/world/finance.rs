@@ -2,7 +2,8 @@
 
 use super::canonical::canonical;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
-use super::identifiers::Plan;
+use super::fault::Fault;
+use super::identifiers::{ByPlan, Plan};
 use super::morning::Morning;
 use super::params::Params;
 use super::product::usage::Metered;
@@ -32,10 +33,12 @@ impl Finance {
 
 /// Cost of compute: units used on each plan times the unit cost of its model today, in dollars.
 pub fn compute_cost(metered: &Metered, morning: &Morning, params: &Params) -> f64 {
-    Plan::ALL
-        .into_iter()
-        .map(|plan| metered.by_plan[plan] as f64 * params.model(morning.core.tiers[plan]).unit_cost)
-        .sum()
+    let tiers = match params.has_fault(Fault::ComputeOfOnePlan) {
+        true => ByPlan([morning.core.tiers[Plan::A]; Plan::ALL.len()]),
+        false => morning.core.tiers,
+    };
+    let cost = |plan| metered.by_plan[plan] as f64 * params.model(tiers[plan]).unit_cost;
+    Plan::ALL.into_iter().map(cost).sum()
 }
 
 /// Books the running costs of a day and returns their sum, in dollars. The general ones are booked even when
@@ -76,7 +79,7 @@ pub fn pay_running_costs(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identifiers::{ByPlan, Channel, Group};
+    use crate::identifiers::{Channel, Group};
     use crate::morning::tests::morning;
 
     #[test]

@@ -10,6 +10,7 @@ pub mod customers;
 pub mod day;
 pub mod enterprise;
 pub mod events;
+pub mod fault;
 mod finance;
 pub mod held;
 pub mod identifiers;

@@ -75,7 +75,7 @@ impl Company {
             service: &ServiceDay::quiet(),
             service_penalty: 0.0,
             ads: &AdLoad::of(&settings.ads_strength, &self.params),
-            tenure: &TenureTable::up_to(DAYS, &self.params.quality),
+            tenure: &TenureTable::up_to(DAYS, &self.params),
             params: &self.params,
             streams: &self.streams,
         });

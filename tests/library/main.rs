@@ -5,6 +5,7 @@ mod breakpoints;
 mod difference;
 mod durability;
 mod enterprise;
+mod faults;
 mod hidden;
 mod notebook;
 mod overrides;

@@ -26,6 +26,7 @@ use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::now;
 use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::world::MECHANICS;
+use crate::world::fault::Fault;
 use crate::world::params::Params;
 
 /// What a new run is to be. What is left out comes from the scenario, then from the defaults.
@@ -41,6 +42,8 @@ pub struct NewRun {
     pub scenario: String,
     /// Single parameters, `(table.key, value)`; debug runs only.
     pub overrides: Vec<(String, String)>,
+    /// The mechanism that is to be wrong; debug runs only.
+    pub fault: Option<Fault>,
     /// Mode.
     pub mode: Mode,
     /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
@@ -87,6 +90,7 @@ impl Default for NewRun {
             cash: None,
             scenario: DEFAULT_SCENARIO.to_owned(),
             overrides: Vec::new(),
+            fault: None,
             mode: Mode::Sandbox,
             participant: None,
             agreed: None,
@@ -207,7 +211,12 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         let message = format!("parameters can be set in debug runs only; this one would be {}", new.mode);
         return Err(RunError::NotPossible(message));
     }
-    let params = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
+    if new.fault.is_some() && new.mode != Mode::Debug {
+        let message = format!("a fault can be planted in debug runs only; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    let sound = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
+    let params = Params { fault: new.fault, ..sound };
     let (days, cash) = scenario.terms(&params);
     let days = new.days.unwrap_or(days);
     check_days(days).map_err(RunError::NotPossible)?;
@@ -250,6 +259,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         study,
         rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
         earlier,
+        fault: new.fault,
         parameters: differences(&params),
     };
     Ok((manifest, params))

@@ -17,6 +17,7 @@ pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
         cash: manifest.cash,
         scenario: manifest.scenario,
         overrides: manifest.parameters,
+        fault: manifest.fault,
         parameters_digest: manifest.parameters_digest,
         mode: manifest.mode,
         participant: manifest.participant,

@@ -14,6 +14,7 @@ use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record};
 use crate::world::MECHANICS;
+use crate::world::fault::Fault;
 use crate::world::params::{ParameterError, ParameterSource, Params, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
@@ -51,6 +52,9 @@ pub struct Manifest {
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
+    /// The mechanism that is wrong on purpose; debug runs only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault: Option<Fault>,
     /// Which text the person agreed to, and when; none if none was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub consent: Option<Consent>,
@@ -116,6 +120,11 @@ impl Manifest {
                 own: MECHANICS,
             });
         }
+        if self.fault.is_some() && self.mode != Mode::Debug {
+            let message =
+                format!("run {} is said to have a planted fault, which only a debug run can have", self.id);
+            return Err(RunError::NotPossible(message));
+        }
         Ok(self)
     }
 
@@ -154,6 +163,7 @@ impl Manifest {
             study: start.study,
             rules: start.rules,
             earlier: start.earlier_runs,
+            fault: start.fault,
             parameters: start.overrides,
         }
         .understood()
@@ -193,13 +203,13 @@ impl Manifest {
         self.study.as_ref().is_some_and(|study| study.practice)
     }
 
-    /// Whether the run's parameters are others than those of the shipped scenario whose name it has.
+    /// Whether the run is played by other rules than the shipped scenario whose name it has: parameters, or a fault.
     pub(in crate::session) fn has_own_parameters(&self) -> bool {
         let shipped = Configuration::shipped();
         let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
             // Lists of runs ask this of every run, and nearly all of them are of this kind.
-            "default" => !self.parameters.is_empty(),
+            "default" => !self.parameters.is_empty() || self.fault.is_some(),
             _ => as_shipped().is_none_or(|params| params.digest() != self.parameters_digest),
         }
     }
@@ -217,8 +227,9 @@ impl Manifest {
         };
         let text = toml::to_string(&self.parameters).expect("a table reads back");
         let over = ParameterSource { name: "run.toml".to_owned(), text };
-        let params = Params::load(&shipped_sources(), &[over])
+        let loaded = Params::load(&shipped_sources(), &[over])
             .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
+        let params = Params { fault: self.fault, ..loaded };
         let own = params.digest();
         if own == self.parameters_digest { Ok(params) } else { Err(other(own)) }
     }
@@ -303,6 +314,7 @@ mod tests {
             study: None,
             rules: None,
             earlier: Vec::new(),
+            fault: None,
             parameters: differences(params),
         }
     }

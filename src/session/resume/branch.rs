@@ -19,7 +19,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, a baseline branch, and one that is no debug run though parameters
-    /// were set in its past; `week_unknown`, `not_saved`.
+    /// were set in its past or a fault was planted; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
@@ -54,7 +54,8 @@ fn not_saved(error: RunError) -> Refusal {
 /// Starts a run beside another that shares some of its lines, and opens it.
 ///
 /// # Errors
-/// `not_in_this_mode` for a baseline branch, and for one that is no debug run though parameters were set in its past;
+/// `not_in_this_mode` for a baseline branch, and for one that is no debug run though parameters were set in its past or a fault
+/// was planted;
 /// `not_saved`.
 pub(in crate::session) fn branch_of(
     folder: &Path,
@@ -64,6 +65,10 @@ pub(in crate::session) fn branch_of(
 ) -> Result<Session, Refusal> {
     if mode == Mode::Baseline {
         return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
+    }
+    if mode != Mode::Debug && parent.fault.is_some() {
+        let message = "it has a planted fault, so a branch of it is a debug run";
+        return Err(Refusal::new("not_in_this_mode", message));
     }
     let shared = shared_lines(lines);
     if mode != Mode::Debug && shared.iter().any(|line| matches!(line.record, Record::Override(_))) {

@@ -3,7 +3,7 @@
 use crate::world::day::watch::SettledReputation;
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::market::reputation::{ReputationBook, Spill, called_change, daily_change, spill};
-use crate::world::params::{Params, Reputation};
+use crate::world::params::Params;
 use crate::world::retention::renewal::damages;
 
 /// Departures of a day and what they took.
@@ -61,7 +61,7 @@ impl ReputationDay {
     pub(in crate::session) fn of(morning: &ReputationBook, settled: &SettledReputation<'_>) -> ReputationDay {
         let params = settled.day.params;
         let law = &params.reputation;
-        let mut writing = Writing { book: morning.clone(), law, bounds: ByGroup::default() };
+        let mut writing = Writing { book: morning.clone(), params, bounds: ByGroup::default() };
         let mut seen = ReputationDay {
             before: ByGroup::from_fn(|group| morning.of(group)),
             least: LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs },
@@ -84,10 +84,10 @@ impl ReputationDay {
         let SettledReputation { moods, market, .. } = settled;
         for group in Group::all().filter(|group| moods[*group].count > 0) {
             let mood = &moods[group];
-            let change = daily_change(mood, writing.law);
+            let change = daily_change(mood, &params.reputation);
             self.own[group] = OwnChange {
                 subscribers: mood.count,
-                called: called_change(mood, writing.law),
+                called: called_change(mood, &params.reputation),
                 counts: change.is_some(),
             };
             let Some(change) = change else { continue };
@@ -111,7 +111,7 @@ impl ReputationDay {
 /// Writes into a book as the world did.
 struct Writing<'a> {
     book: ReputationBook,
-    law: &'a Reputation,
+    params: &'a Params,
     /// What bounds added to changes.
     bounds: ByGroup<f64>,
 }
@@ -119,7 +119,7 @@ struct Writing<'a> {
 impl Writing<'_> {
     fn write(&mut self, group: Group, change: f64) {
         let plain = self.book.of(group) + change;
-        self.book.move_by(group, change, self.law);
+        self.book.move_by(group, change, self.params);
         self.bounds[group] += self.book.of(group) - plain;
     }
 

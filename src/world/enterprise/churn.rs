@@ -152,7 +152,7 @@ impl Step<'_> {
         let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
         let law = &self.day.params.reputation;
         let damage = event_damage(self.day.morning.subscribers[group], u, law);
-        self.reputation.write((group, ReputationCause::LostCompany), &[-damage], law, self.told);
+        self.reputation.write((group, ReputationCause::LostCompany), &[-damage], self.day.params, self.told);
         damage
     }
 }

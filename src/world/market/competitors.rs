@@ -3,6 +3,7 @@
 use super::drift::DriftTotals;
 use crate::canonical::canonical;
 use crate::events::Severity;
+use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Competitor, Params};
 use crate::product::Product;
@@ -77,11 +78,11 @@ pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, law: &Competito
 
 /// An event of a sampled size when rivals could copy `u` of the bank: the larger of both applies, and what was
 /// copied leaves the bank.
-pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, law: &Competitor) -> Event {
+pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Params) -> Event {
     let feedback = u * *bank;
-    let by_feedback = feedback > sampled;
+    let by_feedback = (feedback > sampled) != params.has_fault(Fault::SmallerRivalMove);
     if by_feedback {
-        *bank = (*bank - feedback).max(law.bank_min);
+        *bank = (*bank - feedback).max(params.competitor.bank_min);
     }
     Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
 }
@@ -155,7 +156,7 @@ pub fn react(
     let law = &params.competitor;
     let last_event = events.last().map(|event| event.day);
     let Some(made) = move_of(day, total_days, last_event, params, streams) else { return };
-    let event = resolve_event(day, made.sampled, made.u, &mut product.shared_bank, law);
+    let event = resolve_event(day, made.sampled, made.u, &mut product.shared_bank, params);
     raise_expectations(event.boost, drift, params);
     for (group, v) in made.shares(&product.group_bank, law) {
         drain_group(group, v, product, drift, law);
@@ -202,12 +203,13 @@ mod tests {
 
     /// An event with given draws: log-normal size and the fraction of the range of u.
     fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
-        let law = Params::shipped().competitor;
+        let params = Params::shipped();
+        let law = &params.competitor;
         let u = law.competitor_feedback_u_min
             + fraction * (law.competitor_feedback_u_max - law.competitor_feedback_u_min);
         let mut bank = bank;
-        let event = resolve_event(day, sampled_boost(size, day, 500, &law), u, &mut bank, &law);
-        (event, bank, severity(event.boost, &law))
+        let event = resolve_event(day, sampled_boost(size, day, 500, law), u, &mut bank, &params);
+        (event, bank, severity(event.boost, law))
     }
 
     #[test]
@@ -272,14 +274,15 @@ mod tests {
 
     #[test]
     fn sizes_are_clamped_before_they_grow() {
-        let law = Params::shipped().competitor;
-        near(sampled_boost(0.01, 250, 500, &law), 0.02592750533049);
-        near(sampled_boost(0.01, 470, 500, &law), 0.04);
-        near(sampled_boost(5.0, 470, 500, &law), 0.69103125);
-        near(sampled_boost(1e-9, 470, 500, &law), 0.0078975);
-        near(sampled_boost(0.01, 467, 497, &law), 0.04);
+        let params = Params::shipped();
+        let law = &params.competitor;
+        near(sampled_boost(0.01, 250, 500, law), 0.02592750533049);
+        near(sampled_boost(0.01, 470, 500, law), 0.04);
+        near(sampled_boost(5.0, 470, 500, law), 0.69103125);
+        near(sampled_boost(1e-9, 470, 500, law), 0.0078975);
+        near(sampled_boost(0.01, 467, 497, law), 0.04);
         let mut bank = 1.0;
-        let event = resolve_event(60, sampled_boost(0.01, 60, 500, &law), 0.35, &mut bank, &law);
+        let event = resolve_event(60, sampled_boost(0.01, 60, 500, law), 0.35, &mut bank, &params);
         assert!(event.by_feedback);
         near(event.boost, 0.35);
         near(bank, 0.65);

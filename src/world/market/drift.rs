@@ -3,6 +3,7 @@
 use crate::canonical::canonical;
 use crate::customers::Customers;
 use crate::customers::columns::Block;
+use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Drift, IndividualDrift, Params};
 
@@ -79,16 +80,21 @@ pub fn apply(
     if !is_drift_day(day, law) {
         return false;
     }
-    totals.global_quality += step_of_everyone(law);
+    let times = if params.has_fault(Fault::DriftTwice) { 2 } else { 1 };
+    (0..times).for_each(|_| move_totals(totals, params));
+    customers.sweep(|group, _, block| {
+        drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);
+    });
+    true
+}
+
+fn move_totals(totals: &mut DriftTotals, params: &Params) {
+    totals.global_quality += step_of_everyone(&params.drift);
     for group in Group::all() {
         let step = step_of_group(group, params);
         totals.quality[group] += step.quality;
         totals.c_max[group] += step.c_max;
     }
-    customers.sweep(|group, _, block| {
-        drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);
-    });
-    true
 }
 
 fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64, law: &Drift) {

@@ -2,6 +2,7 @@
 
 use crate::canonical::canonical;
 use crate::events::{Facts, Notice, Phase, Reading, Trend};
+use crate::fault::Fault;
 use crate::identifiers::Group;
 use crate::params::{MacroEconomy, Params};
 use crate::random::{Part, Streams};
@@ -83,6 +84,9 @@ impl Economy {
     pub fn multiplier(&self, group: Group, dimension: Dimension, params: &Params) -> f64 {
         let beta = &params.group(group).macro_beta;
         let beta = match dimension {
+            Dimension::LeadGeneration if params.has_fault(Fault::EconomyReversed) => {
+                beta.lead_generation.map(|beta| -beta)
+            }
             Dimension::LeadGeneration => beta.lead_generation,
             Dimension::WillingnessToPay => beta.willingness_to_pay,
             Dimension::DealVelocity => beta.deal_velocity,

@@ -6,6 +6,7 @@ use super::social::own::social_multiplier;
 use super::surges::surge_factor;
 use crate::canonical::canonical;
 use crate::events::Source;
+use crate::fault::Fault;
 use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};
 use crate::settings::TargetedAds;
@@ -109,9 +110,14 @@ pub fn word_of_mouth<'a>(
     context: &'a LeadContext<'_>,
 ) -> impl Iterator<Item = (Group, f64)> + use<'a> {
     let &LeadContext { market, subscribers, params, .. } = context;
+    let is_swapped = params.has_fault(Fault::ReferralsSwapped);
+    let rate = move |source| {
+        let (from, to) = if is_swapped { (group, source) } else { (source, group) };
+        params.referral_rate(from, to)
+    };
     Group::all()
         .filter(|source| market.is_known(*source) && subscribers[*source] > 0)
-        .map(move |source| (source, f64::from(subscribers[source]) * params.referral_rate(source, group)))
+        .map(move |source| (source, f64::from(subscribers[source]) * rate(source)))
 }
 
 /// Factors of a discovered group.

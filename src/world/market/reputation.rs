@@ -1,6 +1,7 @@
 //! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
 
 use crate::canonical::canonical;
+use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Params, Reputation};
 use crate::retention::satisfaction::Mood;
@@ -74,9 +75,11 @@ impl ReputationBook {
     }
 
     /// Adds a change, clamps to 0..=1 and then to the floor.
-    pub fn move_by(&mut self, group: Group, change: f64, law: &Reputation) {
+    pub fn move_by(&mut self, group: Group, change: f64, params: &Params) {
+        let law = &params.reputation;
         let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
-        self.values[group] = moved.max(law.reputation_floor);
+        let has_floor = !params.has_fault(Fault::ReputationWithoutFloor);
+        self.values[group] = if has_floor { moved.max(law.reputation_floor) } else { moved };
     }
 
     /// Adds changes, one after the other, and tells what they came to.
@@ -84,11 +87,11 @@ impl ReputationBook {
         &mut self,
         (group, cause): (Group, ReputationCause),
         changes: &[f64],
-        law: &Reputation,
+        params: &Params,
         told: &mut OnWrite<'_>,
     ) {
         let before = self.of(group);
-        changes.iter().for_each(|change| self.move_by(group, *change, law));
+        changes.iter().for_each(|change| self.move_by(group, *change, params));
         told(&ReputationWrite { group, cause, changes, before, after: self.of(group) });
     }
 }
@@ -132,6 +135,7 @@ pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
     let law = &params.reputation;
     let weight = params.reputation_weight(from, to);
     let change = change * weight * law.cross_group_spillover_factor;
+    let change = if params.has_fault(Fault::SpillOverReversed) { -change } else { change };
     Spill { from, to, weight, change, counts: weight > 0.0 && change.abs() > law.cross_delta_min_abs }
 }
 
@@ -165,7 +169,7 @@ pub fn contribute(
     let law = &params.reputation;
     for group in Group::all().filter(|group| moods[*group].count > 0) {
         let Some(change) = daily_change(&moods[group], law) else { continue };
-        book.write((group, ReputationCause::Mood(moods[group])), &[change], law, told);
+        book.write((group, ReputationCause::Mood(moods[group])), &[change], params, told);
         if !is_known(group) {
             continue;
         }
@@ -174,7 +178,7 @@ pub fn contribute(
             if spill.counts {
                 let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
                 let cause = ReputationCause::SpillOver(SpillOver { source: group, change, weight, factor });
-                book.write((other, cause), &[spill.change], law, told);
+                book.write((other, cause), &[spill.change], params, told);
             }
         }
     }
@@ -253,7 +257,8 @@ mod tests {
 
     #[test]
     fn a_departure_hurts_a_small_group_more() {
-        let law = Params::shipped().reputation;
+        let params = Params::shipped();
+        let law = &params.reputation;
         for (count, scale) in [
             (0, 0.5),
             (1, 0.5),
@@ -264,17 +269,17 @@ mod tests {
             (5000, 0.00245754248),
             (100_000, 0.000166096405),
         ] {
-            assert!((event_scale(count, &law) - scale).abs() < 1e-11, "{count}");
+            assert!((event_scale(count, law) - scale).abs() < 1e-11, "{count}");
         }
         for (satisfaction, count, u, damage) in [
             (-0.3, 1000, 0.5, 1.046407350e-5),
             (0.2, 1000, 0.5, 3.737169107e-6),
             (-1.0, 50, 0.0, 4.444536749e-4),
         ] {
-            assert!((cancel_damage(satisfaction, count, u, &law) / damage - 1.0).abs() < 1e-9);
+            assert!((cancel_damage(satisfaction, count, u, law) / damage - 1.0).abs() < 1e-9);
         }
-        let mut book = ReputationBook::opening(&Params::shipped());
-        book.move_by(group("S1"), -cancel_damage(-0.3, 10, 0.25, &law), &law);
+        let mut book = ReputationBook::opening(&params);
+        book.move_by(group("S1"), -cancel_damage(-0.3, 10, 0.25, law), &params);
         assert_book(&book, &[("S1", 0.499738398)]);
     }
 

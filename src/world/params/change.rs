@@ -55,7 +55,8 @@ impl Params {
         if let Value::Table(nested) = nested {
             override_table(&mut tables, nested).map_err(|(key, problem)| wrong(&key, problem))?;
         }
-        let other = checked(tables).map_err(|(key, problem)| wrong(&key, problem))?;
+        let checked = checked(tables).map_err(|(key, problem)| wrong(&key, problem))?;
+        let other = Params { fault: self.fault, ..checked };
         match self.differences(&other).into_iter().find(|own| acts_only_at_the_start(&own.key)) {
             None => Ok(other),
             Some(own) => {

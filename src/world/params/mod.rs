@@ -33,6 +33,7 @@ pub use retention::*;
 pub use run::*;
 pub use social::*;
 
+use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
 /// All parameters, one field per table of the files in `configs/world`.
@@ -114,6 +115,10 @@ pub struct Params {
     pub reputation_influence: BTreeMap<String, Vec<f64>>,
     /// Words of customer profiles.
     pub personas: Personas,
+    /// The mechanism that is wrong on purpose, in a debug run that asks for it; in no table, so that nothing but the start of a
+    /// run sets it.
+    #[serde(skip)]
+    pub fault: Option<Fault>,
 }
 
 /// One advertising channel.
@@ -172,11 +177,14 @@ impl Params {
         &self.research_tier[usize::from(tier) - 1]
     }
 
-    /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON.
+    /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON, and the number of the
+    /// fault if there is one.
     ///
     /// A run records it, and is never silently continued under other parameters.
     pub fn digest(&self) -> String {
-        let canonical = serde_json::to_vec(self).expect("parameters hold only strings and finite numbers");
+        let mut canonical =
+            serde_json::to_vec(self).expect("parameters hold only strings and finite numbers");
+        canonical.extend(self.fault.into_iter().flat_map(|fault| fault.number().to_le_bytes()));
         blake3::hash(&canonical).to_hex()[..16].to_owned()
     }
 }

@@ -1,6 +1,7 @@
 //! Development (`docs/mechanics/product/development.md`).
 
 use super::Product;
+use crate::fault::Fault;
 use crate::params::{Development, Params};
 use crate::random::{Part, Streams};
 use crate::settings::Settings;
@@ -33,7 +34,10 @@ pub fn improve(day: u32, product: &mut Product, settings: &Settings, params: &Pa
     product.shared_bonus += gain + daily_noise(day, params, streams);
     product.shared_bank += gain;
     for (&group, &spend) in &settings.targeted_development.targeted_spend {
-        let gain = targeted_development_gain(spend, &params.development);
+        let gain = match params.has_fault(Fault::TargetedGainAsGeneral) {
+            true => development_gain(spend, &params.development),
+            false => targeted_development_gain(spend, &params.development),
+        };
         product.group_bonus[group] += gain;
         product.group_bank[group] += gain;
     }

@@ -1,5 +1,6 @@
 //! Delivered and perceived quality, one function per term (`docs/mechanics/product/quality.md`).
 
+use crate::fault::Fault;
 use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
 /// Quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
@@ -37,8 +38,10 @@ pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
 }
 
 /// Bonus of tenure: 0.05 ln(1 + days / 30), 0 on the first day.
-pub fn tenure_bonus(days_subscribed: u32, quality: &Quality) -> f64 {
-    quality.stickiness_log_scale * libm::log(1.0 + f64::from(days_subscribed) / quality.stickiness_days_scale)
+pub fn tenure_bonus(days_subscribed: u32, params: &Params) -> f64 {
+    let Quality { stickiness_log_scale, stickiness_days_scale, .. } = params.quality;
+    let scale = if params.has_fault(Fault::TenureInDays) { 1.0 } else { stickiness_days_scale };
+    stickiness_log_scale * libm::log(1.0 + f64::from(days_subscribed) / scale)
 }
 
 /// Tenure bonuses by days subscribed, computed once: the logarithm is the slow part of a daily sweep.
@@ -47,8 +50,8 @@ pub struct TenureTable(Vec<f64>);
 
 impl TenureTable {
     /// Bonuses of 0..=days.
-    pub fn up_to(days: u32, quality: &Quality) -> TenureTable {
-        TenureTable((0..=days).map(|day| tenure_bonus(day, quality)).collect())
+    pub fn up_to(days: u32, params: &Params) -> TenureTable {
+        TenureTable((0..=days).map(|day| tenure_bonus(day, params)).collect())
     }
 
     /// The bonus after this many days.
@@ -148,11 +151,11 @@ mod tests {
 
     #[test]
     fn tenure_counts_from_the_second_day() {
-        let quality = Params::shipped().quality;
-        let table = TenureTable::up_to(60, &quality);
+        let params = Params::shipped();
+        let table = TenureTable::up_to(60, &params);
         near(table.bonus(0), 0.0);
         near(table.bonus(30), 0.05 * std::f64::consts::LN_2);
-        near(table.bonus(60), tenure_bonus(60, &quality));
+        near(table.bonus(60), tenure_bonus(60, &params));
     }
 
     #[test]

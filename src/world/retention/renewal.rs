@@ -98,7 +98,7 @@ pub fn conclude(
         facts.endings.extend(decided.endings);
         if let Some(person) = decided.gave_up.first() {
             let write = (person.group, ReputationCause::Departures);
-            reputation.write(write, &decided.damages, &params.reputation, told);
+            reputation.write(write, &decided.damages, params, told);
         }
         renewals.gave_up.extend(decided.gave_up);
     }

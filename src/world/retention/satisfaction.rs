@@ -4,6 +4,7 @@ use std::ops::{AddAssign, Range};
 
 use crate::context::DayContext;
 use crate::customers::columns::Block;
+use crate::fault::Fault;
 use crate::identifiers::{ByGroup, ByPlan, Group};
 use crate::market::reputation::contribution;
 use crate::params::{Params, Quality};
@@ -78,7 +79,10 @@ pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> Fel
     };
     let met = Met {
         delivered: morning.delivered(group, plan) - penalty,
-        quota: morning.quotas[plan],
+        quota: match params.has_fault(Fault::QuotaInverted) {
+            true => as_if_inverted(morning.quotas[plan], own.usage_rate * morning.weekday),
+            false => morning.quotas[plan],
+        },
         tenure: tenure.bonus(morning.day - block.start_day[at]),
         ads: ads.for_customer(group, block.customer[at]),
     };
@@ -120,6 +124,11 @@ fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Par
     }
 }
 
+/// The quota whose share of the demand is what the demand is of this one.
+fn as_if_inverted(quota: f64, daily_demand: f64) -> f64 {
+    daily_demand * daily_demand / quota
+}
+
 /// Rows that are worked on together: few enough for what is looked up for them to stay close at hand.
 const ROWS: usize = 64;
 
@@ -147,12 +156,19 @@ impl Found {
     ) {
         let &DayContext { morning, ads, tenure, .. } = day;
         let (plan, start_day) = (&block.plan[rows.clone()], &block.start_day[rows.clone()]);
-        let customer = &block.customer[rows];
+        let customer = &block.customer[rows.clone()];
         for at in 0..plan.len().min(ROWS) {
             self.delivered[at] = delivered[plan[at]];
             self.quota[at] = morning.quotas[plan[at]];
             self.tenure[at] = tenure.bonus(morning.day - start_day[at]);
             self.ads[at] = ads.for_customer(group, customer[at]);
+        }
+        if day.params.has_fault(Fault::QuotaInverted) {
+            let demands = block.usage_rate[rows].iter().map(|rate| rate * morning.weekday);
+            self.quota
+                .iter_mut()
+                .zip(demands)
+                .for_each(|(quota, demand)| *quota = as_if_inverted(*quota, demand));
         }
     }
 }

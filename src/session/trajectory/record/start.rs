@@ -8,6 +8,7 @@ use crate::session::folder::consent::Consent;
 use crate::session::folder::mode::Mode;
 use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
+use crate::world::fault::Fault;
 
 /// What the first line says of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,6 +34,9 @@ pub struct Start {
     /// Parameters that differ from the shipped ones.
     #[serde(default)]
     pub overrides: Table,
+    /// The mechanism that is wrong on purpose; debug runs only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault: Option<Fault>,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
     /// Mode.

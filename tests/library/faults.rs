@@ -1,0 +1,258 @@
+//! Faults: each changes the world, shows in the view of the x-ray that is named for it, and goes where its run goes.
+
+use std::path::{Path, PathBuf};
+
+use novamind::session::{
+    Category, Configuration, LeadFactor, Mode, MoodTerm, NewRun, Record, ReputationCause, RunError, Session,
+    Storage, Trajectory, WriteTarget, WrittenBy, manifest_of, verify,
+};
+use novamind::world::fault::Fault;
+use novamind::world::identifiers::Group;
+use serde_json::{Value, json};
+
+use crate::support::company::{call, number, open_shop, weeks};
+
+fn new_run(folder: &Path, fault: Option<Fault>) -> NewRun {
+    NewRun {
+        seed: Some(7),
+        days: Some(200),
+        mode: Mode::Debug,
+        fault,
+        storage: Storage::Runs(folder.to_owned()),
+        ..NewRun::default()
+    }
+}
+
+fn run(session: &mut Session, days: u32) {
+    if days > 0 {
+        session.run_until_breakpoint(days, &mut |_| {}).expect("days");
+    }
+}
+
+/// A company with subscribers of several groups and plans, after so many days.
+fn company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
+    let mut session = Session::create(new_run(folder, fault), &Configuration::shipped()).expect("it begins");
+    open_shop(&mut session);
+    call(&mut session, "set_capacity_tier", json!({"tier": 2}));
+    let ads = json!({"content_marketing": {"S1": 750, "S2": 500}, "search_ads": {"S3": 500}});
+    call(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": ads}));
+    run(&mut session, days.min(28));
+    if days == STRESSED {
+        let key = "reputation.reputation_quality_cancel_damage";
+        session.set_parameter(key, &json!(1), None).expect("departures hurt a thousand times as much");
+        call(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
+    }
+    run(&mut session, days.saturating_sub(28));
+    session
+}
+
+/// Days of a run in which departures hurt so much that reputation meets its floor.
+const STRESSED: u32 = 50;
+
+fn group(id: &str) -> Group {
+    Group::parse(id).expect("a group")
+}
+
+fn parameter(session: &Session, key: &str) -> f64 {
+    session.parameter(key).expect("a parameter").as_f64().expect("a number")
+}
+
+/// What tells a fault: the days it takes to show, and whether a view says something that the mechanism does not.
+struct Symptom {
+    days: u32,
+    shows: fn(&mut Session) -> bool,
+}
+
+fn symptom(fault: Fault) -> Symptom {
+    let at = |days, shows| Symptom { days, shows };
+    match fault {
+        Fault::EconomyReversed => at(12, |session| {
+            let leads = session.lead_equations(group("S1"), Some(12)).expect("a look");
+            let factor = leads.last().expect("a day").factor(LeadFactor::Economy);
+            let rows = session.xray_query("SELECT pmi FROM hidden.pmi WHERE day = 12", None).expect("a look");
+            let pmi = novamind::session::number_at(&rows.rows[0], 0);
+            let gap = pmi - parameter(session, "macro.neutral_pmi");
+            assert!(gap.abs() > 0.1 && parameter(session, "group.S1.macro_beta.lead_generation") > 0.0);
+            (factor - 1.0) * gap < 0.0
+        }),
+        Fault::QuotaInverted => at(12, |session| {
+            let mood = session.satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            // Nobody's demand is near the quota.
+            mood.term(MoodTerm::Quota).expect("subscribers") != 0.0
+        }),
+        Fault::SmallerRivalMove => at(75, |session| {
+            let moves = session.rival_state(Some(75)).expect("a look").moves;
+            assert!(!moves.is_empty());
+            moves.iter().any(|(event, _)| event.boost < event.sampled)
+        }),
+        Fault::SpillOverReversed => at(30, |session| {
+            let spilled: Vec<bool> = (10..=30)
+                .flat_map(|day| {
+                    let target = WriteTarget::Reputation(group("S3"));
+                    session.who_writes(target, Some(day)).expect("a look").writes
+                })
+                .filter_map(|write| match write.by {
+                    WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
+                        Some(write.amount() * spill.change < 0.0)
+                    }
+                    _ => None,
+                })
+                .collect();
+            assert!(!spilled.is_empty());
+            spilled.contains(&true)
+        }),
+        Fault::TenureInDays => at(12, |session| {
+            let mood = session.satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            let most = parameter(session, "quality.stickiness_log_scale")
+                * libm::log(1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale"));
+            mood.term(MoodTerm::Tenure).expect("subscribers") > most
+        }),
+        Fault::DriftTwice => at(91, |session| {
+            let before = session.drift_state(Some(89)).expect("a look");
+            let after = session.drift_state(Some(90)).expect("a look");
+            assert_eq!(before.next_day, Some(90));
+            before.groups.iter().zip(&after.groups).any(|(before, after)| {
+                let moved = after.expectation.c_max - before.expectation.c_max;
+                (moved - before.step.c_max).abs() > 1e-12
+            })
+        }),
+        Fault::ReferralsSwapped => at(12, |session| {
+            let mut from_s1 = |to: &str| {
+                let leads = session.lead_equations(group(to), Some(12)).expect("a look");
+                let own = &leads.last().expect("a day").word_of_mouth;
+                own.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
+            };
+            let shown = from_s1("S2") / from_s1("S1");
+            let rate = |to: &str| parameter(session, &format!("referral_leads_per_subscriber_day.S1.{to}"));
+            (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
+        }),
+        Fault::ComputeOfOnePlan => at(30, |session| {
+            let writes = session.who_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
+            let compute = writes.iter().find(|own| own.by == WrittenBy::Booked(Category::Compute));
+            let paid = -compute.expect("compute is booked").asked();
+            let used = number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
+            let unit = |tier: u32| parameter(session, &format!("model_tier.{tier}.unit_cost"));
+            // Somebody is on plan B or C, whose models are dearer.
+            paid <= used * unit(1) * (1.0 + 1e-9)
+        }),
+        Fault::ReputationWithoutFloor => at(STRESSED, |session| {
+            let floor = parameter(session, "reputation.reputation_floor");
+            (29..=STRESSED).any(|day| {
+                let target = WriteTarget::Reputation(group("S1"));
+                let writes = session.who_writes(target, Some(day)).expect("a look").writes;
+                writes.iter().any(|write| write.after < floor)
+            })
+        }),
+        Fault::TargetedGainAsGeneral => at(7, |session| {
+            let mut own = |day| session.quality_equation(group("S1"), Some(day)).expect("a look").own;
+            let grown = own(5) - own(4);
+            let gain = parameter(session, "development.targeted_dev_improvement_coef")
+                * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
+            (grown / gain - 1.0).abs() > 1e-9
+        }),
+    }
+}
+
+fn place(session: &Session) -> PathBuf {
+    session.folder().expect("a folder").to_owned()
+}
+
+#[test]
+fn each_fault_changes_the_world_and_shows_in_its_view() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for fault in Fault::ALL {
+        let Symptom { days, shows } = symptom(fault);
+        let mut sound = company(folder.path(), None, days);
+        let mut faulty = company(folder.path(), Some(fault), days);
+        assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
+        assert!(!shows(&mut sound), "{fault:?} shows where it is not");
+        assert!(shows(&mut faulty), "{fault:?} does not show");
+        let first = sound.difference_to(&mut faulty, None).expect("a look").first_day;
+        assert!(first.is_some_and(|day| day <= days), "{fault:?}");
+    }
+}
+
+#[test]
+fn a_fault_stays_with_its_run_and_no_word_names_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for fault in [Fault::SpillOverReversed, Fault::QuotaInverted] {
+        let mut session = company(folder.path(), Some(fault), 28);
+        weeks(&mut session, 1);
+        assert!(session.observe().has_own_parameters, "it is never ranked");
+        assert_eq!(session.changed_parameters().expect("a debug run").in_force, [], "it is no parameter");
+        let own = place(&session);
+        let branch = session.branch(3, Mode::Debug).expect("a branch");
+        assert_eq!(branch.manifest().fault, Some(fault));
+        let refused = session.branch(3, Mode::Sandbox).err().expect("no sandbox has a fault");
+        assert_eq!(refused.code, "not_in_this_mode");
+        let branch_place = place(&branch);
+        drop((session, branch));
+        for place in [&own, &branch_place] {
+            verify(place).expect("it verifies");
+        }
+        // The manifest can be lost: the first line holds the number, and nothing else of it.
+        let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
+        assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
+        std::fs::remove_file(own.join("run.toml")).expect("it goes");
+        assert_eq!(manifest_of(&own).expect("of the line").fault, Some(fault));
+        let lines = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
+        assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
+        let told = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
+        assert!(!told.contains(&format!("{fault:?}")));
+        // With another number it is another run.
+        let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
+        let mut forged = manifest_of(&own).expect("of the line");
+        forged.fault = Some(other);
+        assert!(forged.params().is_err(), "the digest tells them apart");
+        forged.fault = None;
+        assert!(forged.params().is_err());
+    }
+}
+
+#[test]
+fn only_a_debug_run_has_a_fault() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let participant = (mode == Mode::Baseline).then(|| "P01".to_owned());
+        for fault in Fault::ALL {
+            let new =
+                NewRun { mode, participant: participant.clone(), ..new_run(folder.path(), Some(fault)) };
+            let refused = Session::create(new, &Configuration::shipped()).err().expect("refused").to_string();
+            assert!(refused.contains("a fault can be planted in debug runs only"), "{refused}");
+        }
+    }
+    assert!(
+        std::fs::read_dir(folder.path()).expect("a folder").all(|own| own.expect("one").path().is_file())
+    );
+    let new = |key: &str| NewRun {
+        overrides: vec![(key.to_owned(), "3".to_owned())],
+        ..new_run(folder.path(), None)
+    };
+    for key in ["fault", "run.fault", "fidelity.fault"] {
+        assert!(Session::create(new(key), &Configuration::shipped()).is_err(), "{key}");
+    }
+    // A manifest that says so of another mode is refused.
+    let session = company(folder.path(), Some(Fault::DriftTwice), 7);
+    let own = place(&session);
+    drop(session);
+    let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
+    std::fs::write(own.join("run.toml"), text.replace("mode = \"debug\"", "mode = \"sandbox\""))
+        .expect("a file");
+    let read = novamind::session::Manifest::read(&own);
+    assert!(matches!(read, Err(RunError::NotPossible(_))), "{read:?}");
+}
+
+#[test]
+fn what_is_set_keeps_the_fault() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = company(folder.path(), Some(Fault::TargetedGainAsGeneral), 7);
+    let set: Value = json!(0.3);
+    session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
+    weeks(&mut session, 1);
+    let mut own = |day| session.quality_equation(group("S1"), Some(day)).expect("a look").own;
+    let grown = own(13) - own(12);
+    assert!(grown < 0.005, "{grown}");
+    let place = place(&session);
+    drop(session);
+    verify(&place).expect("it verifies");
+}

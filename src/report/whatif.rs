@@ -77,7 +77,10 @@ fn difference(calls: &[&DecisionDifference], week: impl Fn(u32) -> u32) -> Strin
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {
             let line = only.seq.map_or(String::new(), |line| format!(" (line {line})"));
-            format!("week {}: {}{line}", week(only.day), otherwise(only))
+            let again = only.again.map_or(String::new(), |(day, line)| {
+                format!("; the run calls {} again in week {} (line {line})", only.tool.name(), week(day))
+            });
+            format!("week {}: {}{line}{again}", week(only.day), otherwise(only))
         });
     };
     let (from, to) = (week(first.day), week(last.day));
@@ -132,6 +135,18 @@ pub fn futures_heading(futures: &Futures) -> String {
         count(futures.count, "future"),
         futures.redrawn_after
     )
+}
+
+/// How many futures of a branch end early, and what is counted of them; none where all go to the end.
+pub fn ended_early(futures: &Futures, branch: usize) -> Option<String> {
+    let ended = futures.ended_early(branch);
+    (ended > 0).then(|| {
+        format!(
+            "{branch}: {ended} of {} end in bankruptcy before the last day; from then on their cash stays, and they have \
+             no subscribers",
+            count(futures.count, "future")
+        )
+    })
 }
 
 /// Headers and rows: a figure at each milestone, in each branch, over the futures.
@@ -217,6 +232,7 @@ mod tests {
             seq,
             was: was.map(|price| json!({ "B": price })),
             is: is.map(|price| json!({ "B": price })),
+            again: (day == 7 && seq.is_none()).then_some((14, 20)),
         };
         let differences = [
             call(7, None, None, Some(9.5)),
@@ -229,7 +245,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                "week 2: set_prices {\"B\":9.5} is new",
+                "week 2: set_prices {\"B\":9.5} is new; the run calls set_prices again in week 3 (line 20)",
                 "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",
                 "week 3: set_prices {\"B\":30.0} is not made (line 20)",
             ]

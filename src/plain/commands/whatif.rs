@@ -11,7 +11,8 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, Phase, count, problem};
 use crate::database::text::aligned;
 use crate::report::whatif::{
-    branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line, name, table,
+    branch_line, decisions, difference_line, ended_early, futures_heading, futures_table, heading, kin_line,
+    name, table,
 };
 use crate::session::record::LeavingCause;
 use crate::session::{
@@ -23,6 +24,8 @@ use crate::session::{
 const FUTURES: u32 = 20;
 /// Most of them.
 const MOST_FUTURES: u32 = 200;
+/// Largest file that holds a question, in bytes.
+const LARGEST_FILE: u64 = 64 << 10;
 /// How a question reads.
 const USAGE: &str = "for instance: whatif from 20: set_prices * 0.9";
 
@@ -38,13 +41,17 @@ struct Question {
 impl Interpreter {
     /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
     pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
+        // Nothing is read of what is asked for before it is clear that it may be answered.
+        if let Err(refusal) = self.session.folder_of_causes() {
+            return Ok(Answer::refused("whatif", refusal));
+        }
         if let Ok(week) = words.parse() {
             return Ok(self.decisions_from(week));
         }
         if let Some(path) = words.strip_prefix("file ") {
-            let text = std::fs::read_to_string(Path::new(path.trim()));
             let problem = |text: String| Problem { text, column: column + "file ".len() };
-            let text = text.map_err(|error| problem(format!("{} cannot be read: {error}", path.trim())))?;
+            let text = self.question_in(Path::new(path.trim()));
+            let text = text.map_err(|why| problem(format!("{} cannot be read: {why}", path.trim())))?;
             return read(&as_question(&text), 0)
                 .map(|question| self.compare(&question))
                 .map_err(|wrong| problem(wrong.text));
@@ -55,6 +62,18 @@ impl Interpreter {
             }
             None => read(words, column).map(|question| self.compare(&question)),
         }
+    }
+
+    /// The text of a file that holds a question: a participant of a study has none, and a file is a regular and small one.
+    fn question_in(&self, path: &Path) -> Result<String, String> {
+        if self.leads_participant {
+            return Err("questions are typed in a session of a study".to_owned());
+        }
+        let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
+        if !found.is_file() || found.len() > LARGEST_FILE {
+            return Err(format!("it is no file of text of at most {} KiB", LARGEST_FILE >> 10));
+        }
+        std::fs::read_to_string(path).map_err(|error| error.to_string())
     }
 
     fn what_if_of_run(&mut self) -> Result<&mut WhatIf, Refusal> {
@@ -129,6 +148,10 @@ impl Interpreter {
 
     /// Makes the only alternative of a question a run of its own, and goes on in it.
     fn adopt(&mut self, question: &Question, column: usize) -> Result<Answer, Problem> {
+        if question.futures.is_some() || question.until.is_some() {
+            let text = "adopt takes from alone: a branch is played to the day of this run".to_owned();
+            return Err(Problem { text, column });
+        }
         let decided = match &question.alternatives[..] {
             [] => Vec::new(),
             [only] => only.clone(),
@@ -282,6 +305,9 @@ fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
     let Some(futures) = futures else { return text };
     let (headers, rows) = futures_table(comparison, futures, days);
     text += &format!("\n{}\n{}", futures_heading(futures), aligned(&headers, &rows));
+    let early: Vec<String> =
+        (0..comparison.branches.len()).filter_map(|at| ended_early(futures, at)).collect();
+    text += &early.join("\n");
     for number in 1..comparison.branches.len() {
         text += &format!(
             "\n{number}, at the end of week {}, beside the run as it was, future by future:",

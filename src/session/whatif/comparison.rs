@@ -5,9 +5,9 @@ use serde_json::Value;
 use super::decision_edit::DecisionEdit;
 use super::figure::{BranchFigure, Values, values};
 use crate::session::counterfactual::branch::BranchOutcome;
-use crate::session::counterfactual::edits::Edits;
+use crate::session::counterfactual::edits::{AddedCall, Edits};
 use crate::session::counterfactual::script::{Move, PastCall};
-use crate::tools::{Refusal, ToolId};
+use crate::tools::{Kind, Refusal, ToolId};
 use crate::world::events::DayFigures;
 
 /// Branches of a run, under the same luck.
@@ -57,6 +57,8 @@ pub struct DecisionDifference {
     pub was: Option<Value>,
     /// Its arguments here; none where it is not made.
     pub is: Option<Value>,
+    /// Of a call that is new: day and line of the next call of its tool, which the run makes later.
+    pub again: Option<(u32, u64)>,
 }
 
 impl BranchFigures {
@@ -114,9 +116,27 @@ fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifferen
         seq: None,
         was: None,
         is: Some(args.clone()),
+        again: None,
     };
     let opening = edits.opening.iter().map(|(tool, args)| new(from, *tool, args));
-    let added = edits.added.iter().map(|call| new(call.day, call.tool, &call.args));
+    let next = |added: &AddedCall| {
+        moves.iter().find_map(|step| match step {
+            Move::Call(call)
+                if call.tool == added.tool
+                    && call.day > added.day
+                    && call.accepted
+                    && !edits.dropped.contains(&call.seq) =>
+            {
+                Some((call.day, call.seq))
+            }
+            _ => None,
+        })
+    };
+    let added = edits.added.iter().map(|call| {
+        let is_set = call.tool.spec().kind == Kind::Setting;
+        let again = if is_set { next(call) } else { None };
+        DecisionDifference { again, ..new(call.day, call.tool, &call.args) }
+    });
     let of_run = moves.iter().filter_map(|step| match step {
         Move::Call(call) => of_call(edits, call),
         Move::Parameter(_) | Move::Days(_) => None,
@@ -141,5 +161,6 @@ fn of_call(edits: &Edits, call: &PastCall) -> Option<DecisionDifference> {
         seq: Some(call.seq),
         was: Some(call.args.clone()),
         is,
+        again: None,
     })
 }

@@ -12,10 +12,13 @@ use crate::session::counterfactual::script::{Move, PastCall};
 use crate::tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
 use crate::world::settings::Settings;
 
+/// Largest factor of settings.
+const MOST_FACTOR: f64 = 1000.0;
+
 /// Something that is decided otherwise from a week on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionEdit {
-    /// The settings of a tool, those in force and those that are set later, times a factor of at least 0.
+    /// The settings of a tool, those in force and those that are set later, times a factor from 0 to 1,000.
     Scale {
         /// The tool.
         tool: ToolId,
@@ -140,7 +143,11 @@ fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, mo
         // A plan without a price stays without.
         in_force.retain(|_, price| price.as_f64() != Some(0.0));
     }
-    if !in_force.is_empty() {
+    // What the run sets anew on that day anyway is scaled there.
+    let is_set_anew = calls(moves)
+        .filter(|call| call.tool == tool && call.day == opening.day)
+        .any(|call| call.accepted && in_force.keys().all(|name| call.args.get(name).is_some()));
+    if !in_force.is_empty() && !is_set_anew {
         edits.opening.push((tool, scaled(&Value::Object(in_force), factor)));
     }
     for call in calls(moves).filter(|call| call.tool == tool) {
@@ -153,13 +160,20 @@ fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, mo
 /// Every number times a factor.
 fn scaled(value: &Value, factor: f64) -> Value {
     match value {
-        Value::Number(number) => number.as_f64().map_or(Value::Null, |own| json_number(own * factor)),
+        Value::Number(number) => {
+            number.as_f64().map_or(Value::Null, |own| json_number(rounded(own * factor)))
+        }
         Value::Object(fields) => {
             fields.iter().map(|(name, value)| (name.clone(), scaled(value, factor))).collect()
         }
         Value::Array(items) => items.iter().map(|item| scaled(item, factor)).collect(),
         other => other.clone(),
     }
+}
+
+/// Without the noise of binary fractions: to twelve digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 /// Whether the arguments of a tool are amounts: numbers of which a multiple makes sense.
@@ -235,10 +249,10 @@ fn scale_or_call(text: &str) -> Result<DecisionEdit, String> {
         return Err(format!("{name} sets no amounts; a factor goes with {}", amounts.join(", ")));
     }
     let factor = factor.trim();
-    let number = factor.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
-    number
-        .map(|factor| DecisionEdit::Scale { tool, factor })
-        .ok_or_else(|| format!("{factor} is not a factor; write a number of at least 0, for instance 0.9"))
+    let number = factor.parse().ok().filter(|number: &f64| (0.0..=MOST_FACTOR).contains(number));
+    number.map(|factor| DecisionEdit::Scale { tool, factor }).ok_or_else(|| {
+        format!("{factor} is not a factor; write a number from 0 to {MOST_FACTOR}, for instance 0.9")
+    })
 }
 
 fn added(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
@@ -331,6 +345,7 @@ mod tests {
         assert!(said("set_prices * much").starts_with("much is not a factor"));
         assert!(said("set_prices * -1").starts_with("-1 is not a factor"));
         assert!(said("set_prices * inf").starts_with("inf is not a factor"));
+        assert!(said("set_prices * 1e308").starts_with("1e308 is not a factor"));
         assert_eq!(said("keep get_vars"), "get_vars changes nothing in the company");
         assert_eq!(said("next_week"), "next_week changes nothing in the company");
         assert!(said("drop it").starts_with("it is not the number of a line"));
@@ -343,6 +358,7 @@ mod tests {
     fn every_number_of_a_call_is_scaled_and_no_name() {
         let args = json!({"targeted_spend": {"linkedin": {"S1": 50.0}}, "name": "7"});
         assert_eq!(scaled(&args, 0.5), json!({"targeted_spend": {"linkedin": {"S1": 25}}, "name": "7"}));
+        assert_eq!(scaled(&json!({"A": 12}), 1.1), json!({"A": 13.2}));
         assert!(sets_amounts(ToolId::SetPrices) && sets_amounts(ToolId::SetTargetedAdSpend));
         assert!(!sets_amounts(ToolId::SetModelTiers) && !sets_amounts(ToolId::PostSocialMedia));
     }

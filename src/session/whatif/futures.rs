@@ -17,7 +17,7 @@ pub struct Futures {
     pub redrawn_after: u32,
     /// Last days of weeks, from the day on which the branches part.
     days: Vec<u32>,
-    /// Figures by branch, future and week; a future that ended early has fewer weeks.
+    /// Figures by branch, future and week; a future that ended in bankruptcy has fewer weeks.
     branches: Vec<Vec<Vec<Values>>>,
 }
 
@@ -80,13 +80,30 @@ impl Futures {
         })
     }
 
+    /// Futures of a branch that end before the last day.
+    pub fn ended_early(&self, branch: usize) -> u32 {
+        let own = self.branches.get(branch).into_iter().flatten();
+        own.filter(|weeks| weeks.len() < self.days.len()).count() as u32
+    }
+
     /// A figure in each future; not a number where it has none.
     fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
         let week = self.days.iter().position(|own| *own == day);
-        let value = |weeks: &Vec<Values>| {
-            week.and_then(|at| weeks.get(at)).map_or(f64::NAN, |values| values[figure as usize])
+        let value = |weeks: &Vec<Values>| match (week, weeks.last()) {
+            (Some(at), _) if at < weeks.len() => weeks[at][figure as usize],
+            (Some(_), Some(last)) => after_the_end(figure, last),
+            _ => f64::NAN,
         };
         self.branches.get(branch).into_iter().flatten().map(value).collect()
+    }
+}
+
+/// A figure of a future that has ended: cash stays what it was, and there is nobody left to be counted.
+fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
+    match figure {
+        BranchFigure::Cash => last[figure as usize],
+        BranchFigure::Churn | BranchFigure::Satisfaction => f64::NAN,
+        _ => 0.0,
     }
 }
 
@@ -140,6 +157,21 @@ mod tests {
         assert_eq!((difference.more, difference.of), (11, 11));
         assert_eq!(futures.band(0, BranchFigure::Leads, 7), None);
         assert_eq!(futures.band(0, BranchFigure::Cash, 14), None);
+    }
+
+    #[test]
+    fn a_future_that_ended_counts_with_the_cash_it_had_and_with_nobody() {
+        let week = |cash: f64| {
+            let mut values = [f64::NAN; BranchFigure::ALL.len()];
+            values[BranchFigure::Cash as usize] = cash;
+            values[BranchFigure::Subscribers as usize] = 10.0;
+            values
+        };
+        let futures = Futures::of(0, vec![7, 14], vec![vec![vec![week(-5.0)], vec![week(1.0), week(3.0)]]]);
+        assert_eq!(futures.ended_early(0), 1);
+        assert_eq!(futures.values(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
+        assert_eq!(futures.values(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
+        assert!(futures.values(0, BranchFigure::Churn, 14)[0].is_nan());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::session::figures::week::week_of;
 use crate::session::folder::derived::manifest_of;
 use crate::session::folder::runs::{RunSummary, list_runs, run_folder};
-use crate::session::trajectory::record::Parent;
+use crate::session::trajectory::record::{Call, Parent};
 use crate::session::trajectory::{Record, Trajectory};
 use crate::tools::ToolId;
 
@@ -59,7 +59,7 @@ fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) 
     if tree.iter().any(|known| known.run.id == id) {
         return;
     }
-    let lines = own.parent.as_ref().and_then(|_| left(runs, &own.run.id));
+    let lines = own.parent.as_ref().and_then(|parent| left(runs, &own.run.id, parent));
     let (left_in_week, first_change) = lines.map_or((None, None), |(week, change)| (Some(week), change));
     tree.push(Kin { run: own.run.clone(), depth, left_in_week, first_change });
     let mut branches: Vec<&Node> =
@@ -70,13 +70,21 @@ fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) 
     }
 }
 
-/// Week in which a branch left, and the day and tool of its first own call.
-fn left(runs: &Path, id: &str) -> Option<(u32, Option<(u32, ToolId)>)> {
-    let trajectory = Trajectory::read(&run_folder(runs, id).join("trajectory.jsonl")).ok()?;
+/// Week in which a branch left, and the day and tool of its first call that its parent did not make on that day.
+fn left(runs: &Path, id: &str, parent: &Parent) -> Option<(u32, Option<(u32, ToolId)>)> {
+    let read = |id: &str| Trajectory::read(&run_folder(runs, id).join("trajectory.jsonl")).ok();
+    let (trajectory, parents) = (read(id)?, read(&parent.run)?);
+    let is_parents = |day: u32, own: &Call| {
+        let later = parents.lines.iter().filter(|line| line.day == day && line.seq > parent.seq);
+        later
+            .filter_map(|line| line.record.accepted_call())
+            .any(|(call, _)| (call.tool, &call.args) == (own.tool, &own.args))
+    };
     let at = trajectory.lines.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
     let own = trajectory.lines[at..].iter().find_map(|line| {
         let (call, _) = line.record.accepted_call()?;
-        call.tool.spec().kind.acts().then_some((line.day, call.tool))
+        let is_own = call.tool.spec().kind.acts() && !is_parents(line.day, call);
+        is_own.then_some((line.day, call.tool))
     });
     Some((week_of(trajectory.lines[at].day) + 1, own))
 }

@@ -203,7 +203,8 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
     let session = run(runs.path(), Mode::Debug);
     let mut branch = session.branch(5, Mode::Debug).expect("a branch");
     branch.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
-    let other = branch.branch(2, Mode::Debug).expect("a branch");
+    let other = branch.branch_with_decisions(2, &[], Mode::Debug, &mut |_| ControlFlow::Continue(()));
+    let other = other.expect("a branch").session;
     for id in [&session.manifest().id, &branch.manifest().id, &other.manifest().id] {
         let tree = branches_of(runs.path(), id);
         let told: Vec<_> = tree

@@ -76,7 +76,7 @@ impl Decisions {
     }
 
     pub(super) fn note(&self) -> String {
-        format!("alternative {} of {}", self.shown + 1, self.alternatives.len())
+        format!("alternative {} of {} · ‹ › other week", self.shown + 1, self.alternatives.len())
     }
 
     fn edits(&mut self) -> &mut Vec<DecisionEdit> {

@@ -143,13 +143,11 @@ impl Dialog for BranchesPage {
         match self.page {
             Page::Decisions if self.decisions.is_typing() => vec![Action::Commit, Action::Discard],
             Page::Decisions => vec![
-                Action::DropDecision,
-                Action::Open,
                 Action::AddDecision,
-                Action::NextAlternative,
-                Action::Left,
-                Action::Right,
+                Action::DropDecision,
                 Action::SimulateBranches,
+                Action::NextAlternative,
+                Action::Open,
                 Action::Close,
             ],
             Page::Working(..) => vec![Action::Cancel],

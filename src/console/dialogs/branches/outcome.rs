@@ -8,7 +8,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::chart;
 use crate::console::widgets::{Axis, Line, Side, Unit};
 use crate::report::whatif::{
-    branch_line, cell, decisions, difference_line, futures_cell, futures_heading, heading,
+    branch_line, cell, decisions, difference_line, ended_early, futures_cell, futures_heading, heading,
 };
 use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
@@ -176,6 +176,7 @@ impl Figures {
             told.push(futures_heading(futures));
             let sure = difference_line(&self.comparison, futures, self.selected, self.shown());
             told.extend(sure.filter(|_| !branch.edits.is_empty()).map(|line| format!("at the end: {line}")));
+            told.extend((0..self.comparison.branches.len()).filter_map(|at| ended_early(futures, at)));
         }
         told.extend(decisions(branch, self.days_per_week));
         told

@@ -2,7 +2,7 @@
 
 pub mod watch;
 
-use watch::{DayWatch, SettledReputation, Unwatched};
+use watch::{DayWatch, Unwatched};
 
 use super::canonical::canonical;
 use super::context::DayContext;
@@ -130,8 +130,7 @@ pub fn step_day_watched(
     let moods = satisfaction::by_group(felt.moods);
     let is_known = |group: Group| knowledge[group].level >= 1;
     reputation::contribute(&mut market.reputation, &moods, is_known, params, &mut told);
-    let (gave_up, lost) = (&renewals.gave_up, &negotiated.lost);
-    watch.reputation_settled(&SettledReputation { day: &today, gave_up, lost, moods: &moods, market });
+    watch.reputation_settled(&moods, market, params);
 
     // People and the press write.
     if let Some(mut crowd) = crowd {

@@ -10,18 +10,20 @@ use super::satisfaction_equation::{MoodSums, MoodsByBlock, SatisfactionDay};
 use crate::world::context::DayContext;
 use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
-use crate::world::day::watch::{DayWatch, SettledReputation};
+use crate::world::day::watch::DayWatch;
 use crate::world::enterprise::{Enterprise, Negotiation, Thread};
 use crate::world::events::{Facts, Reading, Sender};
 use crate::world::identifiers::{ByGroup, Group};
+use crate::world::market::Market;
 use crate::world::market::arrivals::{Arrivals, lead_context};
 use crate::world::market::competitors::{Event, severity};
 use crate::world::market::drift::DriftTotals;
 use crate::world::market::economy::Dimension;
 use crate::world::market::leads::{LeadFactors, word_of_mouth};
-use crate::world::market::reputation::ReputationBook;
+use crate::world::market::reputation::ReputationWrite;
 use crate::world::morning::Morning;
 use crate::world::params::Params;
+use crate::world::retention::satisfaction::Mood;
 use crate::world::state::World;
 
 /// A day, as far as groups and the market go.
@@ -120,8 +122,6 @@ struct Pages {
     today: HiddenDay,
     /// What satisfaction moved by, block by block.
     moods: MoodsByBlock,
-    /// Reputations of the morning.
-    morning: Option<ReputationBook>,
     /// What development has gained for everybody so far.
     development: f64,
 }
@@ -160,7 +160,7 @@ impl DayWatch for Diary {
     fn morning_came(&self, world: &World, morning: &Morning, params: &Params) {
         let pages = &mut *self.pages();
         pages.today.quality = QualityDay::of(world, morning, params, &mut pages.development);
-        pages.morning = Some(world.market.reputation.clone());
+        pages.today.reputation = ReputationDay::in_the_morning(&world.market.reputation);
     }
 
     fn before_moods(&self, group: Group, block: &Block, day: &DayContext<'_>) {
@@ -169,10 +169,12 @@ impl DayWatch for Diary {
         self.pages().moods.insert((group, *first), sums);
     }
 
-    fn reputation_settled(&self, settled: &SettledReputation<'_>) {
-        let mut pages = self.pages();
-        let Some(morning) = pages.morning.take() else { return };
-        pages.today.reputation = ReputationDay::of(&morning, settled);
+    fn reputation_moved(&self, write: &ReputationWrite<'_>) {
+        self.pages().today.reputation.count(write);
+    }
+
+    fn reputation_settled(&self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
+        self.pages().today.reputation.settle(moods, market, params);
     }
 
     fn before_negotiations(&self, enterprise: &Enterprise, customers: &Customers, talks: &Negotiation<'_>) {

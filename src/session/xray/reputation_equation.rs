@@ -1,10 +1,12 @@
 //! What moved the reputation of a group on a day, and how the change of each group spilled over to the others.
 
-use crate::world::day::watch::SettledReputation;
 use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::reputation::{ReputationBook, Spill, called_change, daily_change, spill};
+use crate::world::market::Market;
+use crate::world::market::reputation::{
+    ReputationBook, ReputationCause, ReputationWrite, Spill, called_change, daily_change, spill,
+};
 use crate::world::params::Params;
-use crate::world::retention::renewal::damages;
+use crate::world::retention::satisfaction::Mood;
 
 /// Departures of a day and what they took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -57,76 +59,39 @@ pub(in crate::session) struct ReputationDay {
 }
 
 impl ReputationDay {
-    /// A day that began with a book: every write again, in its order.
-    pub(in crate::session) fn of(morning: &ReputationBook, settled: &SettledReputation<'_>) -> ReputationDay {
-        let params = settled.day.params;
-        let law = &params.reputation;
-        let mut writing = Writing { book: morning.clone(), params, bounds: ByGroup::default() };
-        let mut seen = ReputationDay {
-            before: ByGroup::from_fn(|group| morning.of(group)),
-            least: LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs },
-            ..ReputationDay::default()
+    /// A day that finds these reputations.
+    pub(in crate::session) fn in_the_morning(book: &ReputationBook) -> ReputationDay {
+        ReputationDay { before: ByGroup::from_fn(|group| book.of(group)), ..ReputationDay::default() }
+    }
+
+    /// Counts what a mechanism wrote.
+    pub(in crate::session) fn count(&mut self, write: &ReputationWrite<'_>) {
+        let group = write.group;
+        let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
+        self.bounds[group] += write.after - without_bounds;
+        let departures = match write.cause {
+            ReputationCause::Departures => &mut self.gave_up[group],
+            ReputationCause::LostCompany => &mut self.lost[group],
+            ReputationCause::Mood(_) | ReputationCause::SpillOver(_) => return,
         };
-        let changes = damages(settled.gave_up, settled.day);
-        for (person, change) in settled.gave_up.iter().zip(changes) {
-            writing.count(person.group, change, &mut seen.gave_up);
-        }
-        for company in settled.lost {
-            writing.count(company.group, -company.damage, &mut seen.lost);
-        }
-        seen.contribute(settled, &mut writing, params);
-        seen.bounds = writing.bounds;
-        seen.after = ByGroup::from_fn(|group| writing.book.of(group));
-        seen
+        departures.count += write.changes.len() as u32;
+        departures.change += write.changes.iter().sum::<f64>();
     }
 
-    fn contribute(&mut self, settled: &SettledReputation<'_>, writing: &mut Writing<'_>, params: &Params) {
-        let SettledReputation { moods, market, .. } = settled;
+    /// Ends with what subscribers contributed, what is dropped of it as well.
+    pub(in crate::session) fn settle(&mut self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
+        let law = &params.reputation;
+        self.least = LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs };
+        self.after = ByGroup::from_fn(|group| market.reputation.of(group));
         for group in Group::all().filter(|group| moods[*group].count > 0) {
-            let mood = &moods[group];
-            let change = daily_change(mood, &params.reputation);
-            self.own[group] = OwnChange {
-                subscribers: mood.count,
-                called: called_change(mood, &params.reputation),
-                counts: change.is_some(),
-            };
-            let Some(change) = change else { continue };
-            writing.write(group, change);
-            if !market.is_known(group) {
-                continue;
-            }
-            for other in Group::all().filter(|other| *other != group && market.is_known(*other)) {
-                let spill = spill(change, group, other, params);
-                if spill.counts {
-                    writing.write(other, spill.change);
-                }
-                if spill.weight > 0.0 {
-                    self.spills.push(spill);
-                }
-            }
+            let (mood, change) = (&moods[group], daily_change(&moods[group], law));
+            let called = called_change(mood, law);
+            self.own[group] = OwnChange { subscribers: mood.count, called, counts: change.is_some() };
+            let Some(change) = change.filter(|_| market.is_known(group)) else { continue };
+            let others = Group::all().filter(|other| *other != group && market.is_known(*other));
+            let spills = others.map(|other| spill(change, group, other, params));
+            self.spills.extend(spills.filter(|spill| spill.weight > 0.0));
         }
-    }
-}
-
-/// Writes into a book as the world did.
-struct Writing<'a> {
-    book: ReputationBook,
-    params: &'a Params,
-    /// What bounds added to changes.
-    bounds: ByGroup<f64>,
-}
-
-impl Writing<'_> {
-    fn write(&mut self, group: Group, change: f64) {
-        let plain = self.book.of(group) + change;
-        self.book.move_by(group, change, self.params);
-        self.bounds[group] += self.book.of(group) - plain;
-    }
-
-    fn count(&mut self, group: Group, change: f64, departures: &mut ByGroup<Departures>) {
-        self.write(group, change);
-        departures[group].count += 1;
-        departures[group].change += change;
     }
 }
 

@@ -3,33 +3,18 @@
 use crate::context::DayContext;
 use crate::customers::Customers;
 use crate::customers::columns::Block;
-use crate::enterprise::{CompanyLost, Enterprise, Negotiation};
+use crate::enterprise::{Enterprise, Negotiation};
 use crate::events::{DayFigures, Facts};
 use crate::identifiers::{ByGroup, Group};
 use crate::market::Market;
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
 use crate::market::reputation::ReputationWrite;
-use crate::market::social::crowd::GaveUp;
 use crate::morning::Morning;
 use crate::params::Params;
 use crate::retention::renewal::RenewalContext;
 use crate::retention::satisfaction::Mood;
 use crate::state::World;
-
-/// What moved reputations on a day, once all of it has been written.
-pub struct SettledReputation<'a> {
-    /// The day.
-    pub day: &'a DayContext<'a>,
-    /// Individuals who found nothing acceptable, in the order in which they harmed their group.
-    pub gave_up: &'a [GaveUp],
-    /// Companies that were lost, in that order; after the individuals.
-    pub lost: &'a [CompanyLost],
-    /// What subscribers contributed; after both.
-    pub moods: &'a ByGroup<Mood>,
-    /// The market, with the reputations as they are now.
-    pub market: &'a Market,
-}
 
 /// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.
 pub trait DayWatch: Send + Sync {
@@ -51,8 +36,8 @@ pub trait DayWatch: Send + Sync {
     ) {
     }
 
-    /// Reputations have moved for the last time today.
-    fn reputation_settled(&self, _settled: &SettledReputation<'_>) {}
+    /// Reputations have moved for the last time today, by what subscribers contributed.
+    fn reputation_settled(&self, _moods: &ByGroup<Mood>, _market: &Market, _params: &Params) {}
 
     /// The leads of the day are about to come: the market, the active subscriptions, the factors of each group.
     fn leads_expected(

@@ -13,7 +13,7 @@ use crate::random::Part;
 /// A subscriber whose thread died today; companies like to talk about that.
 ///
 /// Threads that reappear tell it again every day.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CompanyLost {
     /// The company.
     pub customer: u32,
@@ -29,8 +29,6 @@ pub struct CompanyLost {
     pub kind: ThreadKind,
     /// How the thread died.
     pub blame: Blame,
-    /// What that took from the reputation of its group.
-    pub damage: f64,
 }
 
 /// Whose silence ended a thread.
@@ -99,7 +97,7 @@ impl Step<'_> {
         let Some(row) = company.row(self.customers) else { return };
         let relationship = moved_relationship(row.relationship, relationship_delta, sales);
         company.set_relationship(relationship, self.customers);
-        let damage = self.damage_reputation(group, n, number);
+        self.damage_reputation(group, n, number);
         self.result.lost.push(CompanyLost {
             customer,
             group,
@@ -108,7 +106,6 @@ impl Step<'_> {
             days_subscribed: left.map(|row| self.today() - row.start_day),
             kind,
             blame,
-            damage,
         });
     }
 
@@ -147,13 +144,12 @@ impl Step<'_> {
         }
     }
 
-    fn damage_reputation(&mut self, group: Group, n: u32, thread: u32) -> f64 {
+    fn damage_reputation(&mut self, group: Group, n: u32, thread: u32) {
         let keys = [u64::from(self.today()), group.index() as u64, u64::from(n), u64::from(thread)];
         let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
         let law = &self.day.params.reputation;
         let damage = event_damage(self.day.morning.subscribers[group], u, law);
         self.reputation.write((group, ReputationCause::LostCompany), &[-damage], self.day.params, self.told);
-        damage
     }
 }
 

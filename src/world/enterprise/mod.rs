@@ -68,7 +68,7 @@ pub struct Negotiation<'a> {
 }
 
 /// What the rest of the day has to know.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EnterpriseDay {
     /// Customers that pay nothing today: their threat to leave was open this morning.
     pub suspended: BTreeSet<u32>,

@@ -5,7 +5,7 @@ use std::fmt;
 use toml::de::DeValue;
 use toml::{Spanned, Table, Value};
 
-use super::names::{name_in, named, nearest_keys, place_in};
+use super::names::{NAMING, name_in, named, nearest_keys, place_in};
 use super::{Params, check};
 use crate::identifiers::Group;
 
@@ -287,7 +287,7 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
 /// What an entry of a list is called.
 fn name_of(entry: &DeValue<'_>) -> Option<String> {
     let DeValue::Table(fields) = entry else { return None };
-    ["id", "tier", "level"].iter().find_map(|field| match fields.get(*field)?.get_ref() {
+    NAMING.iter().find_map(|field| match fields.get(*field)?.get_ref() {
         DeValue::String(id) => Some(id.to_string()),
         DeValue::Integer(number) => Some(number.as_str().to_owned()),
         _ => None,

@@ -7,7 +7,7 @@ use super::super::identifiers::Group;
 use super::nearest;
 
 /// Fields that name the entries of a list.
-const NAMING: [&str; 3] = ["id", "tier", "level"];
+pub(super) const NAMING: [&str; 3] = ["id", "tier", "level"];
 
 /// What an element of a list is called.
 pub(super) fn name_in(list: &[Value], at: usize) -> String {

@@ -106,7 +106,7 @@ pub fn conclude(
 }
 
 /// By how much each of those who found nothing acceptable changes the reputation of their group: negative.
-pub fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
+fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
     let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();

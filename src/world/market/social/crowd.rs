@@ -286,7 +286,6 @@ mod tests {
             days_subscribed: None,
             kind: ThreadKind::NewLead,
             blame: Blame::Timeout,
-            damage: 0.0,
         }
     }
 

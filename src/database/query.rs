@@ -65,7 +65,7 @@ const MOST_TEXT: usize = 64 << 20;
 /// A place to ask questions.
 pub struct QueryConnection {
     pub(super) released: Released,
-    pub(super) connection: Connection,
+    connection: Connection,
     /// What statements may name.
     scope: Scope,
     objections: Objections,
@@ -258,7 +258,7 @@ impl QueryConnection {
         self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
     }
 
-    pub(super) fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
+    fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
         self.trusting(|connection| connection.execute_batch(sql))
     }
 

@@ -25,6 +25,21 @@ pub struct StudyStamp {
     pub refused_labels: u32,
 }
 
+#[cfg(test)]
+impl StudyStamp {
+    /// That of a pilot in which nobody is assigned to anything.
+    pub(in crate::session) fn pilot(practice: bool) -> StudyStamp {
+        StudyStamp {
+            name: "pilot".to_owned(),
+            digest: String::new(),
+            condition: None,
+            order: None,
+            practice,
+            refused_labels: 0,
+        }
+    }
+}
+
 /// An earlier run of the same person.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EarlierRun {

@@ -48,16 +48,8 @@ mod tests {
         let session = Session::create(new, &Configuration::shipped()).expect("a run");
         let mut manifest = session.manifest().clone();
         assert_eq!(sight(&manifest, true), Ok(Sight::All));
-        let stamp = StudyStamp {
-            name: "pilot".to_owned(),
-            digest: String::new(),
-            condition: None,
-            order: None,
-            practice: false,
-            refused_labels: 0,
-        };
         for (practice, results) in [(true, ResultsShown::Own), (false, ResultsShown::None)] {
-            manifest.study = Some(StudyStamp { practice, ..stamp.clone() });
+            manifest.study = Some(StudyStamp::pilot(practice));
             manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
             assert_eq!(sight(&manifest, true).map_err(|refusal| refusal.code), Err("not_in_this_mode"));
         }

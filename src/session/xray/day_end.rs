@@ -44,8 +44,7 @@ fn parts_of(world: &World, facts: &Facts) -> Vec<PartHash> {
 
 fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     let closing = closing_figures(world);
-    let open = |days: &&u32| **days > 0;
-    let issues = world.customers.blocks().map(|(_, block)| block.open_issue_days.iter().filter(open).count());
+    let issues: u32 = world.customers.blocks().map(|(_, block)| block.open_issues()).sum();
     let market = &world.market;
     let mut figures: Vec<(String, f64)> = [
         ("cash", closing.cash),
@@ -55,7 +54,7 @@ fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
         ("leads of the day", facts.arrivals.len() as f64),
         ("departures of the day", facts.endings.len() as f64),
         ("customers so far", f64::from(world.customers.next_customer)),
-        ("open issues", issues.sum::<usize>() as f64),
+        ("open issues", f64::from(issues)),
         ("threads so far", f64::from(world.enterprise.next_thread)),
         ("shared quality", world.product.shared_bonus),
         ("index of the economy", market.economy.pmi),
@@ -103,19 +102,32 @@ impl DayWatch for Album {
     }
 }
 
-/// Keeps the hashes of every day, day 1 first.
-#[derive(Default)]
-pub(in crate::session) struct Fingerprints(Mutex<Vec<Vec<PartHash>>>);
+/// Keeps the hashes of every day, day 1 first, and the ends of some.
+pub(in crate::session) struct Fingerprints {
+    parts: Mutex<Vec<Vec<PartHash>>>,
+    album: Album,
+}
 
 impl Fingerprints {
+    /// Of every day, with the ends of these.
+    pub(in crate::session) fn with_ends(wanted: &[u32]) -> Fingerprints {
+        Fingerprints { parts: Mutex::default(), album: Album::of(wanted) }
+    }
+
     /// The hashes of all days so far.
     pub(in crate::session) fn all(&self) -> Vec<Vec<PartHash>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The end of a day that was wanted.
+    pub(in crate::session) fn take(&self, day: u32) -> Option<DayEnd> {
+        self.album.take(day)
     }
 }
 
 impl DayWatch for Fingerprints {
-    fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(parts_of(world, facts));
+    fn day_over(&self, world: &World, params: &Params, facts: &Facts) {
+        self.album.day_over(world, params, facts);
+        self.parts.lock().unwrap_or_else(PoisonError::into_inner).push(parts_of(world, facts));
     }
 }

@@ -144,21 +144,27 @@ impl Session {
         self.record_look_inside("difference", &names.1, shown)?;
         other.record_look_inside("difference", &names.0, shown)?;
         let fingerprints = |run: &Session| {
-            let seen = Arc::new(Fingerprints::default());
-            run.watch_up_to(last_day, seen.clone()).map(|()| seen.all())
+            let seen = Arc::new(Fingerprints::with_ends(day.as_slice()));
+            run.watch_up_to(last_day, seen.clone()).map(|()| seen)
         };
         let (own, others) = (fingerprints(self)?, fingerprints(other)?);
-        let differs = own.iter().zip(&others).take(last_day as usize).position(|(own, other)| own != other);
+        let (days, other_days) = (own.all(), others.all());
+        let differs =
+            days.iter().zip(&other_days).take(last_day as usize).position(|(own, other)| own != other);
         let first_day = differs.map(|at| at as u32 + 1);
         let Some(day) = day.or(first_day) else {
             return Ok(RunDifference { last_day, first_day, difference: None });
         };
-        let moment = |run: &Session| {
+        let moment = |run: &Session, seen: &Fingerprints| {
+            // A day that was named has been seen on the way.
+            if let Some(end) = seen.take(day) {
+                return Ok(end);
+            }
             let album = Arc::new(Album::of(&[day]));
             run.watch_up_to(day, album.clone())?;
             album.take(day).ok_or_else(not_reached)
         };
-        let difference = Difference::between((day, day), &moment(self)?, &moment(other)?);
+        let difference = Difference::between((day, day), &moment(self, &own)?, &moment(other, &others)?);
         Ok(RunDifference { last_day, first_day, difference: Some(difference) })
     }
 }

@@ -41,9 +41,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn drift_state(&mut self, day: Option<u32>) -> Result<DriftState, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("drift", "", day)?;
+        let day = self.begin_look("drift", "", day)?;
         let seen = self.hidden_day(day)?;
         let params = &self.simulation.params;
         let group = |group: Group| GroupDrifted {

@@ -13,9 +13,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("quality", group.id(), day)?;
+        let day = self.begin_look("quality", group.id(), day)?;
         self.hidden_day(day).map(|seen| QualityEquation::of(group, day, &seen.quality))
     }
 
@@ -28,15 +26,15 @@ impl Session {
         group: Group,
         day: Option<u32>,
     ) -> Result<SatisfactionEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("satisfaction", group.id(), day)?;
-        let own = self.hidden_day(day)?.satisfaction[group];
+        let day = self.begin_look("satisfaction", group.id(), day)?;
+        let seen = self.hidden_day(day)?;
+        let evening = &seen.groups[group];
+        let evening = (evening.active, evening.mood.map(|(satisfaction, _)| satisfaction));
         let yesterday = match day {
             1 => None,
             day => Some(self.hidden_day(day - 1)?.satisfaction[group]),
         };
-        Ok(SatisfactionEquation::of(group, day, own, yesterday))
+        Ok(SatisfactionEquation::of(group, day, seen.satisfaction[group], evening, yesterday))
     }
 
     /// What moved the reputation of a group on a day, the last one if none is named. The look is recorded.
@@ -48,9 +46,7 @@ impl Session {
         group: Group,
         day: Option<u32>,
     ) -> Result<ReputationEquation, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("reputation", group.id(), day)?;
+        let day = self.begin_look("reputation", group.id(), day)?;
         self.hidden_day(day).map(|seen| ReputationEquation::of(group, day, &seen.reputation))
     }
 
@@ -59,9 +55,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("spillover", "", day)?;
+        let day = self.begin_look("spillover", "", day)?;
         self.hidden_day(day).map(|seen| Spillover::of(day, &seen.known, seen.reputation))
     }
 }

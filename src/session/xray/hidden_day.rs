@@ -81,8 +81,6 @@ pub(in crate::session) struct GroupEvening {
     pub(in crate::session) open_issues: u32,
     /// Product quality before the multiplier of the model.
     pub(in crate::session) product_quality: f64,
-    /// Quality by targeted development that no rival has copied yet.
-    pub(in crate::session) bank: f64,
     /// Factor of the economy on budgets.
     pub(in crate::session) willingness_to_pay: f64,
     /// Factor of the economy on the speed of replies.
@@ -96,8 +94,6 @@ pub(in crate::session) struct GroupEvening {
 pub(in crate::session) struct MarketEvening {
     /// What it has added to curves since day 0.
     pub(in crate::session) drift: DriftTotals,
-    /// Quality by development for everybody that no rival has copied yet.
-    pub(in crate::session) shared_bank: f64,
     /// The event of the rivals on this day, with its severity.
     pub(in crate::session) event: Option<(Event, &'static str)>,
     /// The index.
@@ -137,9 +133,14 @@ impl Diary {
         self.keeps_threads
     }
 
+    /// Looks at a day that is over, from 1.
+    pub(in crate::session) fn read<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
+        self.pages().days.get(day.checked_sub(1)? as usize).map(look)
+    }
+
     /// A day that is over, from 1.
     pub(in crate::session) fn day(&self, day: u32) -> Option<HiddenDay> {
-        self.pages().days.get(day.checked_sub(1)? as usize).cloned()
+        self.read(day, HiddenDay::clone)
     }
 
     /// Hands over the threads of a day: there are many, so they are kept in one place only.
@@ -212,7 +213,7 @@ impl DayWatch for Diary {
         let moods = std::mem::take(&mut pages.moods);
         let weight = params.satisfaction.satisfaction_ema_alpha;
         let mut today = std::mem::take(&mut pages.today);
-        today.satisfaction = SatisfactionDay::by_group(&moods, &left, &world.customers, weight);
+        today.satisfaction = SatisfactionDay::by_group(&moods, &left, weight);
         today.banks = Banks {
             shared_bonus: world.product.shared_bonus,
             shared: world.product.shared_bank,
@@ -240,9 +241,8 @@ fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
         active: world.customers.groups[group].active(),
         reputation: market.reputation.of(group),
         mood: mood_of(world, group),
-        open_issues: blocks().map(open_issues).sum(),
+        open_issues: blocks().map(Block::open_issues).sum(),
         product_quality: product.quality(group, params),
-        bank: product.group_bank[group],
         willingness_to_pay: multiplier(Dimension::WillingnessToPay),
         deal_velocity: multiplier(Dimension::DealVelocity),
         seat_count: multiplier(Dimension::SeatCount),
@@ -258,13 +258,8 @@ fn market_evening(world: &World, params: &Params) -> MarketEvening {
     });
     MarketEvening {
         drift: market.drift.clone(),
-        shared_bank: world.product.shared_bank,
         event: newest.map(|event| (*event, severity(event.boost, &params.competitor).id())),
         pmi: market.economy.pmi,
         measured,
     }
-}
-
-fn open_issues(block: &Block) -> u32 {
-    block.open_issue_days.iter().filter(|days| **days > 0).count() as u32
 }

@@ -28,7 +28,7 @@ pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue
             expectation.quality.into(),
             expectation.c_max.into(),
             own.product_quality.into(),
-            own.bank.into(),
+            seen.banks.own[group].into(),
             own.willingness_to_pay.into(),
             own.deal_velocity.into(),
             own.seat_count.into(),
@@ -84,8 +84,8 @@ pub(in crate::session) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValu
     let event = seen.market.event.as_ref().map(|(event, _)| event);
     [
         day.into(),
-        seen.market.shared_bank.into(),
-        seen.groups.iter().map(|own| own.bank).sum::<f64>().into(),
+        seen.banks.shared.into(),
+        seen.banks.own.iter().sum::<f64>().into(),
         event.map(|event| event.boost).into(),
         event.map(|event| event.sampled).into(),
         event.map(|event| event.u).into(),

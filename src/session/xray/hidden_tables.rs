@@ -77,24 +77,30 @@ impl HiddenTables {
         diary: &Diary,
     ) -> Result<(), QueryError> {
         let lacking = self.filled_to(table) + 1..=day;
-        let seen = || lacking.clone().filter_map(|day| Some((day, diary.day(day)?)));
         let own = &self.connection;
         match table.name.as_str() {
             "hidden.groups" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| groups(day, &seen)))
+                let rows = lacking.filter_map(|day| diary.read(day, |seen| groups(day, seen)));
+                own.fill_hidden(ticket, table, false, rows.flatten())
             }
             "hidden.drift" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| drift(day, &seen)))
+                let rows = lacking.filter_map(|day| diary.read(day, |seen| drift(day, seen)));
+                own.fill_hidden(ticket, table, false, rows.flatten())
             }
             "hidden.factors" => {
-                own.fill_hidden(ticket, table, false, seen().flat_map(|(day, seen)| factors(day, &seen)))
+                let rows = lacking.filter_map(|day| diary.read(day, |seen| factors(day, seen)));
+                own.fill_hidden(ticket, table, false, rows.flatten())
             }
             "hidden.competitors" => {
-                own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| competitors(day, &seen)))
+                let rows = lacking.filter_map(|day| diary.read(day, |seen| competitors(day, seen)));
+                own.fill_hidden(ticket, table, false, rows)
             }
-            "hidden.pmi" => own.fill_hidden(ticket, table, false, seen().map(|(day, seen)| pmi(day, &seen))),
+            "hidden.pmi" => {
+                let rows = lacking.filter_map(|day| diary.read(day, |seen| pmi(day, seen)));
+                own.fill_hidden(ticket, table, false, rows)
+            }
             _ => {
-                let threads = lacking.clone().flat_map(|day| diary.take_threads(day));
+                let threads = lacking.flat_map(|day| diary.take_threads(day));
                 own.fill_hidden(ticket, table, false, threads.map(|own| thread(&own)))
             }
         }?;

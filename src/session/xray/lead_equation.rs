@@ -146,9 +146,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn lead_equations(&mut self, group: Group, day: Option<u32>) -> Result<Vec<LeadEquation>, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("leads", group.id(), day)?;
+        let day = self.begin_look("leads", group.id(), day)?;
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
         let seen = self.hidden_days(first..=day)?;
         Ok((first..).zip(&seen).map(|(day, seen)| LeadEquation::of(group, day, seen)).collect())

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::permission::REFUSED_LOOK;
 use crate::session::error::RunError;
 use crate::session::folder::derived::manifest_of;
 use crate::session::folder::mode::Mode;
@@ -23,8 +24,7 @@ impl Session {
     pub fn open_to_look_inside(folder: &Path, key: SealKey) -> Result<Session, RunError> {
         let mode = manifest_of(folder)?.mode;
         if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end().is_none() {
-            let message = "the x-ray works in debug runs and in runs that are over";
-            return Err(RunError::NotPossible(message.to_owned()));
+            return Err(RunError::NotPossible(REFUSED_LOOK.to_owned()));
         }
         let session = Session::open_sealed(folder, Access::Write, false, key)?;
         match session.refuse_to_look_inside() {

@@ -34,6 +34,23 @@ impl Session {
         self.recorder.is_some()
     }
 
+    /// Begins a look at a day, the last one if none is named: it is refused, or recorded before anything is shown. The day that
+    /// it shows.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_saved`.
+    pub(in crate::session) fn begin_look(
+        &mut self,
+        what: &str,
+        which: &str,
+        day: Option<u32>,
+    ) -> Result<u32, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside(what, which, day)?;
+        Ok(day)
+    }
+
     /// Records a look, before anything is shown.
     ///
     /// # Errors

@@ -59,9 +59,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn rival_state(&mut self, day: Option<u32>) -> Result<RivalState, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("rivals", "", day)?;
+        let day = self.begin_look("rivals", "", day)?;
         let seen = self.hidden_day(day)?;
         let Banks { shared_bonus, shared, group_bonus, own } = seen.banks;
         let law = &self.simulation.params.competitor;

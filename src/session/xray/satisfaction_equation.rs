@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 use crate::world::context::DayContext;
-use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::retention::satisfaction::{FeltDay, felt};
@@ -125,8 +124,6 @@ impl AddAssign for MoodSums {
 pub(in crate::session) struct SatisfactionDay {
     sums: MoodSums,
     left: u32,
-    end_count: u32,
-    end_sum: f64,
     weight: f64,
 }
 
@@ -134,23 +131,14 @@ pub(in crate::session) struct SatisfactionDay {
 pub(in crate::session) type MoodsByBlock = BTreeMap<(Group, u32), MoodSums>;
 
 impl SatisfactionDay {
-    /// All groups, from the sums of their blocks and how the day ended; `weight` is that of a day.
+    /// All groups, from the sums of their blocks and who left; `weight` is that of a day.
     pub(in crate::session) fn by_group(
         blocks: &MoodsByBlock,
         left: &ByGroup<u32>,
-        customers: &Customers,
         weight: f64,
     ) -> ByGroup<SatisfactionDay> {
-        let mut days = ByGroup::from_fn(|group| {
-            let satisfaction = || customers.groups[group].blocks.iter().flat_map(|block| &block.satisfaction);
-            SatisfactionDay {
-                sums: MoodSums::default(),
-                left: left[group],
-                end_count: satisfaction().count() as u32,
-                end_sum: satisfaction().sum(),
-                weight,
-            }
-        });
+        let day = |group| SatisfactionDay { sums: MoodSums::default(), left: left[group], weight };
+        let mut days = ByGroup::from_fn(day);
         for ((group, _), sums) in blocks {
             days[*group].sums += *sums;
         }
@@ -180,11 +168,12 @@ pub struct SatisfactionEquation {
 }
 
 impl SatisfactionEquation {
-    /// The group on a day, and how it was on the day before.
+    /// The group on a day, its subscribers in the evening with their mean satisfaction, and how it was on the day before.
     pub(in crate::session) fn of(
         group: Group,
         day: u32,
         own: SatisfactionDay,
+        (subscribers, evening): (u32, Option<f64>),
         yesterday: Option<SatisfactionDay>,
     ) -> SatisfactionEquation {
         SatisfactionEquation {
@@ -192,9 +181,9 @@ impl SatisfactionEquation {
             day,
             weight: own.weight,
             left: own.left,
-            came: (own.end_count + own.left).saturating_sub(own.sums.count),
-            subscribers: own.end_count,
-            evening: mean(own.end_sum, own.end_count),
+            came: (subscribers + own.left).saturating_sub(own.sums.count),
+            subscribers,
+            evening,
             seen: own,
             yesterday,
         }

@@ -3,10 +3,10 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::hidden_day::{Diary, HiddenDay};
-use crate::session::error::RunError;
 use crate::session::play::advance::DayReport;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
+use crate::session::why::not_readable;
 use crate::tools::Refusal;
 use crate::world::day::watch::DayWatch;
 use crate::world::events::Facts;
@@ -87,7 +87,7 @@ impl Session {
             let message = "a run in memory keeps no lines, so its past days cannot be simulated again";
             return Err(Refusal::new("not_possible", message));
         }
-        let params = Arc::new(self.manifest.params().map_err(not_readable)?);
+        let params = Arc::new(self.manifest.params().map_err(|error| not_readable(&error))?);
         let mut shadow = Session::unwritten(self.manifest.clone(), self.folder.clone(), params, None);
         shadow.simulation.watch = watch;
         Ok(Box::new(shadow))
@@ -118,14 +118,14 @@ impl Session {
             return Ok(());
         }
         let path = folder.join("trajectory.jsonl");
-        let trajectory = Trajectory::read(&path).map_err(not_readable)?;
+        let trajectory = Trajectory::read(&path).map_err(|error| not_readable(&error))?;
         let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position.seq);
         let lacking: Vec<_> = lines.take_while(|line| line.seq <= self.position.seq).collect();
         for line in lacking {
             if !goes_on(shadow) {
                 break;
             }
-            shadow.apply_line_telling(&path, line, tell).map_err(not_readable)?;
+            shadow.apply_line_telling(&path, line, tell).map_err(|error| not_readable(&error))?;
         }
         Ok(())
     }
@@ -143,8 +143,4 @@ impl DayWatch for Evening {
             *self.world.lock().unwrap_or_else(PoisonError::into_inner) = Some(world.clone());
         }
     }
-}
-
-fn not_readable(error: RunError) -> Refusal {
-    Refusal::new("not_readable", error.to_string())
 }

@@ -21,15 +21,16 @@ impl Session {
     /// # Errors
     /// As [`Session::xray_query`].
     pub fn xray_query_as(&mut self, ticket: Ticket, sql: &str, day: Option<u32>) -> Result<Rows, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("sql", sql, day)?;
+        let day = self.begin_look("sql", sql, day)?;
         // Tables that went wrong are not kept: the next look begins anew.
         let mut tables = self.take_hidden_tables()?;
-        for table in tables.connection().hidden_tables_in(sql) {
+        let named = tables.connection().hidden_tables_in(sql);
+        // One diary serves all tables: the days are simulated once.
+        let keeps_threads = self.diary.keeps_threads() || named.iter().any(|table| table.name == THREADS);
+        for table in named {
             match table.name.as_str() {
                 CUSTOMERS => self.show_customers(&mut tables, ticket, table, day)?,
-                _ => self.add_days(&mut tables, ticket, table)?,
+                _ => self.add_days(&mut tables, ticket, table, keeps_threads)?,
             }
         }
         let limits = self.query_limits();
@@ -89,12 +90,12 @@ impl Session {
         tables: &mut HiddenTables,
         ticket: Ticket,
         table: &'static Table,
+        keeps_threads: bool,
     ) -> Result<(), Refusal> {
         let day = self.day();
         if !tables.lacks(table, day) {
             return Ok(());
         }
-        let keeps_threads = self.diary.keeps_threads() || table.name == THREADS;
         let diary = self.diary_of_all_days(keeps_threads)?;
         Ok(tables.continue_to(day, ticket, table, &diary)?)
     }
@@ -118,21 +119,13 @@ mod tests {
         let forecasts = session.naive_forecasts();
         session.advance("wait", &forecasts, crate::session::Via::Script, &mut |_| {}).expect("a week");
         session.end().expect("it ends");
-        let stamp = StudyStamp {
-            name: "pilot".to_owned(),
-            digest: String::new(),
-            condition: None,
-            order: None,
-            practice: false,
-            refused_labels: 0,
-        };
         let sql = "SELECT count(*) FROM hidden.groups";
         for (practice, results, is_shown) in [
             (false, ResultsShown::Own, true),
             (true, ResultsShown::Own, false),
             (false, ResultsShown::None, false),
         ] {
-            session.manifest.study = Some(StudyStamp { practice, ..stamp.clone() });
+            session.manifest.study = Some(StudyStamp::pilot(practice));
             session.manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
             let asked = session.xray_query(sql, None).map_err(|refusal| refusal.code);
             assert_eq!(asked.is_ok(), is_shown, "{practice} {results:?}");

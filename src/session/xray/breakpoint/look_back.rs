@@ -65,9 +65,7 @@ impl Session {
 
     /// How a condition stood on each day.
     fn judged_days(&mut self, what: &str, condition: Condition) -> Result<Vec<Judged>, Refusal> {
-        self.refuse_to_look_inside()?;
-        let today = self.day_to_show(None)?;
-        self.record_look_inside(what, &condition.to_string(), today)?;
+        let today = self.begin_look(what, &condition.to_string(), None)?;
         let series = self.measured_up_to(today)?;
         Ok(series.read(|days| (1..=today).map(|day| condition.judged(days, day)).collect()))
     }

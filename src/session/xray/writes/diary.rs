@@ -37,16 +37,20 @@ impl WritePages {
         self.writes.last().map_or(self.first, |write| write.after)
     }
 
-    /// Adds an amount as the world did; neighbours by one mechanism are one write.
+    /// Adds an amount as the world did.
     fn add(&mut self, by: WrittenBy, amount: f64) {
         let before = self.now();
-        let after = before + amount;
+        self.write(by, &[amount], before, before + amount);
+    }
+
+    /// Neighbours by one mechanism are one write.
+    fn write(&mut self, by: WrittenBy, changes: &[f64], before: f64, after: f64) {
         match self.writes.last_mut().filter(|write| write.by == by) {
             Some(write) => {
-                write.changes.push(amount);
+                write.changes.extend_from_slice(changes);
                 write.after = after;
             }
-            None => self.writes.push(Write { by, changes: vec![amount], before, after }),
+            None => self.writes.push(Write { by, changes: changes.to_vec(), before, after }),
         }
     }
 
@@ -93,18 +97,8 @@ impl DayWatch for WriteDiary {
         if self.target != WriteTarget::Reputation(write.group) {
             return;
         }
-        let by = WrittenBy::Reputation(write.cause);
-        let mut pages = self.pages();
-        match pages.writes.last_mut().filter(|own| own.by == by) {
-            Some(own) => {
-                own.changes.extend_from_slice(write.changes);
-                own.after = write.after;
-            }
-            None => {
-                let (changes, ReputationWrite { before, after, .. }) = (write.changes.to_vec(), *write);
-                pages.writes.push(Write { by, changes, before, after });
-            }
-        }
+        let &ReputationWrite { cause, changes, before, after, .. } = write;
+        self.pages().write(WrittenBy::Reputation(cause), changes, before, after);
     }
 
     fn day_counted(&self, figures: &DayFigures) {

@@ -79,9 +79,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn who_writes(&mut self, target: WriteTarget, day: Option<u32>) -> Result<WhoWrites, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside("who", &target.to_string(), day)?;
+        let day = self.begin_look("who", &target.to_string(), day)?;
         let opening = match target {
             WriteTarget::Reputation(_) => self.simulation.params.initial.initial_reputation,
             WriteTarget::Cash => self.manifest.cash,

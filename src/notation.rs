@@ -152,6 +152,12 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(written).collect())
 }
 
+/// A text that begins with a capital letter.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Text as a cell of a table that other programs open: printable, and with `'` before what a spreadsheet would take for a
 /// formula. Numbers stay as they are.
 pub fn csv_cell(text: &str) -> Cow<'_, str> {

@@ -195,11 +195,6 @@ impl Interpreter {
         let answer = match parsed {
             Ok(Line::Empty) => return Ok(None),
             Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
-            Ok(Line::Text { word, rest }) if word == "whatif" => {
-                let column = line.trim_end().chars().count() - rest.chars().count() + 1;
-                self.what_if(&rest, column).unwrap_or_else(usage)
-            }
-            Ok(Line::Text { word, rest }) if word == "why" => self.why(&rest).unwrap_or_else(usage),
             Ok(Line::Text { word, rest }) => self.text(&word, &rest, line),
             Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
                 self.next(&arguments, input)?
@@ -222,6 +217,8 @@ impl Interpreter {
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
             "xray" => self.hidden_tables(rest, column),
+            "why" => self.why(rest).unwrap_or_else(usage),
+            "whatif" => self.what_if(rest, column).unwrap_or_else(usage),
             "pause" => self.pause(rest),
             "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
             "run" => self.run_days(rest, column).unwrap_or_else(usage),

@@ -7,7 +7,7 @@ use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
 use super::words::{count, money, whole};
-use crate::notation::{grouped, percent, signed_dollars};
+use crate::notation::{capital, grouped, percent, signed_dollars};
 use crate::session::Ended;
 
 /// The page that tells a story.
@@ -148,11 +148,6 @@ fn rank(story: &Story) -> Vec<Block> {
     blocks.extend(standing.caveat.clone().map(Block::Note));
     blocks.push(Block::Note(format!("Source: {}.", standing.source)));
     blocks
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn highlights(story: &Story) -> Vec<Block> {

@@ -100,14 +100,24 @@ fn otherwise(call: &DecisionDifference) -> String {
 
 /// Headers and rows: a figure at each milestone, in each branch, with its difference from the run as it was.
 pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>, Vec<Vec<String>>) {
-    let numbers = 0..comparison.branches.len();
+    let cell = |at: usize, figure, day| cell(comparison, &comparison.branches[at], figure, day);
+    table_of(comparison, days_per_week, cell)
+}
+
+/// Headers and rows with a cell for each milestone, figure and branch.
+fn table_of(
+    comparison: &BranchComparison,
+    days_per_week: u32,
+    cell: impl Fn(usize, BranchFigure, u32) -> String,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let numbers = || 0..comparison.branches.len();
     let headers =
-        ["after week", "figure"].map(str::to_owned).into_iter().chain(numbers.map(|at| at.to_string()));
+        ["after week", "figure"].map(str::to_owned).into_iter().chain(numbers().map(|at| at.to_string()));
     let mut rows = Vec::new();
     for day in comparison.milestones(days_per_week) {
         for (at, figure) in comparison.figures.iter().enumerate() {
             let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
-            let cells = comparison.branches.iter().map(|branch| cell(comparison, branch, *figure, day));
+            let cells = numbers().map(|branch| cell(branch, *figure, day));
             rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
         }
     }
@@ -155,16 +165,7 @@ pub fn futures_table(
     futures: &Futures,
     days_per_week: u32,
 ) -> (Vec<String>, Vec<Vec<String>>) {
-    let (headers, _) = table(comparison, days_per_week);
-    let mut rows = Vec::new();
-    for day in comparison.milestones(days_per_week) {
-        for (at, figure) in comparison.figures.iter().enumerate() {
-            let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
-            let cells = (0..comparison.branches.len()).map(|at| futures_cell(futures, at, *figure, day));
-            rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
-        }
-    }
-    (headers, rows)
+    table_of(comparison, days_per_week, |at, figure, day| futures_cell(futures, at, figure, day))
 }
 
 /// A figure over the futures: its median, and from where to where nine of ten and one of ten have more.

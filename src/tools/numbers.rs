@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::notation::grouped;
+use crate::notation::{capital, grouped};
 use crate::world::params::Params;
 
 /// Every number of the parameters, by its key.
@@ -101,11 +101,6 @@ fn word(value: f64) -> String {
     ];
     let digits = plain(value);
     digits.parse::<usize>().ok().and_then(|whole| WORDS.get(whole)).map_or(digits, |word| (*word).to_owned())
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A number with as many decimals as it has, at most six.

@@ -375,9 +375,9 @@ impl App {
         let last_week = week_of(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
         let week = if self.is_replay() { last_week } else { last_week.saturating_sub(1).max(1) };
         let page = BranchesPage::new(week, last_week);
-        let BranchesAsked { question, stop, .. } = page.opening_question();
+        let asks = page.opening_question();
         self.open(page);
-        self.ask_branches(question, stop);
+        self.follow(vec![asks]);
     }
 
     pub(super) fn ask_branches(&mut self, question: BranchesQuestion, stop: Arc<AtomicBool>) {

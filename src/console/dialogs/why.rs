@@ -177,11 +177,7 @@ impl Dialog for WhyBox {
             canvas.line(row, &line);
             canvas.click(row, Click::Row(0, at));
         }
-        let keys = match self.why() {
-            Some(_) => look.hints(&[Action::Open, Action::Close]),
-            None => look.hints(&[Action::Close]),
-        };
-        canvas.pane_keys(own, &keys);
+        canvas.pane_keys(own, &look.hints(&self.hints()));
     }
 }
 

@@ -1,27 +1,27 @@
 //! What would have been, found on a thread of its own: the run goes on meanwhile.
 
 use std::ops::ControlFlow;
-use std::sync::PoisonError;
-use std::sync::atomic::Ordering;
 use std::sync::mpsc::Sender;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 use super::causes::folder_of;
-use super::{Open, SessionThread};
+use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::console::message::{Message, News};
 use crate::console::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
 use crate::session::record::LeavingCause;
-use crate::session::{Access, DecisionEdit, Mode, Refusal, Session, WhatIf};
+use crate::session::{Access, DecisionEdit, Refusal, Session, WhatIf, unless_stopped};
 
 impl SessionThread {
     /// Finds what would have been, and reports how far that has come.
     pub(super) fn find_branches(&mut self, asked: BranchesAsked) {
         let Some(open) = &mut self.open else { return };
-        let (folder, state) = (folder_of(open), (open.session().day(), open.session().ended().is_some()));
+        let folder = folder_of(open);
         let (news, kept) = (self.news.clone(), self.branches.clone());
         std::thread::spawn(move || {
             let found = folder.and_then(|folder| {
                 let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-                answer(&asked, kept.of(folder, state.0, state.1, WhatIf::read)?, &news)
+                answer(&asked, kept.of(folder)?, &news)
             });
             // Nobody waits for what was stopped.
             if let Some(found) = found.transpose() {
@@ -33,8 +33,7 @@ impl SessionThread {
     /// Makes a branch that keeps the decisions of the run, some of them edited, and opens it.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
         let Some(open) = &mut self.open else { return };
-        let own = open.session().manifest().mode;
-        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        let mode = open.session().manifest().mode.of_branch();
         let mut on = |_| ControlFlow::Continue(());
         let adopted = match open {
             Open::Played(session) => session.branch_with_decisions(week, edits, mode, &mut on),
@@ -68,12 +67,16 @@ fn answer(
     own: &mut WhatIf,
     news: &Sender<Message>,
 ) -> Result<Option<BranchesFound>, Refusal> {
+    let told = Mutex::new(Instant::now());
     let progress = |done, all| {
-        let _ = news.send(Message::News(News::BranchesProgress(asked.number, done, all)));
-        match asked.stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        // Every processor tells of every day; the screen needs no more than it can show.
+        if let Ok(mut told) = told.try_lock()
+            && told.elapsed() >= BETWEEN_DAYS
+        {
+            *told = Instant::now();
+            let _ = news.send(Message::News(News::BranchesProgress(asked.number, done, all)));
         }
+        unless_stopped(&asked.stop)
     };
     let (week, alternatives, futures) = match &asked.question {
         BranchesQuestion::Decisions => {
@@ -81,13 +84,6 @@ fn answer(
         }
         BranchesQuestion::Compare { week, alternatives, futures } => (*week, alternatives, *futures),
     };
-    let Some(compared) = own.compare(week, None, alternatives, &progress)? else { return Ok(None) };
-    let drawn = match futures {
-        Some(count) => match own.futures(week, None, alternatives, count, &progress)? {
-            Some(drawn) => Some(Box::new(drawn)),
-            None => return Ok(None),
-        },
-        None => None,
-    };
-    Ok(Some(BranchesFound::Compared(Box::new(compared), drawn)))
+    let found = own.answer((week, None), alternatives, futures, &progress)?;
+    Ok(found.map(|(compared, drawn)| BranchesFound::Compared(Box::new(compared), drawn.map(Box::new))))
 }

@@ -1,25 +1,22 @@
 //! Causes of a change, found on a thread of their own: the run goes on meanwhile.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::sync::mpsc::Sender;
 use std::sync::{Mutex, PoisonError};
 
 use super::{Open, SessionThread};
 use crate::console::message::{Message, News};
 use crate::console::resimulation::WhyAsked;
-use crate::session::{Causes, LastRead, Refusal, Why};
+use crate::session::{Causes, LastRead, Refusal, Why, unless_stopped};
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.
     pub(super) fn find_causes(&mut self, asked: WhyAsked) {
         let Some(open) = &mut self.open else { return };
         let folder = folder_of(open);
-        let state = (open.session().day(), open.session().ended().is_some());
         let (news, kept) = (self.news.clone(), self.causes.clone());
         std::thread::spawn(move || {
-            let answer = folder.and_then(|folder| answer(&asked, (folder, state.0, state.1), &kept, &news));
+            let answer = folder.and_then(|folder| answer(&asked, folder, &kept, &news));
             // Nobody waits for what was stopped.
             if let Some(answer) = answer.transpose() {
                 let _ = news.send(Message::News(News::Why(asked.number, Box::new(answer))));
@@ -41,16 +38,13 @@ pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
 
 fn answer(
     asked: &WhyAsked,
-    (folder, day, is_over): (PathBuf, u32, bool),
+    folder: PathBuf,
     kept: &Mutex<LastRead<Causes>>,
     news: &Sender<Message>,
 ) -> Result<Option<Why>, Refusal> {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    kept.of(folder, day, is_over, Causes::read)?.why(asked.figure, Some(asked.week), &|progress| {
+    kept.of(folder)?.why(asked.figure, Some(asked.week), &|progress| {
         let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
-        match asked.stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        unless_stopped(&asked.stop)
     })
 }

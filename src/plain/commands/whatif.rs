@@ -1,8 +1,6 @@
 //! `whatif …`: what would have been under other decisions (docs/interfaces/plain-mode.md#what-if).
 
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use serde_json::{Value, json};
 
@@ -16,8 +14,8 @@ use crate::report::whatif::{
 };
 use crate::session::record::LeavingCause;
 use crate::session::{
-    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, Mode, PastCall, Refusal, WhatIf,
-    branches_of,
+    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastCall, Refusal, Session, WhatIf,
+    branches_of, unless_stopped,
 };
 
 /// Futures that are drawn where no number is named.
@@ -78,7 +76,7 @@ impl Interpreter {
 
     fn what_if_of_run(&mut self) -> Result<&mut WhatIf, Refusal> {
         let folder = self.session.folder_of_causes()?;
-        self.branches_kept.of(folder, self.session.day(), self.session.ended().is_some(), WhatIf::read)
+        self.branches_kept.of(folder)
     }
 
     /// The calls from a week on, with their lines.
@@ -116,21 +114,11 @@ impl Interpreter {
 
     fn compare(&mut self, question: &Question) -> Answer {
         let stop = self.watch.enter_stoppable();
-        let go_on = |_, _| match stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
+        let go_on = |_, _| unless_stopped(&stop);
         let Question { from, until, futures, alternatives } = question;
         let answer = self.what_if_of_run().and_then(|own| {
-            let Some(comparison) = own.compare(*from, *until, alternatives, &go_on)? else { return Ok(None) };
-            let drawn = match futures {
-                Some(count) => match own.futures(*from, *until, alternatives, *count, &go_on)? {
-                    Some(futures) => Some(futures),
-                    None => return Ok(None),
-                },
-                None => None,
-            };
-            Ok(Some((comparison, drawn, own.days_per_week())))
+            let found = own.answer((*from, *until), alternatives, *futures, &go_on)?;
+            Ok(found.map(|(comparison, drawn)| (comparison, drawn, own.days_per_week())))
         });
         self.watch.enter(Phase::Working);
         self.note_look("whatif", &[]);
@@ -173,15 +161,10 @@ impl Interpreter {
         if keeps {
             return Ok(self.branch_keeping(week, &[]));
         }
-        let own = self.session.manifest().mode;
-        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        let mode = self.session.manifest().mode.of_branch();
         Ok(match self.session.branch(week, mode) {
             Ok(branch) => {
-                self.session.leave(LeavingCause::Quit);
-                let _ = self.session.save();
-                self.session = branch;
-                self.session.take_up(Interface { name: "plain", window: None });
-                let (run, day) = (self.session.manifest().id.clone(), self.session.day());
+                let (run, day) = self.go_on_in(branch);
                 let text = format!("run {run} continues from day {day} · {mode}");
                 Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
             }
@@ -191,24 +174,16 @@ impl Interpreter {
 
     /// Goes on in a branch that keeps the decisions of this run, some of them edited.
     fn branch_keeping(&mut self, week: u32, decided: &[DecisionEdit]) -> Answer {
-        let own = self.session.manifest().mode;
-        let mode = if own == Mode::Baseline { Mode::Sandbox } else { own };
+        let mode = self.session.manifest().mode.of_branch();
         let stop = self.watch.enter_stoppable();
-        let mut go_on = |_| match stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
+        let mut go_on = |_| unless_stopped(&stop);
         let adopted = self.session.branch_with_decisions(week, decided, mode, &mut go_on);
         self.watch.enter(Phase::Working);
         let adopted = match adopted {
             Ok(adopted) => adopted,
             Err(refusal) => return Answer::refused("branch", refusal),
         };
-        self.session.leave(LeavingCause::Quit);
-        let _ = self.session.save();
-        self.session = adopted.session;
-        self.session.take_up(Interface { name: "plain", window: None });
-        let (run, day) = (self.session.manifest().id.clone(), self.session.day());
+        let (run, day) = self.go_on_in(adopted.session);
         let refused: Vec<Value> = adopted
             .refused
             .iter()
@@ -224,6 +199,15 @@ impl Interpreter {
             told.collect::<String>()
         );
         Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode, "refused": refused }))
+    }
+
+    /// Leaves this run for another one; its name and day.
+    fn go_on_in(&mut self, other: Session) -> (String, u32) {
+        self.session.leave(LeavingCause::Quit);
+        let _ = self.session.save();
+        self.session = other;
+        self.session.take_up(Interface { name: "plain", window: None });
+        (self.session.manifest().id.clone(), self.session.day())
     }
 
     /// `branches`: the tree in which the run stands.

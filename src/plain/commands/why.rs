@@ -1,8 +1,5 @@
 //! `why FIGURE [WEEK]`: what a figure of a week changed by, and how much of it each cause brought.
 
-use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
-
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
@@ -11,18 +8,13 @@ use super::Interpreter;
 use crate::database::text::aligned;
 use crate::notation::nearest;
 use crate::report::why::{equation, heading, lines};
-use crate::session::{Causes, Refusal, WeekFigure, Why};
+use crate::session::{Causes, Refusal, WeekFigure, Why, unless_stopped};
 
 impl Interpreter {
     pub(super) fn why(&mut self, words: &str) -> Result<Answer, Problem> {
         let (figure, week) = read(words)?;
         let stop = self.watch.enter_stoppable();
-        let answer = self.causes().and_then(|causes| {
-            causes.why(figure, week, &|_| match stop.load(Ordering::Relaxed) {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            })
-        });
+        let answer = self.causes().and_then(|causes| causes.why(figure, week, &|_| unless_stopped(&stop)));
         self.watch.enter(super::Phase::Working);
         self.note_look(format!("why {words}").trim_end(), &[]);
         Ok(match answer {
@@ -36,7 +28,7 @@ impl Interpreter {
 
     fn causes(&mut self) -> Result<&mut Causes, Refusal> {
         let folder = self.session.folder_of_causes()?;
-        self.causes_kept.of(folder, self.session.day(), self.session.ended().is_some(), Causes::read)
+        self.causes_kept.of(folder)
     }
 }
 

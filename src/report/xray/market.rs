@@ -1,7 +1,7 @@
 //! Rivals and drift, in words.
 
 use super::table;
-use crate::session::{DriftState, GroupDrifted, NextRivalMove, RivalState, Severity};
+use crate::session::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
 /// Moves that are listed.
 const LISTED_MOVES: usize = 10;
@@ -43,7 +43,7 @@ fn moves(own: &RivalState) -> Vec<String> {
         .map(|(event, severity)| {
             vec![
                 format!("day {}", event.day),
-                severity_in_words(*severity).to_owned(),
+                severity.id().to_owned(),
                 format!("{:+.4}", event.boost),
                 format!("{:.4}", event.sampled),
                 format!("{:.1} %", event.u * 100.0),
@@ -79,15 +79,6 @@ fn next_move(next: &NextRivalMove, own: &RivalState) -> Vec<String> {
         ));
     }
     lines
-}
-
-fn severity_in_words(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Minor => "minor",
-        Severity::Moderate => "moderate",
-        Severity::Major => "major",
-        Severity::Transformative => "transformative",
-    }
 }
 
 /// What the market has added to expectations and budgets, and what the next application of drift adds.

@@ -1,14 +1,26 @@
-//! The record that was read last, so that the next question about it is answered at once.
+//! The record that was asked about last, so that the next question about it begins with what was simulated for this one.
 
 use std::path::{Path, PathBuf};
 
 use crate::tools::Refusal;
 
-/// What was made of a record that was asked about last.
-pub struct LastRead<T>(Option<(ReadAs, T)>);
+/// What answers questions about a record.
+pub trait OfRecord: Sized {
+    /// Of the run in a folder, as far as it is recorded now.
+    ///
+    /// # Errors
+    /// The record may not be asked about, or cannot be read.
+    fn read(folder: &Path) -> Result<Self, Refusal>;
 
-/// What was read of a record: its folder, lines as far as a day, and whether the run is over.
-type ReadAs = (PathBuf, u32, bool);
+    /// Takes in what has been recorded since.
+    ///
+    /// # Errors
+    /// As [`OfRecord::read`].
+    fn renew(&mut self) -> Result<(), Refusal>;
+}
+
+/// What was made of a record that was asked about last.
+pub struct LastRead<T>(Option<(PathBuf, T)>);
 
 impl<T> Default for LastRead<T> {
     fn default() -> LastRead<T> {
@@ -16,24 +28,20 @@ impl<T> Default for LastRead<T> {
     }
 }
 
-impl<T> LastRead<T> {
-    /// What is made of the run in a folder, as far as a day; it is read unless it was the last one.
+impl<T: OfRecord> LastRead<T> {
+    /// What is made of the run in a folder, as far as it is recorded now.
     ///
     /// # Errors
     /// Those of reading it; then nothing is kept.
-    pub fn of(
-        &mut self,
-        folder: PathBuf,
-        day: u32,
-        is_over: bool,
-        read: impl FnOnce(&Path) -> Result<T, Refusal>,
-    ) -> Result<&mut T, Refusal> {
-        let read_as = (folder, day, is_over);
-        let kept = match self.0.take().filter(|(known, _)| *known == read_as) {
-            Some(kept) => kept,
+    pub fn of(&mut self, folder: PathBuf) -> Result<&mut T, Refusal> {
+        let kept = match self.0.take().filter(|(known, _)| *known == folder) {
+            Some((folder, mut made)) => {
+                made.renew()?;
+                (folder, made)
+            }
             None => {
-                let made = read(&read_as.0)?;
-                (read_as, made)
+                let made = T::read(&folder)?;
+                (folder, made)
             }
         };
         Ok(&mut self.0.insert(kept).1)

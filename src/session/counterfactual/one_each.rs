@@ -1,5 +1,6 @@
 //! Several simulations at once.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
@@ -10,6 +11,14 @@ pub(in crate::session) struct Stopped(AtomicBool);
 impl Stopped {
     pub(in crate::session) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Whether to go on with work that a flag stops.
+pub fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
+    match stop.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
     }
 }
 

@@ -20,6 +20,8 @@ const KEPT: usize = 4;
 pub(in crate::session) struct Past {
     /// The file they were read from.
     path: PathBuf,
+    /// How long it was then, in bytes.
+    length: u64,
     /// What the run is.
     pub(in crate::session) manifest: Manifest,
     /// Everything that moved it on.
@@ -37,15 +39,33 @@ impl Past {
     /// It is missing, damaged or of another version.
     pub(in crate::session) fn read(path: &Path) -> Result<Past, RunError> {
         let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
+        let length = trajectory.length;
         let ended = trajectory.end().is_some();
         let opening = Arc::new(KeptState::opening(&manifest, params));
         Ok(Past {
             path,
+            length,
             manifest,
             moves: moves(&trajectory.lines),
             ended,
             kept: BTreeMap::from([(0, opening)]),
         })
+    }
+
+    /// Takes in what has been recorded since; moments that lead to it are kept.
+    ///
+    /// # Errors
+    /// As [`Past::read`].
+    pub(in crate::session) fn renew(&mut self) -> Result<(), RunError> {
+        let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
+        if length == self.length {
+            return Ok(());
+        }
+        let now = Past::read(&self.path)?;
+        let kept =
+            if now.moves.starts_with(&self.moves) { std::mem::take(&mut self.kept) } else { BTreeMap::new() };
+        *self = Past { kept: if kept.is_empty() { now.kept } else { kept }, ..now };
+        Ok(())
     }
 
     /// The moves that follow a day and lead no further than another.

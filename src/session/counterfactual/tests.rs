@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::branch::*;
 use super::edits::{AddedCall, Edits};
 use super::kept_state::KeptState;
+use super::last_read::OfRecord;
 use super::past::Past;
 use super::script::{Move, moves};
 use crate::session::folder::configuration::Configuration;

@@ -53,7 +53,7 @@ pub fn rescue(folder: &Path, key: &SealKey) -> Result<Rescued, RunError> {
             }
         },
     };
-    let mode = if manifest.mode == Mode::Baseline { Mode::Sandbox } else { manifest.mode };
+    let mode = manifest.mode.of_branch();
     let branch = branch_of(folder, &manifest, &trajectory.lines[..good], mode)
         .map_err(|refusal| RunError::NotPossible(refusal.message))?;
     let (run, day) = (branch.manifest().id.clone(), branch.day());

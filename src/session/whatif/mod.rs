@@ -27,10 +27,11 @@ pub use kin::{Kin, branches_of};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
 use super::counterfactual::edits::{Edits, Redrawn};
 use super::counterfactual::kept_state::KeptState;
+use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::one_each::one_each;
 use super::counterfactual::past::Past;
 use super::counterfactual::script::{Move, PastCall};
-use super::why::{Sight, sight};
+use super::why::{Sight, not_readable, sight};
 use crate::tools::Refusal;
 use crate::world::events::DayFigures;
 
@@ -59,17 +60,23 @@ struct Parting {
     until: u32,
 }
 
-impl WhatIf {
-    /// Of the run in a folder, or of a trajectory file, as far as it is recorded now.
-    ///
+impl OfRecord for WhatIf {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
-    pub fn read(path: &Path) -> Result<WhatIf, Refusal> {
-        let past = Past::read(path).map_err(|error| super::why::not_readable(&error))?;
+    fn read(folder: &Path) -> Result<WhatIf, Refusal> {
+        let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
         Ok(WhatIf { past, sight })
     }
 
+    fn renew(&mut self) -> Result<(), Refusal> {
+        self.past.renew().map_err(|error| not_readable(&error))?;
+        self.sight = sight(&self.past.manifest, self.past.ended)?;
+        Ok(())
+    }
+}
+
+impl WhatIf {
     /// The calls of the run from a week on: what can be decided otherwise.
     ///
     /// # Errors
@@ -84,6 +91,25 @@ impl WhatIf {
         Ok(calls.collect())
     }
 
+    /// The branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] where a number of futures is asked for. None if it
+    /// was stopped.
+    ///
+    /// # Errors
+    /// As for [`WhatIf::compare`].
+    pub fn answer(
+        &mut self,
+        (week, until_week): (u32, Option<u32>),
+        alternatives: &[Vec<DecisionEdit>],
+        futures: Option<u32>,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<(BranchComparison, Option<Futures>)>, Refusal> {
+        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
+        let all = all_edits(alternatives, &parting)?;
+        let Some(compared) = self.compared(&parting, &all, progress) else { return Ok(None) };
+        let Some(count) = futures else { return Ok(Some((compared, None))) };
+        Ok(self.drawn(&parting, &all.1, count, progress).map(|drawn| (compared, Some(drawn))))
+    }
+
     /// The run as it was and up to three alternatives, from the start of a week to the end of another, or, if none is named,
     /// of the last one recorded, for twelve weeks at least. None if it was stopped.
     ///
@@ -96,24 +122,31 @@ impl WhatIf {
         alternatives: &[Vec<DecisionEdit>],
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<BranchComparison>, Refusal> {
-        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let (all, edits) = all_edits(alternatives, &parting)?;
-        let Some(outcomes) = parting.simulate(&edits, progress) else { return Ok(None) };
-        let Parting { start, earlier, moves, until } = &parting;
+        Ok(self.answer((week, until_week), alternatives, None, progress)?.map(|(compared, _)| compared))
+    }
+
+    fn compared(
+        &self,
+        parting: &Parting,
+        (all, edits): &AllEdits,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Option<BranchComparison> {
+        let outcomes = parting.simulate(edits, progress)?;
+        let Parting { start, earlier, moves, until } = parting;
         let from = start.world.day;
-        let branches = all.iter().zip(&edits).zip(&outcomes).map(|((decided, made), outcome)| {
+        let branches = all.iter().zip(edits).zip(&outcomes).map(|((decided, made), outcome)| {
             let differs_on = differs_by(&outcomes[0], outcome)
                 .and_then(|day| first_difference(start, moves, (&edits[0], made), day));
             BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on)
         });
         let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
-        Ok(Some(BranchComparison {
+        Some(BranchComparison {
             from,
             until: *until,
             recorded_until: self.past.last_day(),
             branches: branches.collect(),
             figures: BranchFigure::ALL.into_iter().filter(shown).collect(),
-        }))
+        })
     }
 
     /// The same under futures of which the luck is drawn anew: from the last recorded day on if the branches go beyond it, else
@@ -131,6 +164,16 @@ impl WhatIf {
     ) -> Result<Option<Futures>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
         let (_, edits) = all_edits(alternatives, &parting)?;
+        Ok(self.drawn(&parting, &edits, count, progress))
+    }
+
+    fn drawn(
+        &self,
+        parting: &Parting,
+        edits: &[Edits],
+        count: u32,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Option<Futures> {
         let last = self.past.last_day();
         let after =
             if last < parting.until { last.max(parting.start.world.day) } else { parting.start.world.day };
@@ -141,13 +184,13 @@ impl WhatIf {
         let salts = || 0..u64::from(count);
         let drawn: Vec<Edits> =
             edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
-        let Some(outcomes) = parting.simulate(&drawn, progress) else { return Ok(None) };
+        let outcomes = parting.simulate(&drawn, progress)?;
         let longest = outcomes.iter().max_by_key(|outcome| outcome.weeks.len());
         let days = longest.map_or(Vec::new(), |one| one.weeks.iter().map(|week| week.day).collect());
         let valued: Vec<_> =
             outcomes.iter().map(|outcome| figure::values(&parting.earlier, outcome)).collect();
         let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
-        Ok(Some(Futures::of(after, days, branches)))
+        Some(Futures::of(after, days, branches))
     }
 
     /// Days of a week of the run.
@@ -189,8 +232,8 @@ impl WhatIf {
         let mut reach = |day: u32| progress(day as usize, from as usize);
         let back = (0..=from.saturating_sub(WEEKS_BACK * days)).rev().find(|day| self.past.ends_on(*day));
         let moments = back.map_or(Ok(None), |day| self.past.moment(day, &mut reach));
-        let Some(back) = moments.map_err(|error| super::why::not_readable(&error))? else { return Ok(None) };
-        let moment = self.past.moment(from, &mut reach).map_err(|error| super::why::not_readable(&error))?;
+        let Some(back) = moments.map_err(|error| not_readable(&error))? else { return Ok(None) };
+        let moment = self.past.moment(from, &mut reach).map_err(|error| not_readable(&error))?;
         let Some(start) = moment else { return Ok(None) };
         let way = self.past.between(back.world.day, from);
         let Some(earlier) = counterfactual(&back, way, &Edits::default(), from, &mut reach) else {

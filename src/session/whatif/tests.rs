@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::json;
 
 use super::*;
+use crate::session::counterfactual::last_read::LastRead;
 use crate::session::counterfactual::test_kit::played;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
@@ -195,6 +196,27 @@ fn an_unfinished_baseline_has_no_what_if_and_a_sandbox_shows_no_satisfaction() {
         let figures = compared(&session, 4, &[]).figures;
         assert_eq!(figures.contains(&BranchFigure::Satisfaction), shown, "{mode}");
     }
+}
+
+#[test]
+fn what_was_read_last_takes_in_what_was_decided_since_on_the_same_day() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Debug);
+    let mut kept: LastRead<WhatIf> = LastRead::default();
+    let present = session.day() / 7 + 1;
+    let folder = session.folder().expect("a folder").to_owned();
+    let decided = |kept: &mut LastRead<WhatIf>| {
+        kept.of(folder.clone()).expect("a record").decisions(present).expect("decisions").len()
+    };
+    assert_eq!(decided(&mut kept), 0);
+    session.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
+    assert_eq!(decided(&mut kept), 1);
+    let forecasts = session.naive_forecasts();
+    session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    let asked = kept.of(folder.clone()).expect("a record").compare(4, Some(present), &[], &on);
+    let branches = asked.expect("an answer").expect("it is not stopped").branches;
+    let cash = session.weeks().last().map(|week| week.cash);
+    assert_eq!(branches[0].value(BranchFigure::Cash, session.day()), cash);
 }
 
 #[test]

@@ -22,6 +22,7 @@ pub use cause::{Cause, Detail, InputDetail};
 pub use figure::{FigureUnit, WeekFigure};
 pub use week::{Why, WhyPart};
 
+use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::past::Past;
 use super::error::RunError;
 use crate::session::state::Session;
@@ -48,17 +49,26 @@ pub struct Causes {
     latest: Option<Laboratory>,
 }
 
-impl Causes {
-    /// Of the run in a folder, as far as it is recorded now.
-    ///
+impl OfRecord for Causes {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
-    pub fn read(folder: &Path) -> Result<Causes, Refusal> {
+    fn read(folder: &Path) -> Result<Causes, Refusal> {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
         Ok(Causes { past, sight, latest: None })
     }
 
+    fn renew(&mut self) -> Result<(), Refusal> {
+        self.past.renew().map_err(|error| not_readable(&error))?;
+        let sight = sight(&self.past.manifest, self.past.ended)?;
+        if sight != self.sight {
+            (self.sight, self.latest) = (sight, None);
+        }
+        Ok(())
+    }
+}
+
+impl Causes {
     /// Why a figure changed in a week, the last one that ran if none is named. None if it was stopped.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ use crate::console::canvas::{Canvas, centered};
 use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::request::Request;
-use crate::console::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
+use crate::console::resimulation::{BranchesFound, BranchesQuestion};
 use crate::console::screens::Look;
 use crate::console::theme::Role;
 use crate::session::{FORMS, Refusal};
@@ -55,9 +55,9 @@ impl BranchesPage {
         }
     }
 
-    /// The question that it begins with.
-    pub fn opening_question(&self) -> BranchesAsked {
-        BranchesAsked { number: 0, question: BranchesQuestion::Decisions, stop: self.stop.clone() }
+    /// What it asks when it is opened.
+    pub fn opening_question(&self) -> Effect {
+        Effect::AskBranches(BranchesQuestion::Decisions, self.stop.clone())
     }
 
     fn ask(&mut self, futures: Option<u32>) -> Outcome {

@@ -25,6 +25,8 @@ pub(super) struct Figures {
     figure: usize,
     /// The branch whose decisions are shown.
     selected: usize,
+    /// How sure its difference in the figure is: resampled once, not for every frame.
+    sure: Option<String>,
 }
 
 impl Figures {
@@ -35,7 +37,10 @@ impl Figures {
         figure: usize,
     ) -> Figures {
         let selected = 1.min(comparison.branches.len().saturating_sub(1));
-        Figures { comparison, futures, days_per_week, figure, selected }
+        let sure = None;
+        let mut figures = Figures { comparison, futures, days_per_week, figure, selected, sure };
+        figures.resample();
+        figures
     }
 
     pub(super) fn figure(&self) -> usize {
@@ -58,17 +63,24 @@ impl Figures {
 
     pub(super) fn select(&mut self, branch: usize) {
         self.selected = branch.min(self.comparison.branches.len().saturating_sub(1));
+        self.resample();
+    }
+
+    fn show_figure(&mut self, figure: usize) {
+        self.figure = figure % self.comparison.figures.len();
+        self.resample();
+    }
+
+    fn resample(&mut self) {
+        let differs = self.comparison.branches.get(self.selected).is_some_and(|own| !own.edits.is_empty());
+        let line = |futures| difference_line(&self.comparison, futures, self.selected, self.shown());
+        self.sure = self.futures.as_ref().filter(|_| differs).and_then(line);
     }
 
     pub(super) fn act(&mut self, action: Action) {
         match action {
-            Action::NextFigure | Action::Right => {
-                self.figure = (self.figure + 1) % self.comparison.figures.len()
-            }
-            Action::Left => {
-                let all = self.comparison.figures.len();
-                self.figure = (self.figure + all - 1) % all;
-            }
+            Action::NextFigure | Action::Right => self.show_figure(self.figure + 1),
+            Action::Left => self.show_figure(self.figure + self.comparison.figures.len() - 1),
             Action::Up => self.select(self.selected.saturating_sub(1)),
             Action::Down => self.select(self.selected + 1),
             Action::First => self.select(0),
@@ -174,8 +186,7 @@ impl Figures {
         let mut told = Vec::new();
         if let Some(futures) = &self.futures {
             told.push(futures_heading(futures));
-            let sure = difference_line(&self.comparison, futures, self.selected, self.shown());
-            told.extend(sure.filter(|_| !branch.edits.is_empty()).map(|line| format!("at the end: {line}")));
+            told.extend(self.sure.iter().map(|line| format!("at the end: {line}")));
             told.extend((0..self.comparison.branches.len()).filter_map(|at| ended_early(futures, at)));
         }
         told.extend(decisions(branch, self.days_per_week));

@@ -7,6 +7,7 @@ use unicode_width::UnicodeWidthStr;
 use super::typing::Expected;
 use super::view::{Choices, View};
 use super::{Xray, XrayPane};
+use crate::notation::capital;
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::effect::Effect;
@@ -320,11 +321,6 @@ fn lines_of(xray: &Xray, look: &Look<'_>) -> (Vec<String>, Role) {
         }
         _ => (one("nothing is chosen".to_owned()), Role::Dim),
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Columns by which what goes on in the next row is set back.

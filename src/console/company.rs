@@ -155,6 +155,11 @@ impl Company {
         self.seen.mode == Mode::Baseline
     }
 
+    /// Whether the person may ask why a figure changed: not in an unfinished baseline run.
+    pub fn tells_causes(&self) -> bool {
+        !self.is_baseline() || self.may_look_inside
+    }
+
     /// Whether the person may see how their own forecasts have done: where that is no part of the session, once it is
     /// over.
     pub fn shows_calibration(&self) -> bool {

@@ -10,7 +10,7 @@ use super::look_inside::LookQuestion;
 use super::readings::Reading;
 use super::request::Request;
 use super::resimulation::BranchesQuestion;
-use super::screens::ScreenId;
+use super::screens::{Figure, ScreenId};
 use crate::glossary::Subject;
 use crate::session::{Goal, Study};
 use crate::tools::ToolId;
@@ -50,6 +50,12 @@ pub enum Effect {
     Ask(String),
     /// Ask the database for the rows behind a figure.
     AskBehind(String),
+    /// Find out why a figure of a week changed.
+    AskWhy(Figure),
+    /// Show the rows behind a figure.
+    ShowRows(Figure),
+    /// Close whatever lies over the screen.
+    CloseDialogs,
     /// Find out what would have been; the flag ends the work.
     AskBranches(BranchesQuestion, Arc<AtomicBool>),
     /// Look at hidden state of the run.

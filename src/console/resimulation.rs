@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::session::{BranchComparison, DecisionEdit, Futures, PastCall, WeekFigure};
+use crate::session::{BranchComparison, DecisionEdit, Futures, PastCall, WeekQuantity};
 
 /// A question why a figure changed in a week.
 pub struct WhyAsked {
     /// Tells its answer from others.
     pub number: u64,
     /// The figure.
-    pub figure: WeekFigure,
+    pub quantity: WeekQuantity,
     /// The week.
     pub week: u32,
     /// Ends the work.

@@ -76,7 +76,10 @@ const COMMANDS: &[(&str, &str)] = &[
     ("redo", "redo                     redo what undo reverted"),
     ("history", "history [N]              the last N confirmed actions and weeks (20)"),
     ("report", "report [week|run]        what changed in the last week; or the story of the run"),
-    ("why", "why FIGURE [WEEK]        how much of the change of a week's figure each cause brought"),
+    (
+        "why",
+        "why FIGURE [WEEK]        how much of the change of a week's figure each cause brought: why churn(S1) 44",
+    ),
     (
         "whatif",
         "whatif from WEEK: EDITS   what would have been under other decisions; whatif WEEK lists what was decided",
@@ -217,7 +220,7 @@ impl Interpreter {
             "glossary" => glossary(rest),
             "rules" => self.rules(rest, column),
             "xray" => self.hidden_tables(rest, column),
-            "why" => self.why(rest).unwrap_or_else(usage),
+            "why" => self.why(rest, column).unwrap_or_else(usage),
             "whatif" => self.what_if(rest, column).unwrap_or_else(usage),
             "pause" => self.pause(rest),
             "break" => self.breakpoint(rest, column).unwrap_or_else(usage),

@@ -24,7 +24,7 @@ pub struct CauseLine {
 /// Every cause, the largest first, and the rest.
 pub fn lines(why: &Why) -> Vec<CauseLine> {
     let line = |name, amount, details| {
-        let written = signed(why.figure.unit(), amount);
+        let written = signed(why.quantity.unit(), amount);
         CauseLine { name, amount, written, details }
     };
     let part = |part: &crate::session::WhyPart| {
@@ -37,13 +37,13 @@ pub fn lines(why: &Why) -> Vec<CauseLine> {
 pub fn equation(why: &Why) -> String {
     let parts: Vec<String> =
         lines(why).iter().map(|line| format!("{} {}", line.name, line.written)).collect();
-    format!("{} {} = {}", why.figure.name(), signed(why.figure.unit(), why.change()), parts.join(" · "))
+    format!("{} {} = {}", why.quantity.name(), signed(why.quantity.unit(), why.change()), parts.join(" · "))
 }
 
 /// The figure in both weeks: `week 20: 195 → 1,137`.
 pub fn heading(why: &Why) -> String {
-    let value = |value| written(why.figure.unit(), value);
-    format!("{}, week {}: {} → {}", why.figure.name(), why.week, value(why.before), value(why.after))
+    let value = |value| written(why.quantity.unit(), value);
+    format!("{}, week {}: {} → {}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
 /// A value of a figure in a unit.
@@ -53,6 +53,7 @@ pub fn written(unit: FigureUnit, value: f64) -> String {
         FigureUnit::Count => whole(value),
         FigureUnit::Share => percent(value, 1),
         FigureUnit::FineShare => percent(value, 2),
+        FigureUnit::Level => grouped(value, 3),
     }
 }
 
@@ -65,6 +66,7 @@ pub fn signed(unit: FigureUnit, change: f64) -> String {
         FigureUnit::Count => grouped(size, 0),
         FigureUnit::Share => format!("{} pt", grouped(100.0 * size, 1)),
         FigureUnit::FineShare => format!("{} pt", grouped(100.0 * size, 2)),
+        FigureUnit::Level => grouped(size, 3),
     };
     let is_nothing = !text.contains(|digit: char| ('1'..='9').contains(&digit));
     match change {
@@ -88,14 +90,15 @@ fn in_words(detail: &Detail) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Cause, ToolId, WeekFigure, WhyPart};
+    use crate::session::{Cause, ToolId, WeekFigure, WeekQuantity, WhyPart};
 
     fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
         let part =
             |(cause, amount): &(Cause, f64)| WhyPart { cause: *cause, amount: *amount, details: Vec::new() };
         let parts: Vec<WhyPart> = amounts.iter().map(part).collect();
+        let quantity = WeekQuantity::of_company(figure).expect("a figure of the company");
         let rest = after - before - parts.iter().map(|part| part.amount).sum::<f64>();
-        Why { week: 20, figure, before, after, parts, rest, simulations: 4 }
+        Why { week: 20, quantity, before, after, parts, rest, simulations: 4 }
     }
 
     #[test]

@@ -114,7 +114,8 @@ pub use whatif::{
     sets_amounts,
 };
 pub use why::{
-    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, Why, WhyPart, WhyProgress,
+    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,
+    WhyPart, WhyProgress,
 };
 pub use witness::{
     Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,

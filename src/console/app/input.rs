@@ -332,40 +332,51 @@ impl App {
         run.zoomed = !run.zoomed;
     }
 
-    fn show_rows(&mut self) {
+    /// The figure that is selected on the screen.
+    fn selected_figure(&mut self) -> Option<Figure> {
         let found = self.with_screen(|screen, look| screen.figure(look)).flatten();
-        match found {
-            Some(Figure { title, sql: Some(sql), .. }) => {
-                let here = self.run().map_or("", |run| run.here.action().entry().title);
-                self.note_opened("figure", title.clone());
-                self.open(RowsBehind::new(format!("{here} › {title}"), sql.clone()));
-                self.follow(vec![Effect::AskBehind(sql)]);
-            }
-            Some(Figure { title, sql: None, .. }) => {
-                let explain = self.keys.label(Action::Explain).unwrap_or_default();
-                self.complain(format!("{title} has no source rows; {explain} explains it"));
-            }
-            None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
+        if found.is_none() {
+            self.complain("no figure is selected here: tab changes the pane, arrows the row");
+        }
+        found
+    }
+
+    fn show_rows(&mut self) {
+        if let Some(figure) = self.selected_figure() {
+            self.show_rows_of(figure);
         }
     }
 
+    pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
+        let Some(sql) = sql else {
+            let explain = self.keys.label(Action::Explain).unwrap_or_default();
+            return self.complain(format!("{title} has no source rows; {explain} explains it"));
+        };
+        let here = self.run().map_or("", |run| run.here.action().entry().title);
+        self.note_opened("figure", title.clone());
+        self.open(RowsBehind::new(format!("{here} › {title}"), sql.clone()));
+        self.follow(vec![Effect::AskBehind(sql)]);
+    }
+
     fn show_why(&mut self) {
-        match self.with_screen(|screen, look| screen.figure(look)).flatten() {
-            Some(Figure { title, why: Some((figure, week)), .. }) => {
-                let stop = Arc::new(AtomicBool::new(false));
-                self.why_question += 1;
-                self.note_opened("figure", title);
-                self.open(WhyBox::new(figure, week, stop.clone()));
-                let asked = WhyAsked { number: self.why_question, figure, week, stop };
-                self.orders.push(Order::Job(Job::FindCauses(asked)));
-            }
-            Some(Figure { title, why: None, .. }) => {
-                self.complain(format!(
-                    "{title}: causes are found for the figures of the week, on the Overview"
-                ));
-            }
-            None => self.complain("no figure is selected here: tab changes the pane, arrows the row"),
+        if let Some(figure) = self.selected_figure() {
+            self.ask_why(figure);
         }
+    }
+
+    pub(super) fn ask_why(&mut self, figure: Figure) {
+        let Some((quantity, week)) = figure.why else {
+            let key = self.keys.label(Action::Why).unwrap_or_default();
+            return self.complain(format!(
+                "{key} explains a week's cash, leads, sales, churn, service: Overview, Cash, Customers"
+            ));
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        self.why_question += 1;
+        self.note_opened("figure", figure.title.clone());
+        self.open(WhyBox::new(figure, quantity, week, stop.clone()));
+        let asked = WhyAsked { number: self.why_question, quantity, week, stop };
+        self.orders.push(Order::Job(Job::FindCauses(asked)));
     }
 
     /// The page of decisions, from the week that is shown on; in a run that is played, from the last one that ran on.

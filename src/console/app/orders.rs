@@ -74,6 +74,9 @@ impl App {
             }
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
             Effect::Say(text) => self.say(text),
+            Effect::AskWhy(figure) => self.ask_why(figure),
+            Effect::ShowRows(figure) => self.show_rows_of(figure),
+            Effect::CloseDialogs => self.close_layers(),
             Effect::Complain(text) => self.complain(text),
             Effect::BeginPath => {
                 if let Stage::Run(run) = &mut self.stage {

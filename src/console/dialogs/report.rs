@@ -10,31 +10,53 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, fit};
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::screens::overview::figures::{self, METRICS};
 use crate::console::screens::overview::needs::screen_of;
-use crate::console::screens::{Look, ScreenId};
+use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::{arrow, flowed, short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped, signed_dollars};
 use crate::report::WeekReport;
 use crate::report::needs::Need;
 use crate::report::week::Move;
-use crate::session::{ScoredForecast, Verdict};
+use crate::session::{ScoredForecast, Verdict, WeekFigure};
 use crate::tools::Forecast;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
 /// From this width on, what is said of a figure stands beside it, otherwise below it.
 const BESIDE: u16 = 100;
+/// Place of the unusual changes among the parts.
+const MOVES: usize = 2;
 
 /// The report of the last week.
 pub struct Report {
     remark: Option<String>,
+    /// The line whose figure is selected: that of cash, then those that changed most unusually.
+    selected: usize,
 }
 
 impl Report {
     /// The report; with what the person should know about the saving of the week.
     pub fn new(remark: Option<String>) -> Report {
-        Report { remark }
+        Report { remark, selected: 0 }
+    }
+
+    /// Selects a line; so many are shown.
+    fn select(&mut self, to: usize, look: &Look<'_>) -> Outcome {
+        self.selected = to.min(usize::from(look.page).saturating_sub(1));
+        Outcome::stay()
+    }
+
+    /// The figure of the selected line.
+    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
+        let name = match self.selected.checked_sub(1) {
+            None => METRICS.first()?.name,
+            Some(at) => look.company.week.as_ref()?.moves.get(at)?.name,
+        };
+        let figure = WeekFigure::named(name)?;
+        let metric = METRICS.iter().find(|metric| WeekFigure::named(metric.name) == Some(figure))?;
+        Some(figures::figure(metric, 0, look.company))
     }
 }
 
@@ -47,7 +69,7 @@ impl Dialog for Report {
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Dialog]
+        vec![Scope::Dialog, Scope::Global]
     }
 
     fn hints(&self) -> Vec<Action> {
@@ -58,33 +80,52 @@ impl Dialog for Report {
         action == Action::NextWeek
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         match action {
             Action::Cancel | Action::Report => Outcome::close(),
             Action::NextWeek => Outcome::close_with(vec![Effect::Do(action)]),
+            Action::ScrollUp => self.select(self.selected.saturating_sub(1), look),
+            Action::ScrollDown => self.select(self.selected + 1, look),
+            Action::Why => Outcome::with(self.figure(look).map(Effect::AskWhy).into_iter().collect()),
+            Action::Rows => Outcome::with(self.figure(look).map(Effect::ShowRows).into_iter().collect()),
             _ => Outcome::stay(),
         }
+    }
+
+    fn click(&mut self, row: usize, look: &Look<'_>) -> Outcome {
+        self.select(row, look)
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let Some(told) = &look.company.week else { return };
         let width = WIDEST.min(area.width);
-        let lines = self.lines(canvas, told, look, width.saturating_sub(4), area.height.saturating_sub(2));
+        let (lines, places) =
+            self.lines(canvas, told, look, width.saturating_sub(4), area.height.saturating_sub(2));
+        canvas.page = places.len().max(1) as u16;
         let own = centered(area, width, lines.len() as u16 + 2);
         canvas.clear(own, Role::Text);
         let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
         let inside = canvas.pane(own, &title, "", true);
         canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         canvas.click(own, Click::Do(Action::Cancel));
+        for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
+        {
+            let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
+            canvas.click(row, Click::Row(0, at));
+        }
         let close = look.hint(Action::Cancel);
+        let why = match look.company.tells_causes() {
+            true => format!(" · {}", look.hint(Action::Why)),
+            false => String::new(),
+        };
         let again =
             look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} shows it again"));
-        canvas.pane_keys(own, &format!("{close}{again}"));
+        canvas.pane_keys(own, &format!("{close}{why}{again}"));
     }
 }
 
 impl Report {
-    /// All lines for a room: what may be left out gives way to what may not.
+    /// All lines for a room: what may be left out gives way to what may not. Then the places of those that can be selected.
     fn lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -92,7 +133,7 @@ impl Report {
         look: &Look<'_>,
         width: u16,
         height: u16,
-    ) -> Vec<Line<'a>> {
+    ) -> (Vec<Line<'a>>, Vec<usize>) {
         let height = height as usize;
         let head = self.head(canvas, told, width, if height >= 26 { 4 } else { 1 });
         let needs = &look.company.needs;
@@ -106,7 +147,7 @@ impl Report {
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
         let coming = next(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, look);
         let taken = coming.len() + usize::from(!notices.is_empty());
-        let moves = moved(canvas, told, width, room.saturating_sub(taken));
+        let (moves, starts) = self.moved(canvas, told, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
         let parts: [Section<'a>; 5] = [
             head,
@@ -115,22 +156,27 @@ impl Report {
             news.into_iter().chain(notice_lines(canvas, look.company, width, left.min(8))).collect(),
             with_heading(canvas, "What comes next", coming),
         ];
-        let mut lines = Vec::new();
+        let (mut lines, mut places) = (Vec::new(), vec![0]);
         for (at, part) in parts.into_iter().enumerate() {
             if at > 0 && airy {
                 lines.push(Line::default());
             }
+            if at == MOVES {
+                // Below the heading.
+                places.extend(starts.iter().map(|start| lines.len() + 1 + start));
+            }
             lines.extend(part);
         }
         lines.truncate(height);
-        lines
+        places.retain(|place| *place < height);
+        (lines, places)
     }
 
     fn head<'a>(&self, canvas: &Canvas<'_>, told: &WeekReport, width: u16, forecasts: usize) -> Section<'a> {
         let change = told.week.cash_change;
         let role = if change < 0.0 { Role::Bad } else { Role::Good };
         let mut lines = vec![Line::from(vec![
-            canvas.span(format!("Cash {}  ", dollars(told.week.cash)), Role::Strong),
+            canvas.span(format!("Cash {}  ", dollars(told.week.cash)), self.role_of(0, Role::Strong)),
             canvas.span(arrow(change, &dollars(change.abs())), role),
             canvas.span(" over the week", Role::Dim),
         ])];
@@ -155,6 +201,36 @@ impl Report {
             last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
         }
         lines
+    }
+}
+
+impl Report {
+    /// How the name of a line is written; those that cannot be asked about are never selected.
+    fn role_of(&self, line: usize, own: Role) -> Role {
+        if self.selected == line { Role::Selection } else { own }
+    }
+
+    /// The most unusual moves that have room, and the line in which each begins.
+    fn moved<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        told: &WeekReport,
+        width: u16,
+        room: usize,
+    ) -> (Section<'a>, Vec<usize>) {
+        if told.moves.is_empty() {
+            return (vec![Line::from(canvas.span("  nothing", Role::Dim))], Vec::new());
+        }
+        let (mut lines, mut starts) = (Vec::new(), Vec::new());
+        for (at, own) in told.moves.iter().enumerate() {
+            let of_one = move_lines(canvas, own, width, self.role_of(at + 1, Role::Text));
+            if lines.len() + of_one.len() > room {
+                break;
+            }
+            starts.push(lines.len());
+            lines.extend(of_one);
+        }
+        (lines, starts)
     }
 }
 
@@ -210,23 +286,8 @@ fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) 
     found.into_iter().enumerate().map(line).collect()
 }
 
-/// The most unusual moves that have room.
-fn moved<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, room: usize) -> Section<'a> {
-    if told.moves.is_empty() {
-        return vec![Line::from(canvas.span("  nothing", Role::Dim))];
-    }
-    let mut lines = Vec::new();
-    for own in &told.moves {
-        let of_one = move_lines(canvas, own, width);
-        if lines.len() + of_one.len() > room {
-            break;
-        }
-        lines.extend(of_one);
-    }
-    lines
-}
-
-fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Section<'a> {
+/// A move in a line or two; the one that is selected is marked.
+fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16, name: Role) -> Section<'a> {
     let role = match own.good {
         Some(true) => Role::Good,
         Some(false) => Role::Bad,
@@ -234,8 +295,9 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16) -> Section<'a> {
     };
     let glyph = if own.up { "▲" } else { "▼" };
     let share = own.in_percent().unwrap_or_default();
+    let mark = if name == Role::Selection { "›" } else { " " };
     let mut line = vec![
-        canvas.span(format!("  {:<17}", own.name), Role::Text),
+        canvas.span(format!("{mark} {:<17}", own.name), name),
         canvas.span(format!("{:>12} → ", own.old), Role::Dim),
         canvas.span(format!("{:>12}", own.new), Role::Strong),
         canvas.span(format!("  {glyph} {share:<7}"), role),

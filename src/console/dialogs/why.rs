@@ -11,19 +11,21 @@ use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, fit, rows_of};
 use crate::console::effect::Effect;
 use crate::console::message::News;
-use crate::console::screens::Look;
+use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::spark::bar;
 use crate::report::why::{CauseLine, equation, heading, lines};
-use crate::session::{Cause, Refusal, WeekFigure, Why, WhyProgress};
+use crate::session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;
 
 /// Why a figure changed.
 pub struct WhyBox {
-    figure: WeekFigure,
+    /// What was asked about, with the rows behind it.
+    figure: Figure,
+    quantity: WeekQuantity,
     week: u32,
     /// Ends the work.
     stop: Arc<AtomicBool>,
@@ -34,8 +36,8 @@ pub struct WhyBox {
 
 impl WhyBox {
     /// Waits for the causes of a figure of a week; `stop` ends the work.
-    pub fn new(figure: WeekFigure, week: u32, stop: Arc<AtomicBool>) -> WhyBox {
-        WhyBox { figure, week, stop, progress: None, answer: None, selected: 0 }
+    pub fn new(figure: Figure, quantity: WeekQuantity, week: u32, stop: Arc<AtomicBool>) -> WhyBox {
+        WhyBox { figure, quantity, week, stop, progress: None, answer: None, selected: 0 }
     }
 
     fn why(&self) -> Option<&Why> {
@@ -49,10 +51,11 @@ impl WhyBox {
     /// To the form of what was decided; what nobody decided has the rows of the figure.
     fn follow(&self) -> Outcome {
         let Some(why) = self.why() else { return Outcome::stay() };
-        Outcome::close_with(vec![match why.parts.get(self.selected).map(|part| part.cause) {
-            Some(Cause::Calls(tool)) => Effect::ShowTool(tool),
-            _ => Effect::Do(Action::Rows),
-        }])
+        Outcome::close_with(match why.parts.get(self.selected).map(|part| part.cause) {
+            // A report may lie below.
+            Some(Cause::Calls(tool)) => vec![Effect::CloseDialogs, Effect::ShowTool(tool)],
+            _ => vec![Effect::ShowRows(self.figure.clone())],
+        })
     }
 
     /// What is going on while there is no answer.
@@ -91,7 +94,7 @@ impl WhyBox {
 
 impl Dialog for WhyBox {
     fn what(&self) -> String {
-        format!("why {}, week {}", self.figure.name(), self.week)
+        format!("why {}, week {}", self.quantity.name(), self.week)
     }
 
     fn scopes(&self) -> Vec<Scope> {
@@ -185,7 +188,15 @@ impl Dialog for WhyBox {
 mod tests {
     use super::*;
     use crate::console::test_kit::{company, dialog_picture, in_dialog};
-    use crate::session::{Detail, InputDetail, ToolId, WhyPart};
+    use crate::session::{Detail, InputDetail, ToolId, WeekFigure, WhyPart};
+
+    fn cancellations() -> WeekQuantity {
+        WeekQuantity::of_company(WeekFigure::Cancellations).expect("a figure of the company")
+    }
+
+    fn asked() -> Figure {
+        Figure { title: "cancellations".to_owned(), term: "churn", sql: None, why: None }
+    }
 
     fn told() -> Why {
         let part = |cause, amount, details| WhyPart { cause, amount, details };
@@ -193,7 +204,7 @@ mod tests {
             Detail::Input(InputDetail { name: "peak overload", old: 0.0, new: 0.131, is_share: true });
         Why {
             week: 20,
-            figure: WeekFigure::Cancellations,
+            quantity: cancellations(),
             before: 195.0,
             after: 1137.0,
             parts: vec![
@@ -207,7 +218,7 @@ mod tests {
     }
 
     fn answered(answer: Result<Why, Refusal>) -> WhyBox {
-        let mut dialog = WhyBox::new(WeekFigure::Cancellations, 20, Arc::default());
+        let mut dialog = WhyBox::new(asked(), cancellations(), 20, Arc::default());
         let company = company();
         let keys = crate::console::keys::Keys::shipped();
         let look = Look { company: &company, keys: &keys, page: 5 };
@@ -229,10 +240,13 @@ mod tests {
         }
         assert!(dialog_picture(&dialog, &company, 120, 40).contains("peak overload: 0.0% → 13.1%"));
         let first = in_dialog(&mut dialog, Action::Open, &company);
-        assert!(first.close && matches!(first.effects[..], [Effect::ShowTool(ToolId::SetPrices)]));
+        assert!(
+            first.close
+                && matches!(first.effects[..], [Effect::CloseDialogs, Effect::ShowTool(ToolId::SetPrices)])
+        );
         in_dialog(&mut dialog, Action::Down, &company);
         let second = in_dialog(&mut dialog, Action::Open, &company);
-        assert!(matches!(second.effects[..], [Effect::Do(Action::Rows)]));
+        assert!(matches!(&second.effects[..], [Effect::ShowRows(figure)] if figure.title == "cancellations"));
         in_dialog(&mut dialog, Action::Last, &company);
         assert_eq!(dialog.selected, 3);
     }
@@ -241,7 +255,7 @@ mod tests {
     fn the_work_is_told_and_esc_stops_it() {
         let company = company();
         let stop = Arc::new(AtomicBool::new(false));
-        let mut dialog = WhyBox::new(WeekFigure::Usage, 9, stop.clone());
+        let mut dialog = WhyBox::new(asked(), cancellations(), 9, stop.clone());
         assert!(dialog_picture(&dialog, &company, 60, 16).contains("reading the record"));
         dialog.progress = Some(WhyProgress::Simulated(3, 16));
         assert!(dialog_picture(&dialog, &company, 60, 16).contains("3 of 16"));

@@ -14,7 +14,7 @@ use super::effect::Effect;
 use super::keys::Keys;
 use super::message::News;
 use super::readings::Reading;
-use crate::session::{Rows, WeekFigure};
+use crate::session::{Rows, WeekQuantity};
 
 /// The list of screens, in the order of their keys: a screen, and the room it lives in.
 macro_rules! screens {
@@ -127,7 +127,14 @@ pub struct Figure {
     /// The question whose answer are the rows behind it, where rows make it up.
     pub sql: Option<String>,
     /// The figure of a week that it is, whose change can be explained.
-    pub why: Option<(WeekFigure, u32)>,
+    pub why: Option<(WeekQuantity, u32)>,
+}
+
+impl Figure {
+    /// The same as a figure of a week whose change can be explained, if it is one.
+    pub fn of_week(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
+        Figure { why: quantity.map(|quantity| (quantity, week)), ..self }
+    }
 }
 
 /// The keys of one pane, for the help.

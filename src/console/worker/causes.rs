@@ -7,16 +7,22 @@ use std::sync::{Mutex, PoisonError};
 use super::{Open, SessionThread};
 use crate::console::message::{Message, News};
 use crate::console::resimulation::WhyAsked;
-use crate::session::{Causes, LastRead, Refusal, Why, unless_stopped};
+use crate::session::{Causes, LastRead, Refusal, WeekQuestion, Why, unless_stopped};
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.
     pub(super) fn find_causes(&mut self, asked: WhyAsked) {
-        let Some(open) = &mut self.open else { return };
-        let folder = folder_of(open);
+        let Some(open) = &self.open else { return };
+        let question = WeekQuestion { quantity: asked.quantity, week: Some(asked.week) };
+        let mut folder = folder_of(open);
+        if question.quantity.is_hidden() {
+            // A look, which is recorded before anything is shown.
+            let looked = self.session_to_look_into().and_then(|session| session.look_at_figure(&question));
+            folder = looked.and(folder);
+        }
         let (news, kept) = (self.news.clone(), self.causes.clone());
         std::thread::spawn(move || {
-            let answer = folder.and_then(|folder| answer(&asked, folder, &kept, &news));
+            let answer = folder.and_then(|folder| answer(&asked, question, folder, &kept, &news));
             // Nobody waits for what was stopped.
             if let Some(answer) = answer.transpose() {
                 let _ = news.send(Message::News(News::Why(asked.number, Box::new(answer))));
@@ -38,12 +44,13 @@ pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
 
 fn answer(
     asked: &WhyAsked,
+    question: WeekQuestion,
     folder: PathBuf,
     kept: &Mutex<LastRead<Causes>>,
     news: &Sender<Message>,
 ) -> Result<Option<Why>, Refusal> {
     let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-    kept.of(folder)?.why(asked.figure, Some(asked.week), &|progress| {
+    kept.of(folder)?.why(question, &|progress| {
         let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
         unless_stopped(&asked.stop)
     })

@@ -21,7 +21,7 @@ impl SessionThread {
 
     /// The run that is open; where it keeps no lines, because it is only read or played again, the same run opened as for
     /// play: each look is a line of it.
-    fn session_to_look_into(&mut self) -> Result<&mut Session, Refusal> {
+    pub(super) fn session_to_look_into(&mut self) -> Result<&mut Session, Refusal> {
         let (is_allowed, folder) = match &self.open {
             None => return Err(Refusal::new("not_possible", "no run is open")),
             Some(Open::Played(session)) => {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
-use crate::session::{Causes, DecisionEdit, OfRecord, Session, WeekFigure, WhatIf};
+use crate::session::{Causes, ConditionProblem, DecisionEdit, OfRecord, Session, WhatIf};
 
 /// Subscribers of the smaller company.
 const SMALL: u32 = 20_000;
@@ -58,7 +58,9 @@ fn why(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let folder = session.folder_of_causes()?;
     let once = |_| {
         let started = Instant::now();
-        Causes::read(&folder)?.why(WeekFigure::Cancellations, None, &|_| ControlFlow::Continue(()))?;
+        let asked =
+            "cancellations".parse().map_err(|problem: ConditionProblem| BenchError::new(problem.message))?;
+        Causes::read(&folder)?.why(asked, &|_| ControlFlow::Continue(()))?;
         Ok(started.elapsed().as_secs_f64())
     };
     (0..repetitions).map(once).collect()

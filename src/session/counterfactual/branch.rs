@@ -8,15 +8,18 @@ use serde_json::{Value, json};
 use super::edits::{AddedCall, Edits, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
+use crate::session::figures::groups::{self, GroupWeek};
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::StateHash;
 use crate::session::play::overrides::{ParameterChange, Taken};
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
+use crate::session::xray::measured_group::MeasuredGroup;
 use crate::tools::bounds;
 use crate::tools::{Arguments, Numbers, Refusal, ToolId, View};
 use crate::world::command::Command;
 use crate::world::events::{DayFigures, LedgerEntry};
+use crate::world::identifiers::ByGroup;
 use crate::world::market::surges::week_end;
 use crate::world::params::Params;
 use crate::world::state::World;
@@ -29,6 +32,8 @@ pub(in crate::session) struct BranchOutcome {
     pub days: Vec<DayFigures>,
     /// Mean satisfaction of the individual subscribers at the end of each of those weeks; not a number without any.
     pub satisfaction: Vec<f64>,
+    /// Figures of every group in each of those weeks.
+    pub groups: Vec<ByGroup<MeasuredGroup>>,
     /// Day and hash of every state that the moves of the run named, where hashes were asked for.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
@@ -110,6 +115,8 @@ struct OpenBranch<'a> {
     projection: Projection,
     /// The week that runs.
     week: WeekFigures,
+    /// The same by group.
+    group_week: ByGroup<GroupWeek>,
     /// Cash before it.
     cash_before: f64,
     /// Money that calls moved since the last day.
@@ -122,6 +129,7 @@ struct OpenBranch<'a> {
     weeks: Vec<WeekFigures>,
     days: Vec<DayFigures>,
     satisfaction: Vec<f64>,
+    groups: Vec<ByGroup<MeasuredGroup>>,
     states: Vec<(u32, StateHash)>,
     refused: Vec<RefusedCall>,
     possible: Vec<PastCall>,
@@ -142,6 +150,7 @@ impl<'a> OpenBranch<'a> {
             simulation,
             projection: Projection::default(),
             week: WeekFigures::default(),
+            group_week: ByGroup::default(),
             called: Vec::new(),
             told,
             left_to_tell: false,
@@ -149,6 +158,7 @@ impl<'a> OpenBranch<'a> {
             weeks: Vec::new(),
             days: Vec::new(),
             satisfaction: Vec::new(),
+            groups: Vec::new(),
             states: Vec::new(),
             refused: Vec::new(),
             possible: Vec::new(),
@@ -297,6 +307,7 @@ impl<'a> OpenBranch<'a> {
         self.simulation.judge_own_posts(self.projection.entries());
         let Simulation { facts, params, world, .. } = &self.simulation;
         self.week.count(&figures, facts, &self.called, params);
+        groups::count(&mut self.group_week, &figures, facts, world);
         self.called.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;
@@ -311,7 +322,9 @@ impl<'a> OpenBranch<'a> {
         self.week.cash_change = cash - self.cash_before;
         self.week.open_issues = self.simulation.open_issues();
         self.weeks.push(std::mem::take(&mut self.week));
-        self.satisfaction.push(mean_satisfaction(&self.simulation.world));
+        let (world, counted) = (&self.simulation.world, std::mem::take(&mut self.group_week));
+        self.satisfaction.push(mean_satisfaction(world));
+        self.groups.push(ByGroup::from_fn(|group| MeasuredGroup::of(group, &counted[group], world)));
         self.cash_before = cash;
     }
 
@@ -327,9 +340,10 @@ impl<'a> OpenBranch<'a> {
     }
 
     fn outcome(self) -> BranchOutcome {
-        let OpenBranch { simulation, weeks, days, satisfaction, states, refused, possible, .. } = self;
+        let OpenBranch { simulation, weeks, days, satisfaction, groups, states, refused, possible, .. } =
+            self;
         let end = KeptState::of(simulation);
-        BranchOutcome { weeks, days, satisfaction, states, refused, possible, end }
+        BranchOutcome { weeks, days, satisfaction, groups, states, refused, possible, end }
     }
 }
 

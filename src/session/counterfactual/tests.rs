@@ -207,12 +207,16 @@ fn a_parameter_that_was_set_is_a_cause_like_others() {
     let session = with_parameters(folder.path(), true);
     let mut causes =
         crate::session::why::Causes::read(session.folder().expect("a folder")).expect("a debug run");
-    let figure = crate::session::WeekFigure::named("individual leads").expect("a figure");
-    let why =
-        causes.why(figure, Some(6), &|_| ControlFlow::Continue(())).expect("causes").expect("an answer");
+    let asked = |text: &str| text.parse::<crate::session::WeekQuestion>().expect("a question");
+    let why = causes
+        .why(asked("individual leads 6"), &|_| ControlFlow::Continue(()))
+        .expect("causes")
+        .expect("an answer");
     let part = why.parts.iter().find(|part| part.cause == crate::session::Cause::Parameters);
     assert!(part.is_some_and(|part| part.amount > 1_000.0), "{why:?}");
-    let plain =
-        causes.why(figure, Some(2), &|_| ControlFlow::Continue(())).expect("causes").expect("an answer");
+    let plain = causes
+        .why(asked("individual leads 2"), &|_| ControlFlow::Continue(()))
+        .expect("causes")
+        .expect("an answer");
     assert!(plain.parts.iter().all(|part| part.cause != crate::session::Cause::Parameters));
 }

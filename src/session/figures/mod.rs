@@ -6,6 +6,7 @@ pub(in crate::session) mod attended_week;
 pub(in crate::session) mod best_channels;
 pub(in crate::session) mod booked;
 pub(in crate::session) mod changes;
+pub(in crate::session) mod churn;
 pub(in crate::session) mod dashboard;
 pub(in crate::session) mod estimates;
 pub(in crate::session) mod groups;

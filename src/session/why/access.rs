@@ -1,8 +1,10 @@
 //! Who may see causes. They are simulated with the hidden state, so they tell of it.
 
+use super::quantity::WeekQuantity;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::tools::Refusal;
+use crate::world::identifiers::Group;
 
 /// How finely the inputs of the world are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +33,27 @@ pub(in crate::session) fn sight(manifest: &Manifest, ended: bool) -> Result<Sigh
              baseline run",
         )),
     }
+}
+
+/// Refuses a figure that no screen shows while the run goes on.
+///
+/// # Errors
+/// `not_in_this_mode`.
+pub(super) fn refuse_hidden(quantity: WeekQuantity, sight: Sight) -> Result<(), Refusal> {
+    if sight == Sight::All || !quantity.is_hidden() {
+        return Ok(());
+    }
+    let message = format!(
+        "{} is hidden while the run goes on; why explains it in debug runs and in runs that are over",
+        quantity.name()
+    );
+    Err(Refusal::at("figure", "not_in_this_mode", message))
+}
+
+/// A player has no figures of a group that was not known.
+pub(super) fn unknown_group(group: Group, week: u32) -> Refusal {
+    let message = format!("{group} was not known in week {week}; choose a group that was");
+    Refusal::at("figure", "unknown_group", message)
 }
 
 #[cfg(test)]

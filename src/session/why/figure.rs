@@ -1,6 +1,7 @@
 //! Figures of a week whose change can be explained.
 
-use crate::session::figures::week::WeekFigures;
+use super::simulated_week::{GroupOfWeek, SimulatedWeek};
+use crate::world::events::Category;
 
 /// What a figure is counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,17 +14,24 @@ pub enum FigureUnit {
     Share,
     /// A share of which hundredths of a percent matter.
     FineShare,
+    /// A level that is no share, and of which thousandths matter.
+    Level,
 }
 
+/// How a figure is read of the company; none where it is one of groups only. Not a number where it has no value.
+pub(super) type OfCompany = Option<fn(&SimulatedWeek) -> f64>;
+/// How it is read of a group; none where it is one of the company only.
+pub(super) type OfGroup = Option<fn(&GroupOfWeek) -> f64>;
+
 macro_rules! figures {
-    ($($figure:ident = $name:literal, $unit:ident, $read:expr;)*) => {
+    ($($figure:ident = $name:literal, $unit:ident, $company:expr, $group:expr;)*) => {
         /// A figure of a week.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         #[allow(missing_docs)] // Each is described by its name.
         pub enum WeekFigure { $($figure),* }
 
         impl WeekFigure {
-            /// All of them, in the order of the Overview.
+            /// All of them: those of the Overview in its order, then those of the ledger.
             pub const ALL: &'static [WeekFigure] = &[$(WeekFigure::$figure),*];
 
             /// Name, as screens write it.
@@ -36,36 +44,62 @@ macro_rules! figures {
                 match self { $(WeekFigure::$figure => FigureUnit::$unit),* }
             }
 
-            /// Its value in a week; not a number where it has none.
-            pub fn of(self, week: &WeekFigures) -> f64 {
-                let read: fn(&WeekFigures) -> f64 = match self { $(WeekFigure::$figure => $read),* };
-                read(week)
+            pub(super) fn of_company(self) -> OfCompany {
+                match self { $(WeekFigure::$figure => $company),* }
+            }
+
+            pub(super) fn of_group(self) -> OfGroup {
+                match self { $(WeekFigure::$figure => $group),* }
             }
         }
     };
 }
 
+// Costs of the ledger are told as what they are, not as negative dollars.
 figures! {
-    CashChange = "cash change", Dollars, |week| week.cash_change;
-    RecurringRevenue = "recurring revenue", Dollars, |week| week.recurring_revenue;
-    Payments = "payments", Dollars, |week| week.payments;
-    RunningCosts = "running costs", Dollars, |week| week.costs;
-    Subscribers = "subscribers", Count, |week| f64::from(week.individual_subscribers);
-    IndividualLeads = "individual leads", Count, |week| f64::from(week.new_individual_leads);
-    NewSubscribers = "new subscribers", Count, |week| f64::from(week.new_individual_subscribers);
-    Conversion = "conversion", FineShare, WeekFigures::conversion;
-    Cancellations = "cancellations", Count, |week| f64::from(week.cancellations);
-    Upgrades = "upgrades", Count, |week| f64::from(week.upgrades);
-    Downgrades = "downgrades", Count, |week| f64::from(week.downgrades);
-    Seats = "seats", Count, |week| f64::from(week.enterprise_seats);
-    EnterpriseLeads = "enterprise leads", Count, |week| f64::from(week.new_enterprise_leads);
-    NewSeats = "new seats", Count, |week| f64::from(week.new_enterprise_seats);
-    SeatsLost = "seats lost", Count, |week| f64::from(week.seats_lost);
-    CompaniesLost = "companies lost", Count, |week| f64::from(week.companies_lost);
-    Usage = "usage", Count, |week| week.usage as f64;
-    OverloadPeak = "overload", Share, |week| week.overload_peak;
-    Outage = "outage", Count, |week| f64::from(week.downtime_minutes);
-    OpenIssues = "open issues", Count, |week| f64::from(week.open_issues);
+    CashChange = "cash change", Dollars, Some(|week| week.figures.cash_change), None;
+    RecurringRevenue = "recurring revenue", Dollars, Some(|week| week.figures.recurring_revenue), None;
+    Payments = "payments", Dollars, Some(|week| week.figures.payments), None;
+    RunningCosts = "running costs", Dollars, Some(|week| week.figures.costs), None;
+    Subscribers = "subscribers", Count,
+        Some(|week| week.figures.individual_subscribers.into()), Some(|own| own.measured.subscribers.into());
+    Leads = "leads", Count, Some(SimulatedWeek::leads), Some(|own| own.measured.leads.into());
+    IndividualLeads = "individual leads", Count, Some(|week| week.figures.new_individual_leads.into()), None;
+    NewSubscribers = "new subscribers", Count,
+        Some(|week| week.figures.new_individual_subscribers.into()), Some(|own| own.measured.signed.into());
+    Conversion = "conversion", FineShare, Some(|week| week.figures.conversion()), Some(GroupOfWeek::conversion);
+    Cancellations = "cancellations", Count,
+        Some(|week| week.figures.cancellations.into()), Some(|own| own.measured.left.into());
+    Churn = "churn", FineShare, Some(SimulatedWeek::churn), Some(GroupOfWeek::churn);
+    Upgrades = "upgrades", Count, Some(|week| week.figures.upgrades.into()), None;
+    Downgrades = "downgrades", Count, Some(|week| week.figures.downgrades.into()), None;
+    Seats = "seats", Count, Some(|week| week.figures.enterprise_seats.into()), None;
+    EnterpriseLeads = "enterprise leads", Count, Some(|week| week.figures.new_enterprise_leads.into()), None;
+    NewSeats = "new seats", Count, Some(|week| week.figures.new_enterprise_seats.into()), None;
+    SeatsLost = "seats lost", Count, Some(|week| week.figures.seats_lost.into()), None;
+    CompaniesLost = "companies lost", Count, Some(|week| week.figures.companies_lost.into()), None;
+    Usage = "usage", Count, Some(|week| week.figures.usage as f64), Some(|own| own.measured.usage as f64);
+    OverloadPeak = "overload", Share, Some(|week| week.figures.overload_peak), None;
+    Outage = "outage", Count, Some(|week| week.figures.downtime_minutes.into()), None;
+    LatencyPeak = "latency", Count, Some(|week| week.figures.p95_ms_peak), None;
+    ErrorRatePeak = "error rate", FineShare, Some(|week| week.figures.error_rate_peak), None;
+    OpenIssues = "open issues", Count,
+        Some(|week| week.figures.open_issues.into()), Some(|own| own.measured.open_issues.into());
+    Satisfaction = "satisfaction", FineShare,
+        Some(|week| week.satisfaction), Some(|own| own.measured.satisfaction.unwrap_or(f64::NAN));
+    Reputation = "reputation", Level, None, Some(|own| own.measured.reputation);
+    Income = "income", Dollars, Some(SimulatedWeek::income), None;
+    Costs = "costs", Dollars, Some(SimulatedWeek::costs), None;
+    AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.of(Category::AdRevenue)), None;
+    Compute = "compute", Dollars, Some(|week| week.spent(Category::Compute)), None;
+    Capacity = "capacity", Dollars, Some(|week| week.spent(Category::Capacity)), None;
+    Advertising = "advertising", Dollars, Some(|week| week.spent(Category::Advertising)), None;
+    LeadCosts = "lead costs", Dollars, Some(|week| week.spent(Category::LeadAcquisitionCost)), None;
+    Operations = "operations", Dollars, Some(|week| week.spent(Category::Operations)), None;
+    Development = "development", Dollars, Some(|week| week.spent(Category::Development)), None;
+    Research = "R&D", Dollars, Some(|week| week.spent(Category::ResearchProject)), None;
+    MarketResearch = "market research", Dollars, Some(|week| week.spent(Category::MarketResearch)), None;
+    GroupStudies = "group studies", Dollars, Some(|week| week.spent(Category::GroupResearch)), None;
 }
 
 impl WeekFigure {
@@ -80,8 +114,41 @@ impl WeekFigure {
         WeekFigure::ALL.iter().copied().find(own).or(longer)
     }
 
+    /// The figure that movements of a category of the ledger add up to; none of the money that the company began with.
+    pub fn of_category(category: Category) -> Option<WeekFigure> {
+        Some(match category {
+            Category::SubscriptionPayment => WeekFigure::Payments,
+            Category::AdRevenue => WeekFigure::AdRevenue,
+            Category::InitialFunding => return None,
+            Category::Compute => WeekFigure::Compute,
+            Category::Capacity => WeekFigure::Capacity,
+            Category::Advertising => WeekFigure::Advertising,
+            Category::LeadAcquisitionCost => WeekFigure::LeadCosts,
+            Category::Operations => WeekFigure::Operations,
+            Category::Development => WeekFigure::Development,
+            Category::ResearchProject => WeekFigure::Research,
+            Category::MarketResearch => WeekFigure::MarketResearch,
+            Category::GroupResearch => WeekFigure::GroupStudies,
+        })
+    }
+
     /// Its name in commands and data: `new_subscribers`.
     pub fn id(self) -> String {
         self.name().replace(' ', "_")
+    }
+
+    /// Whether no player may see it whose run goes on, outside of debug runs.
+    pub fn is_hidden(self) -> bool {
+        matches!(self, WeekFigure::Satisfaction | WeekFigure::Reputation)
+    }
+
+    /// Whether it is one of the company.
+    pub fn is_of_company(self) -> bool {
+        self.of_company().is_some()
+    }
+
+    /// Whether it is one of each group.
+    pub fn is_of_group(self) -> bool {
+        self.of_group().is_some()
     }
 }

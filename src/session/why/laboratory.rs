@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::access::Sight;
 use super::cause::{Cause, Detail};
 use super::inputs::TwoWeeks;
+use super::simulated_week::SimulatedWeek;
 use super::{OnProgress, WhyProgress};
 use crate::session::counterfactual::branch::{BranchOutcome, counterfactual};
 use crate::session::counterfactual::edits::Edits;
@@ -17,10 +18,10 @@ use crate::session::counterfactual::past::Past;
 use crate::session::counterfactual::script::{Move, PastCall};
 use crate::session::error::RunError;
 use crate::session::figures::changes::changes;
-use crate::session::figures::week::WeekFigures;
 use crate::tools::Kind;
 use crate::world::events::DayFigures;
 use crate::world::held::Held;
+use crate::world::identifiers::Group;
 
 /// Which causes are taken away: the player's calls and inputs of the world, by their place in the laboratory, a bit for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,6 +45,7 @@ pub(super) struct Laboratory {
     moves: Vec<Move>,
     before: BranchOutcome,
     after: BranchOutcome,
+    week_before: SimulatedWeek,
     pub(super) sight: Sight,
     /// Tools whose calls the player made.
     pub(super) calls: Vec<Candidate>,
@@ -51,7 +53,7 @@ pub(super) struct Laboratory {
     pub(super) inputs: Vec<Candidate>,
     /// Days with all calls undone; none before that was simulated.
     undone: Vec<DayFigures>,
-    known: BTreeMap<Without, WeekFigures>,
+    known: BTreeMap<Without, SimulatedWeek>,
 }
 
 impl Laboratory {
@@ -83,9 +85,22 @@ impl Laboratory {
         let mut calls = decided(&between, &moves, &after);
         calls.extend(set_parameters(&between, &moves, end));
         let actual = Without { calls: 0, inputs: 0 };
-        let known = BTreeMap::from([(actual, figures(&after))]);
+        let known = BTreeMap::from([(actual, SimulatedWeek::of(&between, &after))]);
+        let week_before = SimulatedWeek::of(&start, &before);
         let undone = Vec::new();
-        Ok(Some(Laboratory { week, between, moves, before, after, sight, calls, inputs, undone, known }))
+        Ok(Some(Laboratory {
+            week,
+            between,
+            moves,
+            before,
+            after,
+            week_before,
+            sight,
+            calls,
+            inputs,
+            undone,
+            known,
+        }))
     }
 
     /// Its week.
@@ -94,8 +109,13 @@ impl Laboratory {
     }
 
     /// Figures of the week before.
-    pub(super) fn week_before(&self) -> WeekFigures {
-        figures(&self.before)
+    pub(super) fn week_before(&self) -> &SimulatedWeek {
+        &self.week_before
+    }
+
+    /// Whether the company knew a group at the end of the week.
+    pub(super) fn knows(&self, group: Group) -> bool {
+        self.after.end.world.market.is_known(group)
     }
 
     /// Weeks that were simulated again.
@@ -104,7 +124,7 @@ impl Laboratory {
     }
 
     /// Figures of the week without some causes, which have to be known.
-    pub(super) fn without(&self, without: Without) -> &WeekFigures {
+    pub(super) fn without(&self, without: Without) -> &SimulatedWeek {
         &self.known[&without]
     }
 
@@ -114,7 +134,7 @@ impl Laboratory {
         let undone = Without { calls: (1 << self.calls.len()) - 1, inputs: 0 };
         if self.undone.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
             let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;
-            self.known.insert(undone, figures(&outcome));
+            self.known.insert(undone, SimulatedWeek::of(&self.between, &outcome));
             self.undone = outcome.days;
         }
         let unknown: BTreeSet<Without> =
@@ -128,7 +148,7 @@ impl Laboratory {
         &self,
         wanted: &[Without],
         progress: OnProgress<'_>,
-    ) -> Option<Vec<(Without, WeekFigures)>> {
+    ) -> Option<Vec<(Without, SimulatedWeek)>> {
         let done = AtomicUsize::new(0);
         one_each(wanted, |without, stopped| {
             let mut go_on = |_| match stopped.is_set() {
@@ -139,7 +159,7 @@ impl Laboratory {
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             match progress(WhyProgress::Simulated(done, wanted.len())) {
                 ControlFlow::Break(()) => None,
-                ControlFlow::Continue(()) => Some((*without, figures(&outcome))),
+                ControlFlow::Continue(()) => Some((*without, SimulatedWeek::of(&self.between, &outcome))),
             }
         })
     }
@@ -164,10 +184,6 @@ impl Laboratory {
 
 fn chosen(candidates: &[Candidate], set: u32) -> impl Iterator<Item = &Candidate> {
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, own)| own)
-}
-
-fn figures(outcome: &BranchOutcome) -> WeekFigures {
-    outcome.weeks.last().copied().unwrap_or_default()
 }
 
 /// What the player did in the week, by tool; settings that ended where they began only count if days passed in between.

@@ -10,7 +10,9 @@ mod cause;
 mod figure;
 mod inputs;
 mod laboratory;
+mod quantity;
 mod shapley;
+mod simulated_week;
 #[cfg(test)]
 mod tests;
 mod week;
@@ -20,6 +22,7 @@ use std::path::{Path, PathBuf};
 
 pub use cause::{Cause, Detail, InputDetail};
 pub use figure::{FigureUnit, WeekFigure};
+pub use quantity::{WeekQuantity, WeekQuestion};
 pub use week::{Why, WhyPart};
 
 use super::counterfactual::last_read::OfRecord;
@@ -72,21 +75,22 @@ impl Causes {
     /// Why a figure changed in a week, the last one that ran if none is named. None if it was stopped.
     ///
     /// # Errors
+    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
     /// `week_unknown` for a week that has not run, the first, and one cut short; `not_readable`; `no_value` where the figure has
     /// none in one of the two weeks.
-    pub fn why(
-        &mut self,
-        figure: WeekFigure,
-        week: Option<u32>,
-        progress: OnProgress<'_>,
-    ) -> Result<Option<Why>, Refusal> {
+    pub fn why(&mut self, asked: WeekQuestion, progress: OnProgress<'_>) -> Result<Option<Why>, Refusal> {
+        let WeekQuestion { quantity, week } = asked;
+        access::refuse_hidden(quantity, self.sight)?;
         let week = self.known(week)?;
         if self.latest.as_ref().is_none_or(|latest| latest.week() != week) {
             let made = Laboratory::of(&mut self.past, self.sight, week, progress);
             self.latest = made.map_err(|error| not_readable(&error))?;
         }
         let Some(laboratory) = &mut self.latest else { return Ok(None) };
-        laboratory.why(figure, progress)
+        match quantity.group().filter(|group| self.sight == Sight::Market && !laboratory.knows(*group)) {
+            Some(group) => Err(access::unknown_group(group, week)),
+            None => laboratory.why(quantity, progress),
+        }
     }
 
     /// A week that can be explained.
@@ -114,6 +118,32 @@ pub(in crate::session) fn not_readable(error: &RunError) -> Refusal {
 }
 
 impl Session {
+    /// Begins a question: a figure that is hidden while a run is played is shown as a look, which is recorded before anything
+    /// is shown. The folder from which [`Causes::read`] can answer.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
+    pub fn begin_why(&mut self, asked: &WeekQuestion) -> Result<PathBuf, Refusal> {
+        let folder = self.folder_of_causes()?;
+        self.look_at_figure(asked)?;
+        Ok(folder)
+    }
+
+    /// Records a look at a figure that is hidden while a run is played; any other is no look.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_saved`.
+    pub fn look_at_figure(&mut self, asked: &WeekQuestion) -> Result<(), Refusal> {
+        let WeekQuestion { quantity, week } = asked;
+        if !quantity.is_hidden() {
+            return Ok(());
+        }
+        access::refuse_hidden(*quantity, sight(&self.manifest, self.history.ended.is_some())?)?;
+        let days = self.simulation.params.run.days_per_week;
+        let day = week.map(|week| week.saturating_mul(days).min(self.day()));
+        self.begin_look("why", &quantity.to_string(), day).map(drop)
+    }
+
     /// The folder from which [`Causes::read`] can answer for this run.
     ///
     /// # Errors

@@ -3,10 +3,10 @@
 use super::OnProgress;
 use super::access::Sight;
 use super::cause::{Cause, Detail};
-use super::figure::WeekFigure;
 use super::laboratory::{Candidate, Laboratory, Without};
+use super::quantity::WeekQuantity;
 use super::shapley::shapley;
-use crate::session::figures::week::WeekFigures;
+use super::simulated_week::SimulatedWeek;
 use crate::tools::Refusal;
 
 /// Causes that are valued for themselves; more of them would take too many simulations.
@@ -18,7 +18,7 @@ pub struct Why {
     /// The week.
     pub week: u32,
     /// The figure.
-    pub figure: WeekFigure,
+    pub quantity: WeekQuantity,
     /// Its value the week before.
     pub before: f64,
     /// Its value.
@@ -65,26 +65,26 @@ impl Laboratory {
     /// `no_value` where the figure has none in one of the two weeks.
     pub(super) fn why(
         &mut self,
-        figure: WeekFigure,
+        quantity: WeekQuantity,
         progress: OnProgress<'_>,
     ) -> Result<Option<Why>, Refusal> {
-        let (before, after) = (self.week_before(), *self.without(Without { calls: 0, inputs: 0 }));
-        let values = (figure.of(&before), figure.of(&after));
+        let after = self.without(Without { calls: 0, inputs: 0 });
+        let values = (quantity.of(self.week_before()), quantity.of(after));
         if values.0.is_nan() || values.1.is_nan() {
             let message =
-                format!("{} has no value in one of the two weeks: nothing was counted", figure.name());
+                format!("{} has no value in one of the two weeks: nothing was counted", quantity.name());
             return Err(Refusal::at("figure", "no_value", message));
         }
         let (mut calls, mut inputs) = (groups(&self.calls), self.groups_of_inputs());
-        let joined = self.join_least(figure, &mut calls, &mut inputs, progress);
-        let Some(parts) = joined.and_then(|()| self.value(figure, &calls, &inputs, progress)) else {
+        let joined = self.join_least(quantity, &mut calls, &mut inputs, progress);
+        let Some(parts) = joined.and_then(|()| self.value(quantity, &calls, &inputs, progress)) else {
             return Ok(None);
         };
         let all_calls = Without { calls: union(&calls), inputs: union(&inputs) };
-        let rest = read(figure, self.without(all_calls)) - values.0;
+        let rest = read(quantity, self.without(all_calls)) - values.0;
         let simulations = self.simulated();
         let (before, after) = values;
-        Ok(Some(Why { week: self.week(), figure, before, after, parts, rest, simulations }))
+        Ok(Some(Why { week: self.week(), quantity, before, after, parts, rest, simulations }))
     }
 
     /// Inputs as far as they may be told apart.
@@ -102,7 +102,7 @@ impl Laboratory {
     /// Joins the causes that do least until few enough are left.
     fn join_least(
         &mut self,
-        figure: WeekFigure,
+        quantity: WeekQuantity,
         calls: &mut Vec<Group>,
         inputs: &mut Vec<Group>,
         progress: OnProgress<'_>,
@@ -117,7 +117,7 @@ impl Laboratory {
         let wanted: Vec<Without> =
             calls.iter().map(of_call).chain(inputs.iter().map(of_input)).chain([undone]).collect();
         self.find_out(&wanted, progress)?;
-        let value = |without| read(figure, self.without(without));
+        let value = |without| read(quantity, self.without(without));
         let actual = value(Without { calls: 0, inputs: 0 });
         // The greatest first.
         let by_size = |groups: &mut Vec<Group>, size: &dyn Fn(&Group) -> f64| {
@@ -138,7 +138,7 @@ impl Laboratory {
     /// What each cause contributes, the largest first.
     fn value(
         &mut self,
-        figure: WeekFigure,
+        quantity: WeekQuantity,
         calls: &[Group],
         inputs: &[Group],
         progress: OnProgress<'_>,
@@ -150,8 +150,8 @@ impl Laboratory {
         let sets = |groups: &[Group]| 0..1u32 << groups.len();
         let wanted: Vec<Without> = sets(calls).map(of_calls).chain(sets(inputs).map(of_inputs)).collect();
         self.find_out(&wanted, progress)?;
-        let values_of_calls = shapley(calls.len(), |set| read(figure, self.without(of_calls(set))));
-        let values_of_inputs = shapley(inputs.len(), |set| read(figure, self.without(of_inputs(set))));
+        let values_of_calls = shapley(calls.len(), |set| read(quantity, self.without(of_calls(set))));
+        let values_of_inputs = shapley(inputs.len(), |set| read(quantity, self.without(of_inputs(set))));
         let groups = calls.iter().zip(values_of_calls).chain(inputs.iter().zip(values_of_inputs));
         let mut parts: Vec<WhyPart> = groups
             .map(|(group, amount)| WhyPart { cause: group.cause, amount, details: group.details.clone() })
@@ -162,8 +162,8 @@ impl Laboratory {
 }
 
 /// A share of nothing is none where a cause takes everything away.
-fn read(figure: WeekFigure, week: &WeekFigures) -> f64 {
-    let value = figure.of(week);
+fn read(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
+    let value = quantity.of(week);
     if value.is_nan() { 0.0 } else { value }
 }
 

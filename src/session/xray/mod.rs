@@ -18,6 +18,7 @@ pub(in crate::session) mod hidden_tables;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;
+pub(in crate::session) mod measured_group;
 pub(in crate::session) mod metrics;
 pub(in crate::session) mod mood;
 pub(in crate::session) mod next_draws;

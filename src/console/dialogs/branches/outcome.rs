@@ -147,7 +147,7 @@ impl Figures {
             .collect();
         let unit = match figure.unit() {
             FigureUnit::Dollars => Unit::Dollars,
-            FigureUnit::Count | FigureUnit::Share | FigureUnit::FineShare => Unit::Number,
+            FigureUnit::Count | FigureUnit::Share | FigureUnit::FineShare | FigureUnit::Level => Unit::Number,
         };
         let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[] };
         chart(canvas, area, &lines, &x, &Side { unit, holds: &[] });

@@ -22,6 +22,7 @@ use crate::console::canvas::Canvas;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::widgets::Table;
+use crate::session::WeekQuantity;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -121,7 +122,10 @@ impl Cash {
             (from, to) => format!("weeks {from} to {to}"),
         };
         let title = format!("{} of {weeks}", subject.name());
-        Some(Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None })
+        let figure = Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
+        let quantity = subject.figure().and_then(WeekQuantity::of_company);
+        // What was bought since the last week belongs to one that has not run.
+        Some(figure.of_week(quantity.filter(|_| to <= self.books.last()), to))
     }
 }
 

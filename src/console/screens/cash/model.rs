@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::console::company::Company;
 use crate::notation::grouped;
 use crate::report::category_name;
-use crate::session::{Booked, Category, entries_of_weeks, week_of};
+use crate::session::{Booked, Category, WeekFigure, entries_of_weeks, week_of};
 
 /// A category of the ledger on this screen.
 #[derive(Debug, PartialEq, Eq)]
@@ -256,6 +256,16 @@ impl Subject {
                 _ => "ledger",
             },
             Subject::Income | Subject::Costs | Subject::Net => "cash-change",
+        }
+    }
+
+    /// The figure of a week that it is.
+    pub fn figure(self) -> Option<WeekFigure> {
+        match self {
+            Subject::Category(at) => WeekFigure::of_category(CATEGORIES[at].category),
+            Subject::Income => Some(WeekFigure::Income),
+            Subject::Costs => Some(WeekFigure::Costs),
+            Subject::Net => Some(WeekFigure::CashChange),
         }
     }
 

@@ -7,7 +7,7 @@ use crate::console::screens::market::model::{level_of, name_of};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, spark};
 use crate::notation::{cents, compact, dollars, grouped, percent};
-use crate::session::truth_behind;
+use crate::session::{WeekFigure, WeekQuantity, truth_behind};
 use crate::world::identifiers::Group;
 
 /// What a column is about.
@@ -176,7 +176,23 @@ pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> 
         }
         _ => format!("{name} of {group}"),
     };
-    Some(Figure { title, term, sql: statement(what, group, week, company.seen.day), why: None })
+    let figure = Figure { title, term, sql: statement(what, group, week, company.seen.day), why: None };
+    Some(figure.of_week(quantity(what, group), week))
+}
+
+/// The figure of a week that a column shows of a group; that of a row is the customers.
+fn quantity(what: What, group: Group) -> Option<WeekQuantity> {
+    let figure = match what {
+        What::Group | What::Segment | What::Name | What::Customers => WeekFigure::Subscribers,
+        What::Leads => WeekFigure::Leads,
+        What::New | What::Trend => WeekFigure::NewSubscribers,
+        What::Conversion if !group.is_enterprise() => WeekFigure::Conversion,
+        What::Left => WeekFigure::Cancellations,
+        What::Churn => WeekFigure::Churn,
+        What::Usage => WeekFigure::Usage,
+        _ => return None,
+    };
+    WeekQuantity::of_group(figure, group)
 }
 
 /// Customers with their subscriptions, under a condition.

@@ -206,6 +206,7 @@ fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
     );
     let revenue = super::columns::figure_named("billed/mo", group, company);
     let churn = super::columns::figure_named("churn 30d", group, company);
+    let explained = churn.as_ref().and_then(|figure| figure.why);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
         ("revenue a month", dollars(facts.sum(|held| held.monthly)), "mrr", rows(&revenue)),
@@ -216,6 +217,10 @@ fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
         ("development a day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
         lines.push(fact(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
+        // The share that left is the figure of its column.
+        if let Some(Fact { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
+            figure.why = explained;
+        }
     }
     lines
 }

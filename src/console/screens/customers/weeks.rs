@@ -16,10 +16,14 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::{note_room, summary, zero_if_near};
 use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
 use crate::notation::{compact, grouped};
+use crate::session::{WeekFigure, WeekQuantity};
 
 /// Flows that can be selected: leads, new, cancelled.
-const FLOWS: [(&str, &str); 3] =
-    [("leads", "lead"), ("new customers", "conversion"), ("cancellations", "churn")];
+const FLOWS: [(&str, &str, WeekFigure); 3] = [
+    ("leads", "lead", WeekFigure::Leads),
+    ("new customers", "conversion", WeekFigure::NewSubscribers),
+    ("cancellations", "churn", WeekFigure::Cancellations),
+];
 
 /// Customers by week, and below them the flows.
 pub struct WeeksPane;
@@ -39,9 +43,10 @@ impl Pane<Customers> for WeeksPane {
     fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
         let (group, week) = (customers.group(look.company)?, self.week(customers, look));
         let flow = customers.opened.flow;
-        let (name, term) = FLOWS[flow];
+        let (name, term, figure) = FLOWS[flow];
         let sql = Some(flow_statement(flow, group, week));
-        Some(Figure { title: format!("{name} of {group} in week {week}"), term, sql, why: None })
+        let own = Figure { title: format!("{name} of {group} in week {week}"), term, sql, why: None };
+        Some(own.of_week(WeekQuantity::of_group(figure, group), week))
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
@@ -125,7 +130,7 @@ fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> Str
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
     let of = |own: &Flow| [own.leads, own.signed, own.cancelled];
     let whole = |value: f64| grouped(value, 0);
-    if let Some((name, _)) = FLOWS.get(flow) {
+    if let Some((name, ..)) = FLOWS.get(flow) {
         let (now, before) = (of(&now)[flow], of(&before)[flow]);
         return format!(
             "week {week}: {} {name} {}",

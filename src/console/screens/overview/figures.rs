@@ -6,7 +6,7 @@ use crate::console::text::arrow;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, spark};
 use crate::notation::{dollars, grouped, percent};
-use crate::session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, entries_of_weeks};
+use crate::session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, WeekQuantity, entries_of_weeks};
 
 /// A figure of the week.
 pub struct Metric {
@@ -257,10 +257,12 @@ pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
     let (from, to) = (week.saturating_sub(from).max(1.min(week)), week.saturating_sub(to));
     let weeks = if from == to { format!("week {to}") } else { format!("weeks {from} to {to}") };
     let now = to == week;
+    let quantity = WeekFigure::named(metric.name).and_then(WeekQuantity::of_company);
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, (from, to), now), why: WeekFigure::named(metric.name).map(|figure| (figure, to)) }
+        sql: statement(&metric.source, (from, to), now), why: None }
+    .of_week(quantity, to)
 }
 
 /// The rows of some weeks; those that hold only now are left out for other weeks.

@@ -1,7 +1,7 @@
 //! The company at a glance: cash with the fan of the last forecasts, what needs the person, the week, quality, news.
 
 mod cash;
-mod figures;
+pub mod figures;
 pub mod needs;
 mod news;
 mod quality;

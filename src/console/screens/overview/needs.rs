@@ -13,7 +13,7 @@ use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::theme::Role;
 use crate::report::needs::{Need, Place, Problem};
-use crate::session::entries_of_weeks;
+use crate::session::{WeekFigure, WeekQuantity, entries_of_weeks};
 
 /// What needs the person, the most urgent first.
 pub struct NeedsPane;
@@ -148,5 +148,24 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
             )),
         ),
     };
-    Figure { title: need.text.clone(), term, sql, why: None }
+    Figure { title: need.text.clone(), term, sql, why: None }.of_week(quantity_of(need), day.div_ceil(7))
+}
+
+/// The figure of a week that a need speaks of.
+fn quantity_of(need: &Need) -> Option<WeekQuantity> {
+    match need.problem {
+        Problem::Runway => WeekQuantity::of_company(WeekFigure::CashChange),
+        Problem::NoLeads => WeekQuantity::of_company(WeekFigure::Leads),
+        Problem::NoSales(group) => WeekQuantity::of_group(WeekFigure::Conversion, group),
+        Problem::Overload | Problem::Capacity => WeekQuantity::of_company(WeekFigure::OverloadPeak),
+        Problem::Outages => WeekQuantity::of_company(WeekFigure::Outage),
+        Problem::Backlog => WeekQuantity::of_company(WeekFigure::OpenIssues),
+        Problem::Churn(group) => WeekQuantity::of_group(WeekFigure::Churn, group),
+        Problem::Threads
+        | Problem::NoPrice
+        | Problem::NoQuota
+        | Problem::Unwanted(_)
+        | Problem::LeadCost(..)
+        | Problem::Margin => None,
+    }
 }

@@ -16,6 +16,7 @@ use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::table::first_row;
 use crate::console::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::{compact, dollars, percent};
+use crate::session::{WeekFigure, WeekQuantity};
 use crate::report::peak::PeakProjection;
 use crate::tools::ToolId;
 
@@ -77,12 +78,13 @@ impl ProductPart for Capacity {
         tier(ToolId::SetCapacityTier, rung.map(|rung| rung.tier))
     }
 
-    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
+    fn selected(&self, product: &Product, company: &Company) -> Option<Figure> {
         let tier = product.rungs.get(product.place(self.name()))?.tier;
         let sql = "SELECT day, total_usage_units, capacity_units, capacity_tier FROM service_day\n\
                    WHERE day > (SELECT max(day) FROM service_day) - 7 ORDER BY day DESC";
         let title = format!("use of tier {tier} in the last week");
-        Some(Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()), why: None })
+        let figure = Figure { title, term: "capacity-tier", sql: Some(sql.to_owned()), why: None };
+        Some(figure.of_week(WeekQuantity::of_company(WeekFigure::Usage), company.seen.week))
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {

@@ -15,7 +15,9 @@ use crate::console::screens::panes::Seat;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::grouped;
+use crate::session::{WeekFigure, WeekQuantity};
 use crate::tools::ToolId;
+use crate::world::identifiers::Group;
 
 /// What the bars are made of, the youngest first: the older, the denser.
 const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
@@ -61,7 +63,7 @@ impl ProductPart for Issues {
         cell(ToolId::SetTargetedOpsSpend, self.group(product).cloned())
     }
 
-    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
+    fn selected(&self, product: &Product, company: &Company) -> Option<Figure> {
         let group = self.group(product)?;
         let sql = format!(
             "SELECT i.issue_id, i.customer_id, i.open_day, i.days_open\n\
@@ -69,7 +71,11 @@ impl ProductPart for Issues {
              WHERE i.group_id = '{group}' AND i.status = 'open' AND s.status = 'subscribed'\n    \
              AND i.open_day > (SELECT max(day) FROM service_day) - 112 ORDER BY i.days_open DESC"
         );
-        Some(Figure { title: format!("open issues of {group}"), term: "issue", sql: Some(sql), why: None })
+        let title = format!("open issues of {group}");
+        let quantity =
+            Group::parse(group).and_then(|group| WeekQuantity::of_group(WeekFigure::OpenIssues, group));
+        let figure = Figure { title, term: "issue", sql: Some(sql), why: None };
+        Some(figure.of_week(quantity, company.seen.week))
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {

@@ -16,6 +16,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::NO_DATA;
 use crate::console::widgets::spark;
 use crate::notation::{grouped, percent};
+use crate::session::{WeekFigure, WeekQuantity};
 
 /// The measures of the service.
 pub struct Service;
@@ -37,11 +38,12 @@ impl ProductPart for Service {
         Effect::EditSql("SELECT * FROM service_day ORDER BY day DESC".to_owned())
     }
 
-    fn selected(&self, _: &Product, _: &Company) -> Option<Figure> {
+    fn selected(&self, _: &Product, company: &Company) -> Option<Figure> {
         let sql = "SELECT day, p95_ms, error_rate, downtime_minutes, total_usage_units, capacity_units\n\
                    FROM service_day ORDER BY day DESC LIMIT 28";
         let title = "the service in 28 days".to_owned();
-        Some(Figure { title, term: "outage", sql: Some(sql.to_owned()), why: None })
+        let figure = Figure { title, term: "outage", sql: Some(sql.to_owned()), why: None };
+        Some(figure.of_week(WeekQuantity::of_company(WeekFigure::Outage), company.seen.week))
     }
 
     fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {

@@ -203,7 +203,7 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
             NoQuantity::OfCompany | NoQuantity::OfGroup => column,
             NoQuantity::OfADay | NoQuantity::Days => days.map_or(column, |(_, column)| column),
         };
-        ConditionProblem { message: why_not(measure, no), column }
+        ConditionProblem { message: why_not(measure.id(), no), column }
     })?;
     Ok(match judgement {
         Judgement::Compared(relation, threshold) => Condition::Compared(quantity, relation, threshold),
@@ -211,8 +211,8 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
     })
 }
 
-fn why_not(measure: Measure, no: NoQuantity) -> String {
-    let id = measure.id();
+/// Why a figure cannot be asked for like this, and how it can.
+pub(in crate::session) fn why_not(id: &str, no: NoQuantity) -> String {
     match no {
         NoQuantity::OfCompany => format!("{id} is a figure of the whole company; write {id} without a group"),
         NoQuantity::OfGroup => format!("{id} is a figure of a group; write for instance {id}(S1)"),

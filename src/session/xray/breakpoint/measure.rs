@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use super::series::{MeasuredDay, MeasuredGroup};
+use super::series::MeasuredDay;
+use crate::session::figures::churn::churn;
+use crate::session::xray::measured_group::MeasuredGroup;
 use crate::world::identifiers::Group;
 
 /// How a figure goes with time.
@@ -156,7 +158,8 @@ impl Quantity {
         let value = match self.measure {
             Measure::Churn => {
                 let beginning = day.checked_sub(self.days)?;
-                self.sum(self.measure, days, day)? / self.read(Measure::Subscribers, days, beginning)?
+                let before = self.read(Measure::Subscribers, days, beginning)?;
+                churn(self.sum(self.measure, days, day)?, before)?
             }
             Measure::Conversion => {
                 let leads = if self.group.is_some() { Measure::Leads } else { Measure::IndividualLeads };

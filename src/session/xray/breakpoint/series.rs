@@ -3,8 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::session::figures::groups::{self, GroupWeek};
-use crate::session::xray::mood::mood_of;
-use crate::world::customers::columns::Block;
+use crate::session::xray::measured_group::MeasuredGroup;
 use crate::world::day::watch::DayWatch;
 use crate::world::events::{DayFigures, Facts};
 use crate::world::identifiers::{ByGroup, Group};
@@ -12,29 +11,6 @@ use crate::world::market::drift::is_drift_day;
 use crate::world::market::surges::surge_factor;
 use crate::world::params::Params;
 use crate::world::state::World;
-
-/// Figures of a group on a day.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::session) struct MeasuredGroup {
-    /// Customers who came.
-    pub(in crate::session) leads: u32,
-    /// Individuals who signed up, or companies whose first deal was accepted.
-    pub(in crate::session) signed: u32,
-    /// Subscribers who cancelled.
-    pub(in crate::session) left: u32,
-    /// Units used.
-    pub(in crate::session) usage: u64,
-    /// Active subscriptions at the end of the day.
-    pub(in crate::session) subscribers: u32,
-    /// Those of them with an open issue.
-    pub(in crate::session) open_issues: u32,
-    /// Reputation at the end of the day.
-    pub(in crate::session) reputation: f64,
-    /// Mean satisfaction of the subscribers; none without any.
-    pub(in crate::session) satisfaction: Option<f64>,
-    /// Mean relationship of the subscribers, 0..=1; none without any.
-    pub(in crate::session) relationship: Option<f64>,
-}
 
 /// Figures of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -58,7 +34,7 @@ impl MeasuredDay {
         let surge = surge_factor(world.day, &world.market.surges, params.fidelity.surge_start);
         MeasuredDay {
             figures: *figures,
-            groups: ByGroup::from_fn(|group| measured_group(group, &counted[group], world)),
+            groups: ByGroup::from_fn(|group| MeasuredGroup::of(group, &counted[group], world)),
             rival: world.market.competitors.last().is_some_and(|event| event.day == world.day),
             drift: is_drift_day(world.day, &params.drift),
             surge: surge > 1.0,
@@ -68,22 +44,6 @@ impl MeasuredDay {
     /// Active subscribers with an open issue.
     pub(in crate::session) fn open_issues(&self) -> u32 {
         Group::all().map(|group| self.groups[group].open_issues).sum()
-    }
-}
-
-fn measured_group(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
-    let (satisfaction, relationship) = mood_of(world, group).unzip();
-    let own = &world.customers.groups[group];
-    MeasuredGroup {
-        leads: counted.leads,
-        signed: counted.signed,
-        left: counted.left,
-        usage: counted.usage.0.iter().sum(),
-        subscribers: own.active(),
-        open_issues: own.blocks.iter().map(Block::open_issues).sum(),
-        reputation: world.market.reputation.of(group),
-        satisfaction,
-        relationship,
     }
 }
 

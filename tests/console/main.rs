@@ -18,4 +18,5 @@ mod stories;
 mod support;
 mod tasks;
 mod visits;
+mod why;
 mod xray;

@@ -15,6 +15,7 @@ mod session;
 mod support;
 mod tables;
 mod undiscovered;
+mod why;
 mod wiring;
 mod xray;
 mod xray_views;

@@ -58,3 +58,42 @@ fn an_unfinished_sandbox_is_not_looked_into() {
         assert_eq!(said.out, "");
     }
 }
+
+#[test]
+fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
+    let lines = "set_prices A=12 B=25 C=55\nset_model_tiers A=2 B=3 C=4\nset_usage_quotas A=60000 B=250000 C=1200000\n\
+                 set_targeted_ad_spend {\"search_ads\": {\"S1\": 9000}}\nnext naive\nnext naive\nset_prices A=40\nnext naive\n\
+                 why new_subscribers(S1) 3\nwhy reputation(S1)\nwhy chrun(S1)\nwhy\n";
+    for mode in ["debug", "sandbox", "baseline"] {
+        let home = Home::new();
+        let mut options = vec!["--mode", mode, "--seed", "7", "--days", "84"];
+        options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &[] });
+        let said = home.play(&options, lines);
+        let [_, answers @ ..] = &said.out.split("> why ").collect::<Vec<_>>()[..] else {
+            panic!("{}", said.out)
+        };
+        let trajectory = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("lines");
+        let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
+        if mode == "baseline" {
+            let refused =
+                answers.iter().all(|answer| answer.contains("refused not_in_this_mode: causes are found by"));
+            assert!(refused && looks.is_empty(), "{}", said.out);
+            continue;
+        }
+        assert!(answers[0].contains("new subscribers of S1, week 3: "), "{}", said.out);
+        assert!(answers[0].contains("price"), "{}", said.out);
+        assert!(answers[2].contains("there is no figure chrun; did you mean churn"), "{}", said.out);
+        assert!(said.out.contains("why needs a figure: cash_change"), "{}", said.out);
+        let mood = answers[1];
+        if mode == "debug" {
+            assert!(mood.contains("reputation of S1, week 3: "), "{mood}");
+            assert!(looks.len() == 1 && looks[0].contains("\"which\":\"reputation(S1)\""), "{looks:?}");
+        } else {
+            assert!(
+                mood.contains("refused not_in_this_mode: reputation of S1 is hidden while the run goes on"),
+                "{mood}"
+            );
+            assert!(looks.is_empty(), "{looks:?}");
+        }
+    }
+}

@@ -178,7 +178,7 @@ mod tests {
             ("cancelations", "there is no figure cancelations; did you mean cancellations", 1),
             ("chrun(S1)", "there is no figure chrun; did you mean churn", 1),
             ("", "why needs a figure: cash_change, recurring_revenue", 1),
-            ("quality", "there is no figure quality; the figures are cash_change", 1),
+            ("zzzz", "there is no figure zzzz; the figures are cash_change", 1),
             ("usage 4x", "a whole number is expected, not 4x", 7),
             ("usage 99999999999", "a whole number is expected, not 99999999999", 7),
             ("churn(S1) 4 5", "5 is one word too many", 13),

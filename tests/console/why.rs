@@ -1,0 +1,109 @@
+//! `; w` on figures of screens and of the week report, and where nothing can be asked.
+
+use std::path::Path;
+
+use novamind::session::{Configuration, Mode, NewRun, Session, Storage};
+
+use super::harness::Console;
+use crate::support::company::{call, open_shop, week, weeks};
+
+/// A console in a run of ten weeks, of which the last had dearer plans.
+fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(84),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    open_shop(&mut session);
+    weeks(&mut session, 9);
+    call(&mut session, "set_prices", serde_json::json!({"A": 30, "B": 60}));
+    week(&mut session);
+    drop(session);
+    Console::in_latest_run(runs, size)
+}
+
+/// Asks why, waits, and closes the answer again.
+fn asks_why(console: &mut Console, heading: &str) {
+    console.press("; w");
+    console.shows(heading);
+    console.shows("composition and chance");
+    console.press("esc");
+}
+
+#[test]
+fn figures_of_screens_are_explained_where_they_stand() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
+    for (keys, heading) in [
+        ("1", "cash change, week 10: "),
+        ("2", "payments, week 10: "),
+        ("2 down", "ad revenue, week 10: "),
+        ("2 end", "cash change, week 10: "),
+        ("3", "subscribers of S1, week 10: "),
+        ("3 right right right", "leads of S1, week 10: "),
+        ("3 enter tab", "leads of S1, week 10: "),
+        ("left down", "new subscribers of S1, week 9: "),
+    ] {
+        console.press(keys);
+        asks_why(&mut console, heading);
+    }
+    console.press("esc esc g m ; w");
+    console.shows("explains a week's cash");
+}
+
+#[test]
+fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
+    console.press("w");
+    console.shows("; w Why");
+    asks_why(&mut console, "cash change, week 10: ");
+    console.shows("What comes next");
+    console.press("down");
+    let name = selected(&mut console);
+    console.press("; w");
+    console.shows(&format!("{}, week 10: ", name.split(',').next().expect("a name")));
+    // What nobody decided has the rows of the figure; they close to the report.
+    console.press("end enter");
+    console.shows("SELECT");
+    console.press("esc");
+    console.shows("What comes next");
+    // The price leads to its form, and the report is gone.
+    for _ in 0..20 {
+        if ["new subscribers", "conversion"].contains(&selected(&mut console).as_str()) {
+            break;
+        }
+        console.press("down");
+    }
+    console.press("; w home enter");
+    console.shows("set_prices");
+    assert!(!console.screen().contains("What comes next"));
+}
+
+/// The line that is marked in the report.
+fn selected(console: &mut Console) -> String {
+    let screen = console.screen();
+    let marked =
+        screen.lines().find_map(|line| line.split_once("› ").filter(|(_, rest)| rest.contains(" → ")));
+    let (_, rest) = marked.unwrap_or_else(|| panic!("no line is marked:\n{screen}"));
+    rest.split("  ").next().expect("a name").trim().to_owned()
+}
+
+#[test]
+fn an_unfinished_baseline_is_told_no_cause() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = playing(runs.path(), Mode::Baseline, (120, 40));
+    console.press("w");
+    let report = console.screen();
+    assert!(report.contains("Most unusual changes") && !report.contains("; w"), "{report}");
+    for word in ["because", "due to", "caused", "cause", "may be", "led to", "thanks to"] {
+        assert!(!report.contains(word), "{word}:\n{report}");
+    }
+    console.press("; w");
+    console.shows("not in an unfinished baseline run");
+    assert!(!console.screen().contains("composition"));
+}

@@ -203,6 +203,7 @@ impl Headless {
                     | News::TimeLeft(_)
                     | News::Limit(_)
                     | News::Day(..)
+                    | News::WhyProgress(..)
                     | News::WentOn(_)
                     | News::DatabaseBehind(_)
                     | News::DatabaseWhole(_)

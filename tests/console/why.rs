@@ -39,10 +39,12 @@ fn figures_of_screens_are_explained_where_they_stand() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
     for (keys, heading) in [
-        ("1", "cash change, week 10: "),
-        ("2", "payments, week 10: "),
-        ("2 down", "ad revenue, week 10: "),
-        ("2 end", "cash change, week 10: "),
+        ("1", "overload, week 10: "),
+        ("2", "cash change, week 10: "),
+        ("down", "income, week 10: "),
+        ("down", "payments, week 10: "),
+        ("end", "development, week 10: "),
+        ("right right", "development, week 9: "),
         ("3", "subscribers of S1, week 10: "),
         ("3 right right right", "leads of S1, week 10: "),
         ("3 enter tab", "leads of S1, week 10: "),
@@ -60,7 +62,7 @@ fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
     console.press("w");
-    console.shows("; w Why");
+    console.shows("; w why");
     asks_why(&mut console, "cash change, week 10: ");
     console.shows("What comes next");
     console.press("down");
@@ -79,7 +81,14 @@ fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
         }
         console.press("down");
     }
-    console.press("; w home enter");
+    console.press("; w home");
+    for _ in 0..6 {
+        if console.screen().contains("› price") {
+            break;
+        }
+        console.press("down");
+    }
+    console.press("enter");
     console.shows("set_prices");
     assert!(!console.screen().contains("What comes next"));
 }
@@ -104,6 +113,6 @@ fn an_unfinished_baseline_is_told_no_cause() {
         assert!(!report.contains(word), "{word}:\n{report}");
     }
     console.press("; w");
-    console.shows("not in an unfinished baseline run");
+    console.shows("causes are found by simulating the company again");
     assert!(!console.screen().contains("composition"));
 }

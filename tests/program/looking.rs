@@ -66,8 +66,8 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
                  why new_subscribers(S1) 3\nwhy reputation(S1)\nwhy chrun(S1)\nwhy\n";
     for mode in ["debug", "sandbox", "baseline"] {
         let home = Home::new();
-        let mut options = vec!["--mode", mode, "--seed", "7", "--days", "84"];
-        options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &[] });
+        let mut options = vec!["--mode", mode, "--seed", "7", "--echo"];
+        options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &["--days", "84"] });
         let said = home.play(&options, lines);
         let [_, answers @ ..] = &said.out.split("> why ").collect::<Vec<_>>()[..] else {
             panic!("{}", said.out)
@@ -90,7 +90,7 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
             assert!(looks.len() == 1 && looks[0].contains("\"which\":\"reputation(S1)\""), "{looks:?}");
         } else {
             assert!(
-                mood.contains("refused not_in_this_mode: reputation of S1 is hidden while the run goes on"),
+                mood.contains("refused not_in_this_mode (figure): reputation of S1 is hidden while the run goes on"),
                 "{mood}"
             );
             assert!(looks.is_empty(), "{looks:?}");

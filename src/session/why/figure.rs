@@ -85,7 +85,7 @@ figures! {
     ErrorRatePeak = "error rate", FineShare, Some(|week| week.figures.error_rate_peak), None;
     OpenIssues = "open issues", Count,
         Some(|week| week.figures.open_issues.into()), Some(|own| own.measured.open_issues.into());
-    Satisfaction = "satisfaction", FineShare,
+    Satisfaction = "satisfaction", Level,
         Some(|week| week.satisfaction), Some(|own| own.measured.satisfaction.unwrap_or(f64::NAN));
     Reputation = "reputation", Level, None, Some(|own| own.measured.reputation);
     Income = "income", Dollars, Some(SimulatedWeek::income), None;

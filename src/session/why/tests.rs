@@ -10,6 +10,7 @@ use crate::session::counterfactual::test_kit::{WEEKS, played};
 use crate::session::folder::mode::Mode;
 use crate::session::trajectory::record::Via;
 use crate::session::xray::measured_group::MeasuredGroup;
+use crate::session::xray::mood::mood_of;
 use crate::tools::ToolId;
 use crate::world::identifiers::{ByGroup, Group};
 
@@ -227,8 +228,8 @@ fn without_a_change_no_decision_is_a_cause_and_every_figure_adds_up() {
     let leads: f64 =
         Group::all().map(|own| f64::from(session.group_weeks()[WEEKS as usize][own].leads)).sum();
     assert_eq!(value(company(WeekFigure::Leads)), leads);
-    let satisfaction = value(group(WeekFigure::Satisfaction, "S1"));
-    assert!((0.0..=1.0).contains(&satisfaction), "{satisfaction}");
+    let mood = mood_of(session.world(), s1).expect("subscribers");
+    assert_eq!(value(group(WeekFigure::Satisfaction, "S1")), mood.0);
 }
 
 #[test]

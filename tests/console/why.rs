@@ -46,8 +46,11 @@ fn figures_of_screens_are_explained_where_they_stand() {
         ("end", "development, week 10: "),
         ("right right", "development, week 9: "),
         ("3", "subscribers of S1, week 10: "),
-        ("3 right right right", "leads of S1, week 10: "),
-        ("3 enter tab", "leads of S1, week 10: "),
+        ("3 right right right right", "leads of S1, week 10: "),
+        ("right right right", "cancellations of S1, week 10: "),
+        ("right", "churn of S1, week 10: "),
+        ("3 enter tab", "conversion of S1, week 10: "),
+        ("tab tab tab", "leads of S1, week 10: "),
         ("left down", "new subscribers of S1, week 9: "),
     ] {
         console.press(keys);

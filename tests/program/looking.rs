@@ -90,7 +90,9 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
             assert!(looks.len() == 1 && looks[0].contains("\"which\":\"reputation(S1)\""), "{looks:?}");
         } else {
             assert!(
-                mood.contains("refused not_in_this_mode (figure): reputation of S1 is hidden while the run goes on"),
+                mood.contains(
+                    "refused not_in_this_mode (figure): reputation of S1 is hidden while the run goes on"
+                ),
                 "{mood}"
             );
             assert!(looks.is_empty(), "{looks:?}");

@@ -114,7 +114,8 @@ impl Dialog for Report {
             canvas.click(row, Click::Row(0, at));
         }
         let close = look.hint(Action::Cancel);
-        let why = match look.company.tells_causes() {
+        // The first week has none before it.
+        let why = match look.company.tells_causes() && look.company.weeks.len() > 1 {
             true => format!(" · {}", look.hint(Action::Why)),
             false => String::new(),
         };

@@ -14,6 +14,7 @@ use crate::console::theme::Role;
 use crate::notation::{cents, compact, dollars, percent};
 use crate::report::fit::{Beside, Concern, Fit, TruthRange};
 use crate::tools::ToolId;
+use crate::session::{WeekFigure, WeekQuantity};
 use crate::world::identifiers::Plan;
 
 /// Words left of the lines of each part.
@@ -34,7 +35,11 @@ impl Pane<Customers> for FitPane {
              leads,\n    total(s.status IN ('subscribed', 'cancelled')) AS signed\nFROM customers c\nLEFT JOIN subscriptions s \
              ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
         );
-        Some(Figure { title: format!("fit of {group} and its leads by week"), term: "fit", sql: Some(sql), why: None })
+        let title = format!("fit of {group} and its leads by week");
+        // Companies sign weeks after they came.
+        let quantity = WeekQuantity::of_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
+        let figure = Figure { title, term: "fit", sql: Some(sql), why: None };
+        Some(figure.of_week(quantity, look.company.seen.week))
     }
 
     fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {

@@ -62,16 +62,22 @@ fn an_unfinished_sandbox_is_not_looked_into() {
 #[test]
 fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
     let lines = "set_prices A=12 B=25 C=55\nset_model_tiers A=2 B=3 C=4\nset_usage_quotas A=60000 B=250000 C=1200000\n\
-                 set_targeted_ad_spend {\"search_ads\": {\"S1\": 9000}}\nnext naive\nnext naive\nset_prices A=40\nnext naive\n\
+                 set_targeted_ad_spend {\"search_ads\": {\"S1\": 9000}}\nnext \"on\" naive\nnext \"on\" naive\nset_prices A=40\nnext \"on\" naive\nreport\n\
                  why new_subscribers(S1) 3\nwhy reputation(S1)\nwhy chrun(S1)\nwhy\n";
     for mode in ["debug", "sandbox", "baseline"] {
         let home = Home::new();
         let mut options = vec!["--mode", mode, "--seed", "7", "--echo"];
         options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &["--days", "84"] });
         let said = home.play(&options, lines);
-        let [_, answers @ ..] = &said.out.split("> why ").collect::<Vec<_>>()[..] else {
+        let [played, answers @ ..] = &said.out.split("> why ").collect::<Vec<_>>()[..] else {
             panic!("{}", said.out)
         };
+        // The report of the week lists what was set and what changed, and blames nothing.
+        let (_, report) = played.split_once("> report").expect("a report");
+        assert!(report.contains("decided before it: price A: 12 → 40 $/month"), "{report}");
+        for word in ["because", "due to", "cause", "may be", "led to", "thanks to", "blame"] {
+            assert!(!report.contains(word), "{word}: {report}");
+        }
         let trajectory = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("lines");
         let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
         if mode == "baseline" {

@@ -58,6 +58,10 @@ pub enum Effect {
     CloseDialogs,
     /// Find out what would have been; the flag ends the work.
     AskBranches(BranchesQuestion, Arc<AtomicBool>),
+    /// Read the tree of branches in which the run stands.
+    ReadKin,
+    /// Leave what is open, after a question where text would be lost, and open another run of the folder by its id.
+    OpenRun(String),
     /// Look at hidden state of the run.
     LookInside(LookQuestion),
     /// Stop what the person asked.

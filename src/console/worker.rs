@@ -9,6 +9,7 @@ mod causes;
 mod desk;
 mod folder;
 mod inside;
+mod kin;
 mod limits;
 mod mending;
 mod player;
@@ -62,6 +63,8 @@ pub enum Job {
     FindCauses(WhyAsked),
     /// Find out what would have been.
     FindBranches(BranchesAsked),
+    /// Read the tree of branches in which the run stands.
+    ReadKin,
     /// Look at hidden state of the run.
     LookInside(u64, LookQuestion),
     /// Record what the person asked.
@@ -266,6 +269,7 @@ impl SessionThread {
             }),
             Job::FindCauses(asked) => self.find_causes(asked),
             Job::FindBranches(asked) => self.find_branches(asked),
+            Job::ReadKin => self.read_kin(),
             Job::LookInside(number, question) => self.look_inside(number, &question),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),

@@ -6,6 +6,7 @@ mod figures;
 mod focus;
 mod guide;
 mod harness;
+mod kin;
 mod looks;
 mod monkey;
 mod pictures;

@@ -480,11 +480,7 @@ impl App {
     }
 
     fn quit(&mut self) {
-        let unsent = self.run().filter(|run| run.viewer.is_none()).is_some_and(|run| {
-            run.filing.has_draft()
-                || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
-        });
-        if unsent {
+        if self.holds_unsent_text() {
             let text = "A form, the notes or the next-week dialog holds unsent text. The run itself is saved. Leave and discard that text?";
             self.open(Confirm::new("Leave", text, vec![Effect::LeaveNow]));
             return;

@@ -3,9 +3,13 @@
 use std::time::Instant;
 
 use super::{App, Busy, Order, Stage};
+use crate::console::dialogs::confirm::Confirm;
+use crate::console::effect::Effect;
 use crate::console::request::Request;
+use crate::console::screens::ScreenId;
 use crate::console::screens::menu::Menu;
 use crate::console::worker::Job;
+use crate::session::Access;
 use crate::session::record::LeavingCause;
 
 /// What follows once the run is closed.
@@ -37,7 +41,35 @@ impl Closing {
     }
 }
 
+/// Asked before a run is left with text that was not sent.
+const KEEPS_TEXT: &str = "A form, the notes or the next-week dialog holds unsent text. It is kept with this run and offered \
+                          when you open it again. Leave this run now?";
+
 impl App {
+    /// Whether text was typed and not sent.
+    pub(super) fn holds_unsent_text(&self) -> bool {
+        self.run().filter(|run| run.viewer.is_none()).is_some_and(|run| {
+            run.filing.has_draft()
+                || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
+        })
+    }
+
+    /// Opens another run of the folder in place of what is open.
+    pub(super) fn open_other(&mut self, id: String) {
+        let is_open = self.run().is_some_and(|run| run.viewer.is_none() && run.company.seen.run == id);
+        if is_open {
+            return self.complain(format!("run {id} is the one that is open"));
+        }
+        if self.busy.is_some() {
+            return self.complain("days are running; try again when they are done");
+        }
+        let open = Effect::Request(Request::Open(id.clone(), Access::Write));
+        match self.holds_unsent_text() {
+            true => self.open(Confirm::new(format!("open run {id}"), KEEPS_TEXT, vec![open])),
+            false => self.follow(vec![open]),
+        }
+    }
+
     /// Saves, closes the run, and goes on to something.
     pub(super) fn leave(&mut self, closing: Closing) {
         if self.closing.is_some_and(|planned| planned != Closing::ToMenu) {

@@ -137,6 +137,7 @@ impl App {
             }
             News::LookedInside(number, _) if *number != self.look_question => return,
             News::LookedInside(..) => ScreenId::Xray,
+            News::Kin(..) => ScreenId::Journal,
             News::Answered(number, ..) if *number != self.sql_question => return,
             News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,

@@ -54,6 +54,8 @@ impl App {
             }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
             Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
+            Effect::ReadKin => self.orders.push(Order::Job(Job::ReadKin)),
+            Effect::OpenRun(id) => self.open_other(id),
             Effect::LookInside(question) => {
                 self.look_question += 1;
                 self.orders.push(Order::Job(Job::LookInside(self.look_question, question)));
@@ -159,7 +161,8 @@ impl App {
         if request.waits_for_week() && self.busy.is_some() {
             return self.complain("a week is running; nothing was sent: try again when it is done");
         }
-        if matches!(request, Request::Replay { .. }) {
+        let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
+        if leaves_run || matches!(request, Request::Replay { .. }) {
             // What is played here is left for it.
             self.put_down();
         }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::{Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Instead, News};
+use crate::session::record::LeavingCause;
 use crate::session::{
     Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
     find_run, find_run_to_read, list_runs, rescue, run_preview,
@@ -71,10 +72,16 @@ impl SessionThread {
             Access::Write => find_run(&self.runs, id),
             Access::Read => find_run_to_read(&self.runs, id),
         };
+        // It may be the run that is looked into, whose folder this thread holds for that.
+        self.inside = None;
         let opened = found.and_then(|folder| {
             self.refuse_session_of_study(&folder, access)?;
             Session::open(&folder, access, true)
         });
+        if opened.is_ok() {
+            // Everything confirmed is on the disk already; what is left are rows that can be made again.
+            let _ = self.put_down(LeavingCause::Quit);
+        }
         self.take(opened, id, None);
     }
 

@@ -1,5 +1,6 @@
 //! What was done and why, how the forecasts turned out, and the notes of the run.
 
+mod branches;
 pub mod entries;
 mod list;
 mod notes;
@@ -15,9 +16,11 @@ use super::{Figure, Look, ScreenState};
 use crate::console::action::Action;
 use crate::console::canvas::Canvas;
 use crate::console::effect::Effect;
+use crate::console::message::News;
 use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Editor, Table};
+use crate::session::Kin;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]
@@ -28,6 +31,8 @@ pub enum JournalPane {
     Notes,
     /// How forecasts turned out.
     Scores,
+    /// The tree of branches, where there is one.
+    Branches,
 }
 
 /// The screen.
@@ -44,6 +49,13 @@ pub struct Journal {
     /// The notes as they are kept.
     kept: String,
     editing: bool,
+    /// The tree of branches, and a row for each of its runs.
+    tree: Vec<Kin>,
+    branches: Table,
+    /// The run whose tree it is.
+    tree_of: String,
+    /// It is being read.
+    reads_tree: bool,
 }
 
 impl Default for Journal {
@@ -58,6 +70,10 @@ impl Default for Journal {
             notes: Editor::default(),
             kept: String::new(),
             editing: false,
+            tree: Vec::new(),
+            branches: branches::table(),
+            tree_of: String::new(),
+            reads_tree: false,
         }
     }
 }
@@ -113,6 +129,17 @@ impl ScreenState for Journal {
         self.kept = kept.text();
     }
 
+    fn ask_run(&mut self, look: &Look<'_>) -> Vec<Effect> {
+        self.ask_tree(look.company)
+    }
+
+    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+        if let News::Kin(run, tree) = news {
+            self.take_tree(run, tree, look.company);
+        }
+        Vec::new()
+    }
+
     fn edited(&self) -> Option<(String, String)> {
         self.editing.then(|| ("notes".to_owned(), self.notes.text()))
     }
@@ -126,7 +153,10 @@ impl Paned for Journal {
     type Name = JournalPane;
 
     fn panes(&self) -> &'static [JournalPane] {
-        JournalPane::VARIANTS
+        match self.has_tree() {
+            true => JournalPane::VARIANTS,
+            false => &[JournalPane::List, JournalPane::Notes, JournalPane::Scores],
+        }
     }
 
     fn pane(name: JournalPane) -> &'static dyn Pane<Journal> {
@@ -134,6 +164,7 @@ impl Paned for Journal {
             JournalPane::List => &list::EntriesPane,
             JournalPane::Notes => &notes::NotesPane,
             JournalPane::Scores => &scores::ScoresPane,
+            JournalPane::Branches => &branches::BranchesPane,
         }
     }
 
@@ -161,23 +192,60 @@ impl Paned for Journal {
             return draw_pane(self, self.focus, canvas, area, look);
         }
         let few = look.company.scores.len() as u16 + 4;
-        let [list, scores, notes] = if area.width >= 104 {
+        let wide = area.width >= 104;
+        let [list, below] = if wide {
             let right = (area.width / 3).clamp(48, 64);
-            let [list, side] =
-                Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
-            // Single forecasts below the scores, where there is room for some of them.
-            let tall = (few + 9).min(side.height / 2).max(few);
-            let [scores, notes] =
-                Layout::vertical([Constraint::Length(tall), Constraint::Min(0)]).areas(side);
-            [list, scores, notes]
+            Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area)
         } else {
-            let [list, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(few)]).areas(area);
-            let [scores, notes] =
-                Layout::horizontal([Constraint::Length(40), Constraint::Min(0)]).areas(below);
-            [list, scores, notes]
+            Layout::vertical([Constraint::Min(0), Constraint::Length(few)]).areas(area)
         };
+        let (list, below) = self.arrange_tree(canvas, (list, below), area, look);
         draw_pane(self, JournalPane::List, canvas, list, look);
+        let [scores, notes] = if wide {
+            // Single forecasts below the scores, where there is room for some of them.
+            let tall = (few + 9).min(below.height / 2).max(few);
+            Layout::vertical([Constraint::Length(tall), Constraint::Min(0)]).areas(below)
+        } else {
+            Layout::horizontal([Constraint::Length(40), Constraint::Min(0)]).areas(below)
+        };
         draw_pane(self, JournalPane::Scores, canvas, scores, look);
         draw_pane(self, JournalPane::Notes, canvas, notes, look);
+    }
+}
+
+/// Lowest window in which the tree of branches stands beside everything else.
+const ROOM_FOR_TREE: u16 = 26;
+
+impl Journal {
+    /// Draws the tree of branches, if there is one, below the list; in a low window in place of what stands below while it has
+    /// the focus. What is left to the list, and below or beside it.
+    fn arrange_tree(
+        &self,
+        canvas: &mut Canvas<'_>,
+        (list, below): (Rect, Rect),
+        area: Rect,
+        look: &Look<'_>,
+    ) -> (Rect, Rect) {
+        let has_focus = self.focus == JournalPane::Branches;
+        if !self.has_tree() {
+            return (list, below);
+        }
+        if area.height < ROOM_FOR_TREE {
+            return match has_focus {
+                true => {
+                    let [list, tree] =
+                        Layout::vertical([Constraint::Length(area.height / 3), Constraint::Min(0)])
+                            .areas(Rect { width: list.width, ..area });
+                    draw_pane(self, JournalPane::Branches, canvas, tree, look);
+                    (list, if below.x > list.x { below } else { Rect::default() })
+                }
+                false => (list, below),
+            };
+        }
+        let wanted = self.tree.len() as u16 + branches::AROUND + 3;
+        let tall = wanted.min(list.height / 2);
+        let [list, tree] = Layout::vertical([Constraint::Min(0), Constraint::Length(tall)]).areas(list);
+        draw_pane(self, JournalPane::Branches, canvas, tree, look);
+        (list, below)
     }
 }

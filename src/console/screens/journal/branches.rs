@@ -1,0 +1,178 @@
+//! The tree of branches in which the run stands: where each left, its first call of its own, where it stands now.
+
+use ratatui::layout::Rect;
+
+use super::{Journal, JournalPane};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::console::screens::{Figure, Look};
+use crate::console::text::{short_dollars, wrapped};
+use crate::console::theme::Role;
+use crate::console::widgets::{Cell, Column, Table};
+use crate::report::whatif::kin_line;
+use crate::session::Kin;
+use crate::tools::ToolId;
+
+/// The tree.
+pub struct BranchesPane;
+
+/// Rows that the pane wants around the runs: its border and the head.
+pub const AROUND: u16 = 3;
+/// Height from which the selected run is told in full below the table.
+const TOLD_FROM: u16 = 7;
+
+/// A table of runs without any.
+pub fn table() -> Table {
+    Table::new(vec![
+        Column::words("run"),
+        Column::numbers("left in").at_least(7),
+        Column::words("first call of its own").at_least(12),
+        Column::numbers("day"),
+        Column::numbers("cash"),
+        Column::words("end"),
+    ])
+}
+
+/// The rows of a tree; that of the run with this id is marked.
+pub fn rows(tree: &[Kin], own: &str) -> Vec<Vec<Cell>> {
+    tree.iter().map(|kin| row(kin, own)).collect()
+}
+
+fn row(kin: &Kin, own: &str) -> Vec<Cell> {
+    let run = &kin.run;
+    let (mark, role) = if run.id == own { (" ◂", Role::Strong) } else { ("", Role::Text) };
+    let left = match kin.left_in_week {
+        Some(week) => Cell::number(week.into(), format!("week {week}")),
+        None => Cell::words(""),
+    };
+    let change = match (kin.first_change, kin.left_in_week) {
+        (Some((day, tool)), Some(_)) => Cell::words(format!("{} on day {day}", ToolId::name(tool))),
+        (None, Some(_)) => Cell::words("none").role(Role::Dim),
+        (_, None) => Cell::words(""),
+    };
+    vec![
+        Cell::words(format!("{}{}{mark}", "  ".repeat(kin.depth), run.id)).role(role),
+        left,
+        change,
+        Cell::number(run.day.into(), format!("{} of {}", run.day, run.days)),
+        Cell::number(run.cash, short_dollars(run.cash)),
+        Cell::words(run.ended.map_or("", |ended| ended.id())).role(Role::Dim),
+    ]
+}
+
+impl Journal {
+    /// Whether there is a tree to show: the run has branches or is one.
+    pub(super) fn has_tree(&self) -> bool {
+        self.tree.len() > 1
+    }
+
+    /// Asks for the tree, unless it is being read, or cannot have changed.
+    pub(super) fn ask_tree(&mut self, company: &Company) -> Vec<Effect> {
+        let is_known = company.replayed && self.tree_of == company.seen.run;
+        if company.study.is_some() || company.folder.is_none() || self.reads_tree || is_known {
+            return Vec::new();
+        }
+        self.reads_tree = true;
+        vec![Effect::ReadKin]
+    }
+
+    /// Takes the tree that was read for a run.
+    pub(super) fn take_tree(&mut self, run: &str, tree: &[Kin], company: &Company) {
+        self.reads_tree = false;
+        if run != company.seen.run || company.study.is_some() {
+            return;
+        }
+        run.clone_into(&mut self.tree_of);
+        let is_first = self.tree.is_empty();
+        self.tree = tree.to_vec();
+        self.branches.set_rows(rows(tree, run));
+        if is_first && let Some(own) = tree.iter().position(|kin| kin.run.id == run) {
+            self.branches.select(own);
+        }
+        if self.focus == JournalPane::Branches && !self.has_tree() {
+            self.focus = JournalPane::List;
+        }
+    }
+
+    /// What stands beside the title of the entries: how they are filtered, or of how many runs the tree is.
+    pub(super) fn note(&self) -> String {
+        match (self.table.note(), self.has_tree()) {
+            (note, false) => note,
+            (note, true) if !note.is_empty() => note,
+            (_, true) => format!("{} runs in its tree", self.tree.len()),
+        }
+    }
+
+    fn selected_kin(&self) -> Option<&Kin> {
+        self.branches.selected().and_then(|row| self.tree.get(row))
+    }
+}
+
+impl Pane<Journal> for BranchesPane {
+    fn table<'a>(&self, journal: &'a Journal) -> Option<&'a Table> {
+        Some(&journal.branches)
+    }
+
+    fn table_mut<'a>(&self, journal: &'a mut Journal) -> Option<&'a mut Table> {
+        Some(&mut journal.branches)
+    }
+
+    fn scopes(&self, journal: &Journal) -> Vec<Scope> {
+        if journal.branches.is_typing() { vec![Scope::Field, Scope::List] } else { vec![Scope::List] }
+    }
+
+    fn hints(&self, _: &Journal) -> Vec<Action> {
+        vec![Action::Open, Action::Filter, Action::Close]
+    }
+
+    fn figure(&self, journal: &Journal, _: &Look<'_>) -> Option<Figure> {
+        let title = journal.selected_kin().map(|kin| format!("run {}", kin.run.id))?;
+        Some(Figure { title, term: "branch", sql: None, why: None })
+    }
+
+    fn act(&self, journal: &mut Journal, action: Action, look: &Look<'_>) -> Vec<Effect> {
+        let is_filtered = journal.branches.is_filtered();
+        match action {
+            Action::Open => {
+                return match journal.selected_kin() {
+                    Some(kin) => vec![Effect::OpenRun(kin.run.id.clone())],
+                    None => Vec::new(),
+                };
+            }
+            Action::Close if !is_filtered => journal.focus = JournalPane::List,
+            action => drop(journal.branches.act(action, look.page)),
+        }
+        Vec::new()
+    }
+
+    fn border(&self, journal: &Journal, _: Rect, look: &Look<'_>) -> Border {
+        let open = look.keys.label(Action::Open).unwrap_or_default();
+        Border {
+            title: "Branches".to_owned(),
+            note: journal.branches.note(),
+            keys: format!("{open} opens the run"),
+            ..Border::default()
+        }
+    }
+
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let told = match journal.selected_kin() {
+            Some(kin) => wrapped(kin_line(kin, &look.company.seen.run).trim_start(), seat.area.width.into()),
+            None => Vec::new(),
+        };
+        let rows = journal.branches.shown().len() as u16 + 1;
+        let below = match seat.area.height >= TOLD_FROM {
+            true => (told.len() as u16 + 1).min(seat.area.height / 2),
+            false => seat.area.height.saturating_sub(rows + 1).min(told.len() as u16 + 1),
+        };
+        let area = Rect { height: seat.area.height - below, ..seat.area };
+        journal.branches.draw(canvas, area, seat.focused, seat.number);
+        let below = Rect { y: area.bottom(), height: below, ..seat.area };
+        for (row, line) in rows_of(below).skip(1).zip(&told) {
+            canvas.text(row, line, Role::Dim);
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! The tree of branches in which the run stands, read on a thread of its own: the run goes on meanwhile.
+
+use std::path::Path;
+
+use super::{Open, SessionThread};
+use crate::console::message::{Message, News};
+use crate::session::branches_of;
+
+impl SessionThread {
+    /// Reads the tree of branches. It is empty where other runs are nobody's business here: in sessions of a study, and where
+    /// the record does not lie among the runs that can be opened.
+    pub(super) fn read_kin(&self) {
+        let session = match &self.open {
+            Some(Open::Played(session)) => Some(session.as_ref()),
+            Some(Open::Replayed(playback)) => Some(playback.session()),
+            None => None,
+        };
+        let Some(session) = session else { return self.say(News::Kin(String::new(), Vec::new())) };
+        let id = session.manifest().id.clone();
+        let is_among_runs = session.folder().and_then(Path::parent) == Some(self.runs.as_path());
+        if self.desk.is_some() || session.manifest().study.is_some() || !is_among_runs {
+            return self.say(News::Kin(id, Vec::new()));
+        }
+        let (news, runs) = (self.news.clone(), self.runs.clone());
+        std::thread::spawn(move || {
+            let tree = branches_of(&runs, &id);
+            let _ = news.send(Message::News(News::Kin(id, tree)));
+        });
+    }
+}

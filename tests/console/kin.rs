@@ -1,0 +1,102 @@
+//! The tree of branches of a run in the Journal: what stands there, how a branch is opened, and where there is none.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use novamind::session::{Goal, Mode, Session};
+use serde_json::json;
+
+use super::harness::Console;
+use super::looks::cut_with_room;
+use super::replay::{played, replayed};
+use crate::support::company::{call, weeks};
+
+/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
+const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
+
+/// A run of four weeks, a branch that left in week 3 and was decided otherwise, and a branch of that one; their ids.
+fn family(runs: &Path) -> [String; 3] {
+    let id = |session: &Session| session.manifest().id.clone();
+    let root = played(runs, Mode::Sandbox, 4);
+    let mut cheaper = root.branch(3, Mode::Sandbox).expect("a branch");
+    call(&mut cheaper, "set_prices", json!({"A": 9}));
+    weeks(&mut cheaper, 2);
+    let later = cheaper.branch(4, Mode::Sandbox).expect("a branch");
+    [id(&root), id(&cheaper), id(&later)]
+}
+
+fn console_in(runs: &Path, id: &str, size: (u16, u16)) -> Console {
+    let mut console = Console::start(runs, size);
+    console.open(id).expect("it opens");
+    console
+}
+
+/// The screen with names instead of the ids, which differ from run to run.
+fn named(console: &mut Console, ids: &[String; 3]) -> String {
+    let names = ["run-root", "run-left", "run-late"];
+    ids.iter().zip(names).fold(console.screen(), |text, (id, name)| text.replace(id, name))
+}
+
+#[test]
+fn the_tree_in_windows_of_four_sizes() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let ids = family(runs.path());
+    let mut console = console_in(runs.path(), &ids[1], SIZES[2]);
+    console.press("0 shift-tab");
+    let (mut text, mut complaints) = (String::new(), Vec::new());
+    for size in SIZES {
+        console.size = size;
+        let letters = named(&mut console, &ids);
+        complaints.extend(cut_with_room(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
+        writeln!(text, "{}×{}\n{letters}", size.0, size.1).expect("text");
+    }
+    insta::assert_snapshot!("journal-branches", text);
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn enter_opens_a_branch_and_asks_before_text_is_left() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let ids = family(runs.path());
+    let mut console = console_in(runs.path(), &ids[1], (120, 40));
+    console.press("0 shift-tab enter");
+    console.shows(&format!("run {} is the one that is open", ids[1]));
+    // The tree begins with the root; nothing was typed, so nothing is asked.
+    console.press("up enter");
+    let here = |console: &Console| console.app.run().map(|run| run.company.seen.run.clone());
+    assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
+    console.press("0 e 'mine' esc shift-tab shift-tab down down enter");
+    console.shows("dialog holds unsent");
+    console.press("esc");
+    assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
+    console.press("enter y");
+    assert_eq!(here(&console).as_deref(), Some(ids[2].as_str()));
+    // What was typed is offered where it was typed.
+    console.press("0 shift-tab up up enter");
+    assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
+    console.shows("mine");
+}
+
+#[test]
+fn the_replay_of_a_run_shows_its_tree_and_leads_to_a_branch() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let ids = family(runs.path());
+    let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
+    console.press("0");
+    for id in &ids {
+        console.shows(id);
+    }
+    console.press("shift-tab down down down up enter");
+    assert!(console.app.run().is_some_and(|run| run.viewer.is_none()));
+}
+
+#[test]
+fn a_run_without_branches_has_no_tree() {
+    let runs = tempfile::tempdir().expect("a folder");
+    drop(played(runs.path(), Mode::Sandbox, 1));
+    drop(played(runs.path(), Mode::Sandbox, 2));
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.press("0");
+    let screen = console.screen();
+    assert!(!screen.contains("Branches") && !screen.contains("in its tree"), "{screen}");
+}

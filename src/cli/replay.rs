@@ -1,7 +1,7 @@
 //! `novamind replay`: play a recorded run again, in the console or headless to compare every state.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -10,7 +10,7 @@ use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
 use crate::console::request::Recorded;
 use crate::console::request::Request;
-use crate::session::{Goal, find_run_to_read, record_look, verify_sealed};
+use crate::session::{Goal, Session, find_run_to_read, record_look, verify_sealed};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]
@@ -21,8 +21,11 @@ pub struct Options {
     #[arg(long)]
     verify: bool,
     /// Begin after this week.
-    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "verify")]
-    week: u32,
+    #[arg(long, value_name = "N", conflicts_with = "verify")]
+    week: Option<u32>,
+    /// Begin on the X-ray screen, at the end of the record unless --week says otherwise; of a debug run, or of one that is over.
+    #[arg(long, conflicts_with = "verify")]
+    xray: bool,
 }
 
 /// Runs the command.
@@ -31,26 +34,56 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn show(options: &Options, context: &Context) -> Result<(), Failure> {
+    let recorded = recorded(&options.run);
+    if options.xray {
+        check_inside(&recorded, context)?;
+    }
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(Failure::usage(
             "a replay needs a terminal; --verify simulates the run again without one and compares every \
              state",
         ));
     }
-    let recorded = recorded(&options.run);
-    note_look(&recorded, &format!("week {}", options.week), context)?;
-    let effect = Effect::Request(Request::Replay { recorded, goal: Goal::Week(options.week), follow: false });
+    let (goal, from) = match (options.week, options.xray) {
+        (Some(week), _) => (Goal::Week(week), format!("week {week}")),
+        (None, true) => (Goal::Last, "the end".to_owned()),
+        (None, false) => (Goal::Week(0), "week 0".to_owned()),
+    };
+    note_look(&recorded, &from, context)?;
+    let effect = match options.xray {
+        true => Effect::ReplayInside(recorded, goal),
+        false => Effect::Request(Request::Replay { recorded, goal, follow: false }),
+    };
     show_console(&play::Options::default(), Some(effect), context)
+}
+
+/// Refuses where hidden state of a record stays hidden.
+fn check_inside(recorded: &Recorded, context: &Context) -> Result<(), Failure> {
+    let folder = match recorded {
+        Recorded::Run(id) => Some(find_run_to_read(&context.runs()?, id)?),
+        Recorded::File(path) => folder_around(path),
+    };
+    let folder = folder.ok_or_else(|| {
+        Failure::usage(
+            "the x-ray looks into runs; this trajectory stands alone, without the folder of its run",
+        )
+    })?;
+    context.check_look(&folder)?;
+    Ok(Session::open_to_look_inside(&folder, context.seal_key()?).map(drop)?)
+}
+
+/// The folder of a run that a path names: it, or the one in which a trajectory lies.
+fn folder_around(path: &Path) -> Option<PathBuf> {
+    let is_run = |folder: &&Path| folder.join("run.toml").is_file();
+    Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
 /// Records that a run is read: one of the folder of runs, or in a folder of its own.
 fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         Recorded::Run(id) => find_run_to_read(&context.runs()?, id)?,
-        Recorded::File(path) if path.join("run.toml").is_file() => path.clone(),
-        // A trajectory that lies where a run is.
-        Recorded::File(path) => match path.parent().filter(|folder| folder.join("run.toml").is_file()) {
-            Some(folder) => folder.to_owned(),
+        Recorded::File(path) => match folder_around(path) {
+            Some(folder) => folder,
             None => return Ok(()),
         },
     };

@@ -233,6 +233,8 @@ pub struct App {
     look_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
+    /// The screen on which the run that is being opened begins, where that is not the usual one.
+    opens_on: Option<ScreenId>,
     /// The run that is being started shows the tour.
     tour_planned: bool,
     /// The study whose participants are led.
@@ -302,6 +304,7 @@ impl App {
             branches_question: 0,
             look_question: 0,
             closing: None,
+            opens_on: None,
             tour_planned: false,
             visit: None,
             limit: limits::LimitTold::default(),

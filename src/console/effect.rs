@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::action::Action;
 use super::look_inside::LookQuestion;
 use super::readings::Reading;
-use super::request::Request;
+use super::request::{Recorded, Request};
 use super::resimulation::BranchesQuestion;
 use super::screens::{Figure, ScreenId};
 use crate::glossary::Subject;
@@ -21,7 +21,10 @@ impl Effect {
     pub fn changes_run(&self) -> bool {
         match self {
             Effect::Request(request) => request.changes_run(),
-            Effect::ConfirmCall { .. } | Effect::ConfirmCalls { .. } => true,
+            Effect::ConfirmCall { .. }
+            | Effect::ConfirmCalls { .. }
+            | Effect::ConfirmWords(_)
+            | Effect::SendWords(_) => true,
             _ => false,
         }
     }
@@ -37,6 +40,8 @@ impl Effect {
 pub enum Effect {
     /// Work for the thread that owns the session.
     Request(Request),
+    /// Play a recorded run again from a moment on, and show its hidden state.
+    ReplayInside(Recorded, Goal),
     /// Go somewhere in the replay.
     Go(Goal),
     /// What a call would do; only the newest answer counts.
@@ -48,6 +53,8 @@ pub enum Effect {
     },
     /// Ask the database for the person.
     Ask(String),
+    /// Ask the database and the tables of the x-ray for the person.
+    AskInside(String),
     /// Ask the database for the rows behind a figure.
     AskBehind(String),
     /// Find out why a figure of a week changed.
@@ -64,6 +71,10 @@ pub enum Effect {
     OpenRun(String),
     /// Look at hidden state of the run.
     LookInside(LookQuestion),
+    /// Ask once before words that set a parameter of the run.
+    ConfirmWords(String),
+    /// Send these words, which set a parameter of the run, from the X-ray screen.
+    SendWords(String),
     /// Stop what the person asked.
     CancelQuery,
     /// Ask the database for a screen.

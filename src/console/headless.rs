@@ -109,6 +109,14 @@ impl Headless {
         self.open_with(Effect::Request(Request::Replay { recorded, goal, follow }))
     }
 
+    /// Plays a recorded run again from a moment on, and shows its hidden state where it may.
+    ///
+    /// # Errors
+    /// It does not open.
+    pub fn replay_inside(&mut self, recorded: Recorded, goal: Goal) -> io::Result<()> {
+        self.open_with(Effect::ReplayInside(recorded, goal))
+    }
+
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
         self.app.start_with(effect);
         self.settle()?;

@@ -1,13 +1,14 @@
 //! What the X-ray screen asks of the hidden state of a run, and what it is told: the words of plain mode.
 
+use crate::report::xray::{AskedWords, SpillMap};
 use crate::session::{Breakpoint, Condition, DrawnPart, LeadFactor};
 use crate::world::identifiers::Group;
 
 /// A look at hidden state. Days are those that are over.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LookQuestion {
-    /// The equation of a group's leads on a day, with factors held at 1.
-    Leads(Group, u32, Vec<LeadFactor>),
+    /// The equation of a group's leads on a day, with factors held at values.
+    Leads(Group, u32, Vec<(LeadFactor, f64)>),
     /// What was delivered to a group on a day.
     Quality(Group, u32),
     /// What moved the satisfaction of a group on a day.
@@ -26,6 +27,8 @@ pub enum LookQuestion {
     Customer(u32, u32),
     /// Of breakpoints.
     Breakpoints(BreakpointWork),
+    /// Words as plain mode takes them; as they were typed, and read.
+    Words(String, AskedWords),
 }
 
 /// What is done with breakpoints, besides running to them.
@@ -46,8 +49,21 @@ pub enum BreakpointWork {
 pub struct LookFound {
     /// Words.
     pub lines: Vec<String>,
+    /// Figures of days beside some of them.
+    pub curves: Vec<LookCurve>,
+    /// Spills as a map, which is shown in place of the words.
+    pub map: Option<SpillMap>,
     /// The breakpoints that are set; only told where breakpoints are asked for.
     pub breakpoints: Vec<Breakpoint>,
+}
+
+/// A figure of days that end with the one that is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LookCurve {
+    /// Place of the line that tells of it.
+    pub line: usize,
+    /// The figure day by day; not a number where it has no value.
+    pub days: Vec<f64>,
 }
 
 /// Days of a debug run that were simulated.

@@ -113,8 +113,8 @@ pub enum News {
     Branches(u64, Box<Result<BranchesFound, Refusal>>),
     /// The tree of branches in which a run stands, with its id.
     Kin(String, Vec<Kin>),
-    /// What was seen of the run from within; the number says which question it answers.
-    LookedInside(u64, Box<Result<LookFound, Refusal>>),
+    /// What was seen of the run from within; the number says which question it answers. With the company where it has changed.
+    LookedInside(u64, Box<Result<LookFound, Refusal>>, Option<Arc<Company>>),
     /// Days of a debug run were simulated up to a breakpoint.
     Ran(Result<DaysRan, Refusal>, Arc<Company>),
     /// How far a question why has come; the number says which.

@@ -152,6 +152,7 @@ impl Console {
                     if let Some(interrupt) = self.app.run().and_then(|run| run.interrupt.as_ref()) {
                         interrupt.stop();
                     }
+                    self.workers.stop_asking_inside();
                 }
                 Order::Copy(text) => self.screen.copy(&text),
                 Order::Write(files) => files::write_behind(files, self.sender.clone()),

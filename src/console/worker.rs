@@ -21,7 +21,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -35,8 +35,8 @@ use super::request::Request;
 use super::resimulation::{BranchesAsked, WhyAsked};
 use crate::session::record::{LeavingCause, PresenceEvent};
 use crate::session::{
-    Activity, Causes, Configuration, Goal, Interface, LastRead, Playback, QuerySource, Refusal, Rows,
-    RunError, Session, UnsentTexts, WhatIf,
+    Activity, Causes, Configuration, Goal, Interface, Interrupt, LastRead, Playback, QuerySource, Refusal,
+    Rows, RunError, Session, UnsentTexts, WhatIf,
 };
 use crate::tools::ToolId;
 use desk::Desk;
@@ -59,6 +59,8 @@ pub enum Job {
     Check(u64, ToolId, Value),
     /// Pass a question on once everything confirmed is in the database.
     Ask(Question),
+    /// Ask the database and the tables of the x-ray; the number tells the answer from others.
+    AskInside(u64, String),
     /// Find out why a figure changed.
     FindCauses(WhyAsked),
     /// Find out what would have been.
@@ -95,6 +97,8 @@ pub enum Job {
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
+    /// Stops the question that the session's thread asks the tables of the x-ray, while it does.
+    inside_stop: Arc<Mutex<Option<Interrupt>>>,
     session: Option<JoinHandle<()>>,
 }
 
@@ -109,6 +113,8 @@ impl Workers {
         let (jobs, todo) = channel();
         let queries = QueryThreads::start(&news, &jobs);
         let for_session = queries.clone();
+        let inside_stop: Arc<Mutex<Option<Interrupt>>> = Arc::default();
+        let stop = inside_stop.clone();
         let session = std::thread::spawn(move || {
             let thread = SessionThread {
                 open: None,
@@ -123,6 +129,8 @@ impl Workers {
                 causes: Arc::default(),
                 branches: Arc::default(),
                 inside: None,
+                inside_has_rows: false,
+                inside_stop: stop,
                 news,
                 runs,
                 queries: for_session,
@@ -130,7 +138,7 @@ impl Workers {
             };
             thread.run(&todo);
         });
-        Workers { jobs, queries, session: Some(session) }
+        Workers { jobs, queries, inside_stop, session: Some(session) }
     }
 
     /// Hands over a job.
@@ -141,6 +149,12 @@ impl Workers {
     /// Asks at once, without waiting for the session's thread.
     pub fn ask_now(&self, question: Question) {
         self.queries.ask(question);
+    }
+
+    /// Stops the question that the tables of the x-ray are asked.
+    pub fn stop_asking_inside(&self) {
+        let stop = self.inside_stop.lock().unwrap_or_else(PoisonError::into_inner);
+        stop.iter().for_each(Interrupt::stop);
     }
 
     /// Waits until everything handed over is done, but not for a week that is simulated.
@@ -201,6 +215,10 @@ struct SessionThread {
     branches: Arc<Mutex<LastRead<WhatIf>>>,
     /// The run that is looked into where the one that is open keeps no lines.
     inside: Option<Box<Session>>,
+    /// It has a database.
+    inside_has_rows: bool,
+    /// Stops what is asked of the tables of the x-ray.
+    inside_stop: Arc<Mutex<Option<Interrupt>>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -270,6 +288,7 @@ impl SessionThread {
             Job::FindCauses(asked) => self.find_causes(asked),
             Job::FindBranches(asked) => self.find_branches(asked),
             Job::ReadKin => self.read_kin(),
+            Job::AskInside(number, sql) => self.ask_inside(number, &sql),
             Job::LookInside(number, question) => self.look_inside(number, &question),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),

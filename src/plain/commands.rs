@@ -1,5 +1,6 @@
 //! The commands of plain mode: what each line does, and what is answered (docs/interfaces/plain-mode.md#commands).
 
+mod asked;
 mod breakpoints;
 mod check;
 mod difference;
@@ -442,7 +443,7 @@ fn usage(problem: Problem) -> Answer {
 }
 
 fn problem(arguments: &[Argument], text: &str) -> Problem {
-    Problem { text: text.to_owned(), column: arguments.first().map_or(1, |argument| argument.column) }
+    Problem::of(arguments, text)
 }
 
 fn none(arguments: &[Argument]) -> Result<(), Problem> {

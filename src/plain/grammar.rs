@@ -2,6 +2,9 @@
 
 use serde_json::{Map, Value};
 
+use crate::tools::written::Reader;
+pub use crate::tools::written::{Argument, Problem};
+
 /// What a line says.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Line {
@@ -25,26 +28,6 @@ pub enum Line {
     },
 }
 
-/// One argument.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Argument {
-    /// Its name, if it was given one.
-    pub key: Option<String>,
-    /// Its value.
-    pub value: Value,
-    /// Column where it begins, from 1.
-    pub column: usize,
-}
-
-/// What is wrong with a line, and in which column.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Problem {
-    /// What is wrong.
-    pub text: String,
-    /// Column, from 1, in characters.
-    pub column: usize,
-}
-
 /// Commands whose text is the rest of the line as it stands.
 const TEXT_COMMANDS: [&str; 17] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "whatif", "pause",
@@ -53,7 +36,7 @@ const TEXT_COMMANDS: [&str; 17] = [
 
 /// Reads a line.
 pub fn parse(line: &str) -> Result<Line, Problem> {
-    let mut reader = Reader { line, at: 0 };
+    let mut reader = Reader::of(line);
     reader.skip_blanks();
     if reader.rest().is_empty() || reader.rest().starts_with('#') {
         return Ok(Line::Empty);
@@ -95,160 +78,6 @@ pub fn statement(rest: &str) -> String {
         return sql.to_owned();
     }
     rest.to_owned()
-}
-
-struct Reader<'a> {
-    line: &'a str,
-    at: usize,
-}
-
-impl<'a> Reader<'a> {
-    fn rest(&self) -> &'a str {
-        &self.line[self.at..]
-    }
-
-    fn column(&self) -> usize {
-        self.line[..self.at].chars().count() + 1
-    }
-
-    fn problem(&self, text: impl Into<String>) -> Problem {
-        Problem { text: text.into(), column: self.column() }
-    }
-
-    fn skip_blanks(&mut self) {
-        self.at += self.rest().len() - self.rest().trim_start().len();
-    }
-
-    /// Letters, digits, dots, dashes and underscores.
-    fn word(&mut self) -> String {
-        let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);
-        let end = self.rest().find(|letter| !is_word(letter)).unwrap_or(self.rest().len());
-        let word = self.rest()[..end].to_owned();
-        self.at += end;
-        word
-    }
-
-    fn arguments(&mut self) -> Result<Vec<Argument>, Problem> {
-        self.skip_blanks();
-        let opened = self.rest().starts_with('(');
-        self.at += usize::from(opened);
-        let mut arguments: Vec<Argument> = Vec::new();
-        let mut after_comma = false;
-        loop {
-            let before = self.at;
-            self.skip_blanks();
-            let rest = self.rest();
-            let comment = rest.starts_with('#') && (self.at > before || arguments.is_empty());
-            if rest.is_empty() || comment {
-                return if opened { Err(self.problem("the bracket is not closed")) } else { Ok(arguments) };
-            }
-            if opened && rest.starts_with(')') {
-                self.at += 1;
-                return self.nothing_more(arguments);
-            }
-            if rest.starts_with(',') {
-                if arguments.is_empty() || after_comma {
-                    return Err(self.problem("put a comma between two arguments"));
-                }
-                self.at += 1;
-                after_comma = true;
-                continue;
-            }
-            let argument = self.argument()?;
-            if let Some(key) = &argument.key
-                && arguments.iter().any(|other| other.key.as_ref() == Some(key))
-            {
-                return Err(Problem { text: format!("{key} is given twice"), column: argument.column });
-            }
-            arguments.push(argument);
-            after_comma = false;
-        }
-    }
-
-    fn nothing_more(&mut self, arguments: Vec<Argument>) -> Result<Vec<Argument>, Problem> {
-        self.skip_blanks();
-        if self.rest().is_empty() || self.rest().starts_with('#') {
-            Ok(arguments)
-        } else {
-            Err(self.problem("nothing can follow the closing bracket but a comment"))
-        }
-    }
-
-    /// `key = value`, or a value alone.
-    fn argument(&mut self) -> Result<Argument, Problem> {
-        let (column, start) = (self.column(), self.at);
-        let word = self.word();
-        self.skip_blanks();
-        if !word.is_empty() && self.rest().starts_with('=') {
-            self.at += 1;
-            self.skip_blanks();
-            return Ok(Argument { key: Some(word), value: self.value()?, column });
-        }
-        self.at = start;
-        Ok(Argument { key: None, value: self.value()?, column })
-    }
-
-    fn value(&mut self) -> Result<Value, Problem> {
-        match self.rest().chars().next() {
-            Some('{' | '[' | '"') => self.json(),
-            _ => self.bare(),
-        }
-    }
-
-    fn json(&mut self) -> Result<Value, Problem> {
-        let mut values = serde_json::Deserializer::from_str(self.rest()).into_iter::<Value>();
-        match values.next() {
-            Some(Ok(value)) => {
-                self.at += values.byte_offset();
-                Ok(value)
-            }
-            Some(Err(error)) => {
-                self.at += offset_of(self.rest(), error.line(), error.column());
-                while !self.line.is_char_boundary(self.at) {
-                    self.at -= 1;
-                }
-                let message = error.to_string();
-                let message = message.split(" at line ").next().unwrap_or_default();
-                Err(self.problem(format!("the value is not JSON: {message}")))
-            }
-            None => Err(self.problem("a value is missing")),
-        }
-    }
-
-    fn bare(&mut self) -> Result<Value, Problem> {
-        let ends = |letter: char| letter.is_whitespace() || ",=#\"()[]{}".contains(letter);
-        let end = self.rest().find(ends).unwrap_or(self.rest().len());
-        if end == 0 {
-            return Err(match self.rest().chars().next() {
-                Some(letter) => self.problem(format!("a value is expected, not {letter}")),
-                None => self.problem("a value is missing"),
-            });
-        }
-        let text = &self.rest()[..end];
-        self.at += end;
-        Ok(plain_value(text))
-    }
-}
-
-/// What a bare word stands for: null, true, false, a number (also 1_000_000), otherwise itself.
-fn plain_value(text: &str) -> Value {
-    let digits = text.replace('_', "");
-    let json = digits.strip_prefix('+').unwrap_or(&digits);
-    match text {
-        "null" => Value::Null,
-        "true" => Value::Bool(true),
-        "false" => Value::Bool(false),
-        _ => match serde_json::from_str::<Value>(json) {
-            Ok(number) if number.is_number() => number,
-            _ => text.into(),
-        },
-    }
-}
-
-/// Byte offset of serde_json's line and column.
-fn offset_of(text: &str, line: usize, column: usize) -> usize {
-    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    (before + column.saturating_sub(1)).min(text.len())
 }
 
 /// Puts arguments into the object that a tool takes. One object without a name is all of them; one other value

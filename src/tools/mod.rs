@@ -19,6 +19,7 @@ mod refusal;
 mod spec;
 mod surroundings;
 mod view;
+pub mod written;
 
 mod analytics;
 mod calculations;

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use crossterm::event::Event;
+use novamind::console::request::Recorded;
 use novamind::session::{
     Access, Activity, Configuration, Goal, Mode, NewRun, Record, Session, Storage, Trajectory,
     lines_afterwards, verify,
@@ -78,7 +80,7 @@ fn every_view_in_windows_of_four_sizes() {
     let mut console = looking(runs.path(), 10, SIZES[2]);
     let mut complaints = Vec::new();
     let views = [
-        ("leads", "enter = down down"),
+        ("leads", "enter = enter down down = '0.5' enter"),
         ("quality", "esc down"),
         ("satisfaction", "down"),
         ("reputation", "down"),
@@ -88,6 +90,7 @@ fn every_view_in_windows_of_four_sizes() {
         ("streams", "down e 'service' enter esc"),
         ("customer", "down enter '3' enter enter '1200' enter"),
         ("breakpoints", "esc down enter enter 'churn(S1)>1%' enter e 'event' _ 'rival' enter"),
+        ("words", "a 'who' _ 'cash' _ '42' enter"),
     ];
     for (view, keys) in views {
         console.press(keys);
@@ -140,10 +143,12 @@ fn looking_changes_no_hash() {
 fn a_held_factor_shows_the_expected_leads_beside() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = looking(runs.path(), 3, (120, 40));
-    console.press("enter =");
+    console.press("enter = enter");
     console.shows("with R 1: λ");
-    console.press("down =");
-    console.shows("with R 1, D 1: λ");
+    console.press("down = '-1' enter");
+    console.shows("D is held at a number of at least 0");
+    console.press("esc = '0.5' enter");
+    console.shows("with R 1, D 0.5: λ");
     console.press("= up =");
     assert!(!console.screen().contains("instead of"), "{}", console.screen());
 }
@@ -182,7 +187,7 @@ fn an_unfinished_run_of_another_mode_shows_one_sentence_and_no_tab() {
         drop(run(runs.path(), mode, 1));
         let mut console = Console::in_latest_run(runs.path(), (120, 40));
         assert!(!console.screen().contains("X-ray"), "{}", console.screen());
-        for keys in ["g x", "; k", "e r b = left , delete enter tab down z"] {
+        for keys in ["g x", "; k", "e r b = a left , delete enter tab down z"] {
             console.press(keys);
             let screen = console.screen();
             assert!(screen.contains("The x-ray works in debug runs and in runs that are over."), "{screen}");
@@ -252,4 +257,147 @@ fn the_replay_of_an_unfinished_run_of_another_mode_shows_nothing() {
     let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
     console.press("g x");
     console.shows("The x-ray works in debug runs and in runs that are over.");
+}
+
+/// Types words on the X-ray screen, and sends them.
+fn ask(console: &mut Console, words: &str) {
+    console.press("a");
+    console.send(Event::Paste(words.to_owned()));
+    console.press("enter");
+}
+
+#[test]
+fn words_are_answered_as_in_plain_mode_and_each_look_is_a_line() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = looking(runs.path(), 4, (200, 60));
+    let asked =
+        ["find leads(S1) >= 1", "who reputation(S1) 20", "diff 27 28", "set", "set group.S1.c_max_mean"];
+    let mut screens = Vec::new();
+    for words in asked {
+        ask(&mut console, words);
+        screens.push(console.screen());
+    }
+    console.press("a 'fond' enter");
+    console.shows("did you mean find?");
+    drop(console);
+    let folder = folder_of(runs.path());
+    let told = looks(&recorded(&folder));
+    assert_eq!(told.len(), 4, "{told:?}");
+    let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
+    let shows = |screen: &str, part: &str| assert!(screen.contains(part), "{part:?} is missing in\n{screen}");
+    let days = session.find_days("leads(S1) >= 1".parse().expect("a condition")).expect("days");
+    shows(&screens[0], &format!("leads(S1) >= 1 became true on {} of 28 days", days.len()));
+    let writes = session.who_writes("reputation(S1)".parse().expect("a figure"), Some(20)).expect("writes");
+    shows(&screens[1], &format!("reputation(S1) on day 20: {:.9} → {:.9}", writes.first, writes.last));
+    let found = session.difference_of_days(27, 28).expect("a difference");
+    shows(&screens[2], &format!("differs: {}", found.parts.join(", ")));
+    shows(&screens[3], "no parameter differs from");
+    let value = session.parameter("group.S1.c_max_mean").expect("a value");
+    shows(&screens[4], &format!("group.S1.c_max_mean = {value}"));
+}
+
+#[test]
+fn a_parameter_is_set_after_a_question_and_in_debug_runs_alone() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = looking(runs.path(), 2, (120, 40));
+    let before = console.app.run().map(|run| run.company.seen.day);
+    ask(&mut console, "set group.S1.c_max_mean 300");
+    console.shows("the run is never ranked");
+    console.press("esc");
+    ask(&mut console, "set group.S1.c_max_mean");
+    assert!(!console.screen().contains("= 300"), "{}", console.screen());
+    ask(&mut console, "set group.S1.c_max_mean 300 from 20");
+    console.press("y");
+    console.shows("from day 20 on");
+    // Another view and back asks nothing again.
+    console.press("esc up down");
+    console.shows("from day 20 on");
+    assert_eq!(console.app.run().map(|run| run.company.seen.day), before);
+    drop(console);
+    let is_set = |record: &Record| matches!(record, Record::Override(_));
+    let lines = recorded(&folder_of(runs.path()));
+    assert_eq!(lines.lines.iter().filter(|line| is_set(&line.record)).count(), 1);
+
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Sandbox, 2);
+    session.end().expect("it ends");
+    let id = session.manifest().id.clone();
+    drop(session);
+    let mut console = Console::start(runs.path(), (120, 40));
+    console.open(&id).expect("it opens");
+    console.press("esc g x");
+    ask(&mut console, "set group.S1.c_max_mean 300");
+    console.press("y");
+    console.shows("parameters can be set in debug runs only");
+    drop(console);
+    let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
+    console.press("g x");
+    ask(&mut console, "set group.S1.c_max_mean 300");
+    console.shows("this is a replay");
+}
+
+#[test]
+fn hidden_tables_are_asked_on_the_sql_screen_and_each_statement_is_a_look() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = looking(runs.path(), 3, (120, 40));
+    console.press("9 'SELECT' _ 'count(*)' _ 'AS' _ 'days' _ 'FROM' _ 'hidden.pmi' shift-tab end right");
+    let mut complaints = Vec::new();
+    let text = picture(&mut console, &mut complaints);
+    insta::assert_snapshot!("xray-sql", text);
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    console.press("f5");
+    console.shows("Query · x-ray");
+    console.shows("Result · x-ray");
+    console.shows("21");
+    drop(console);
+    let told = looks(&recorded(&folder_of(runs.path())));
+    assert!(told.contains(&"sql SELECT count(*) AS days FROM hidden.pmi 21".to_owned()), "{told:?}");
+}
+
+#[test]
+fn the_replay_of_a_run_that_is_over_asks_the_hidden_tables_of_the_run() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Sandbox, 3);
+    session.end().expect("it ends");
+    drop(session);
+    let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
+    // A look before it opens the run without its database.
+    console.press("g x 9 'SELECT' _ 'max(day)+100' _ 'FROM' _ 'hidden.drift' f5");
+    console.shows("121");
+    drop(console);
+    let folder = folder_of(runs.path());
+    let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");
+    assert_eq!(looks(&after), ["leads S1 7", "sql SELECT max(day)+100 FROM hidden.drift 7"]);
+}
+
+#[test]
+fn hidden_tables_stay_hidden_in_an_unfinished_run_of_another_mode() {
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let runs = tempfile::tempdir().expect("a folder");
+        drop(run(runs.path(), mode, 1));
+        let mut console = Console::in_latest_run(runs.path(), (120, 40));
+        console.press("9 'SELECT' _ '*' _ 'FROM' _ 'hidden.groups' f5");
+        let screen = console.screen();
+        assert!(!screen.contains("x-ray") && !screen.contains("hidden.drift"), "{screen}");
+        assert!(!screen.contains("reputation"), "{screen}");
+        drop(console);
+        let lines = recorded(&folder_of(runs.path()));
+        assert_eq!(looks(&lines), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_replay_begins_on_the_x_ray_screen_where_it_may() {
+    for (ends, title) in [(true, "leads of S1 on day 14"), (false, "Overview")] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut session = run(runs.path(), Mode::Sandbox, 2);
+        if ends {
+            session.end().expect("it ends");
+        }
+        drop(session);
+        let mut console = Console::start(runs.path(), (200, 60));
+        console.replay_inside(Recorded::Run("latest".to_owned()), Goal::Last).expect("it opens");
+        console.shows(title);
+        assert_eq!(console.screen().contains("leads of S1"), ends);
+    }
 }

@@ -51,7 +51,12 @@ fn two_kept_runs_are_held_against_each_other() {
 fn an_unfinished_sandbox_is_not_looked_into() {
     let home = Home::new();
     home.two_weeks();
-    for arguments in [&["lab", "metrics", "latest"][..], &["lab", "diff", "latest", "latest"]] {
+    for arguments in [
+        &["lab", "metrics", "latest"][..],
+        &["lab", "diff", "latest", "latest"],
+        &["replay", "latest", "--xray"],
+        &["replay", "latest", "--xray", "--week", "1"],
+    ] {
         let said = home.run(arguments);
         assert_ne!(said.code, 0);
         assert!(said.err.contains("debug runs and in runs that are over"), "{}", said.err);
@@ -104,4 +109,14 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
             assert!(looks.is_empty(), "{looks:?}");
         }
     }
+}
+
+#[test]
+fn the_replay_of_a_kept_run_on_the_x_ray_screen_needs_a_terminal() {
+    let home = Home::new();
+    kept(&home, "3");
+    let said = home.run(&["replay", "latest", "--xray"]);
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert!(said.err.contains("a replay needs a terminal"), "{}", said.err);
+    assert_eq!(home.run(&["replay", "latest", "--xray", "--verify"]).code, 2);
 }

@@ -52,7 +52,7 @@ impl App {
             News::SeekResult(arrival) => self.arrived(*arrival, true),
             News::WentOn(arrival) => self.arrived(*arrival, false),
             News::NotOpened(problem, instead) => {
-                self.busy = None;
+                (self.busy, self.opens_on) = (None, None);
                 self.tour_planned = false;
                 let asked = matches!(instead, Some(Instead::Agree(..)));
                 if let Stage::Menu(menu) = &mut self.stage {
@@ -135,8 +135,15 @@ impl App {
                 }
                 return;
             }
-            News::LookedInside(number, _) if *number != self.look_question => return,
-            News::LookedInside(..) => ScreenId::Xray,
+            News::LookedInside(number, _, company) => {
+                if let Some(company) = company {
+                    self.changed(company.clone());
+                }
+                if *number != self.look_question {
+                    return;
+                }
+                ScreenId::Xray
+            }
             News::Kin(..) => ScreenId::Journal,
             News::Answered(number, ..) if *number != self.sql_question => return,
             News::Checked(..) => self.checker,
@@ -208,6 +215,7 @@ impl App {
         self.busy = None;
         // Whoever takes a replay over goes on where they look.
         let here = self.run().filter(|run| run.viewer.is_some()).map_or(ScreenId::Overview, |run| run.here);
+        let here = self.opens_on.take().filter(|screen| screen.is_shown_in(&company)).unwrap_or(here);
         self.close_layers();
         let over = !company.is_running() && viewer.is_none();
         let tour = std::mem::take(&mut self.tour_planned).then(Tour::default);

@@ -35,6 +35,10 @@ impl App {
         }
         match effect {
             Effect::Request(request) => self.request(request),
+            Effect::ReplayInside(recorded, goal) => {
+                self.opens_on = Some(ScreenId::Xray);
+                self.request(Request::Replay { recorded, goal, follow: false });
+            }
             Effect::Go(goal) => self.go(goal),
             Effect::Check { tool, arguments } => {
                 self.checks += 1;
@@ -52,6 +56,12 @@ impl App {
                 };
                 self.sql_question = self.ask(sql, via);
             }
+            Effect::AskInside(sql) => {
+                self.end_text("sql", DraftOutcome::Sent);
+                self.questions += 1;
+                self.sql_question = self.questions;
+                self.orders.push(Order::Job(Job::AskInside(self.questions, sql)));
+            }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
             Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
             Effect::ReadKin => self.orders.push(Order::Job(Job::ReadKin)),
@@ -59,6 +69,21 @@ impl App {
             Effect::LookInside(question) => {
                 self.look_question += 1;
                 self.orders.push(Order::Job(Job::LookInside(self.look_question, question)));
+            }
+            Effect::ConfirmWords(words) => {
+                let text = format!(
+                    "{words}: the change is recorded, and the run is never ranked. Set the parameter?"
+                );
+                self.lay(Layer::Dialog(Box::new(Confirm::new("set", text, vec![Effect::SendWords(words)]))));
+            }
+            Effect::SendWords(_) if self.busy.is_some() => {
+                self.complain("days are running; nothing was set: try again when they are done");
+            }
+            Effect::SendWords(words) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    let effects = run.screens.xray.send_words(&words);
+                    self.follow(effects);
+                }
             }
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {

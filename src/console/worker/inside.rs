@@ -1,27 +1,75 @@
 //! Looks at hidden state: the session's thread simulates days again and says what was seen.
 
+use std::sync::PoisonError;
+use std::time::Instant;
+
 use super::{Open, SessionThread};
-use crate::console::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use crate::console::look_inside::{BreakpointWork, LookCurve, LookFound, LookQuestion};
 use crate::console::message::News;
 use crate::report::xray::{
-    breakpoints_in_words, company_in_words, customer_in_words, drift_in_words, leads_in_words,
-    look_back_in_words, quality_in_words, reputation_in_words, rivals_in_words, satisfaction_in_words,
-    spillover_in_words, streams_in_words,
+    EVENINGS, SATISFACTION, SpillMap, breakpoints_in_words, company_in_words, customer_in_words,
+    drift_in_words, leads_in_words, line_of_factor, look_back_in_words, quality_in_words,
+    reputation_in_words, rivals_in_words, satisfaction_in_words, spillover_in_words, streams_in_words,
 };
-use crate::session::{Access, LeadFactor, Lens, REFUSED_LOOK, Refusal, Session};
+use crate::session::{Access, LeadEquation, LeadFactor, Lens, REFUSED_LOOK, Refusal, Session};
+use crate::world::identifiers::Group;
 
 impl SessionThread {
-    /// Looks at hidden state, and says what was seen or why nothing is shown.
+    /// Looks at hidden state, and says what was seen or why nothing is shown; where that has changed the run, with the company
+    /// as it is now.
     pub(super) fn look_inside(&mut self, number: u64, question: &LookQuestion) {
-        let found = self.session_to_look_into().and_then(|session| answer(session, question));
-        self.say(News::LookedInside(number, Box::new(found)));
+        let changes_run = matches!(question, LookQuestion::Words(_, asked) if asked.changes_run());
+        let found = match self.refuse_to_change().filter(|_| changes_run) {
+            Some(refusal) => Err(refusal),
+            None => self.session_to_look_into(false).and_then(|session| answer(session, question)),
+        };
+        let has_changed = changes_run && found.is_ok();
+        let mut company = None;
         // A line that the disk refuses is noticed as after any other work.
+        self.with_run(|run| {
+            company = has_changed.then(|| run.company());
+            None
+        });
+        self.say(News::LookedInside(number, Box::new(found), company));
+    }
+
+    /// Asks the database and the tables of the x-ray. In a replay the table that shows one day shows that of the moment.
+    pub(super) fn ask_inside(&mut self, number: u64, sql: &str) {
+        let started = Instant::now();
+        let stop = self.inside_stop.clone();
+        let hold = |own| *stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        let day = match &self.open {
+            Some(Open::Replayed(playback)) => Some(playback.session().day()).filter(|day| *day > 0),
+            _ => None,
+        };
+        let answer = self.session_to_look_into(true).and_then(|session| {
+            let interrupt = session.xray_interrupt()?;
+            // What is stopped from here on is this question.
+            let ticket = interrupt.ticket();
+            hold(Some(interrupt));
+            session.xray_query_as(ticket, sql, day)
+        });
+        hold(None);
         self.with_run(|_| None);
+        self.say(News::Answered(number, answer, started.elapsed()));
+    }
+
+    /// Why nothing can be changed in the run that is open: it is only read, or played again.
+    fn refuse_to_change(&self) -> Option<Refusal> {
+        match &self.open {
+            Some(Open::Replayed(_)) => {
+                Some(Refusal::new("read_only", "this is a replay: nothing is changed"))
+            }
+            Some(Open::Played(session)) if !session.records_looks() && session.folder().is_some() => {
+                Some(Refusal::new("read_only", "this run is only read: nothing is changed"))
+            }
+            _ => None,
+        }
     }
 
     /// The run that is open; where it keeps no lines, because it is only read or played again, the same run opened as for
-    /// play: each look is a line of it.
-    pub(super) fn session_to_look_into(&mut self) -> Result<&mut Session, Refusal> {
+    /// play: each look is a line of it. It has a database where one is needed.
+    pub(super) fn session_to_look_into(&mut self, with_rows: bool) -> Result<&mut Session, Refusal> {
         let (is_allowed, folder) = match &self.open {
             None => return Err(Refusal::new("not_possible", "no run is open")),
             Some(Open::Played(session)) => {
@@ -33,12 +81,16 @@ impl SessionThread {
             return Err(Refusal::new("not_in_this_mode", REFUSED_LOOK));
         }
         let folder = folder.map(std::path::Path::to_owned);
+        if with_rows && !self.inside_has_rows {
+            self.inside = None;
+        }
         match (folder, &mut self.open, &mut self.inside) {
             (Some(folder), _, inside) => {
                 let session = match inside.take() {
                     Some(session) => session,
                     None => {
-                        let opened = Session::open(&folder, Access::Write, false);
+                        let opened = Session::open(&folder, Access::Write, with_rows);
+                        self.inside_has_rows = with_rows;
                         Box::new(opened.map_err(|error| Refusal::new("not_possible", error.to_string()))?)
                     }
                 };
@@ -52,41 +104,78 @@ impl SessionThread {
 
 fn answer(session: &mut Session, question: &LookQuestion) -> Result<LookFound, Refusal> {
     let lines = match question {
-        LookQuestion::Leads(group, day, held) => {
-            let held: Vec<(LeadFactor, f64)> = held.iter().map(|factor| (*factor, 1.0)).collect();
-            leads_in_words(&session.lead_equations(*group, Some(*day))?, &held)
-        }
+        LookQuestion::Leads(group, day, held) => return of_leads(session, *group, *day, held),
         LookQuestion::Quality(group, day) => quality_in_words(&session.quality_equation(*group, Some(*day))?),
         LookQuestion::Satisfaction(group, day) => {
-            satisfaction_in_words(&session.satisfaction_equation(*group, Some(*day))?)
+            let own = session.satisfaction_equation(*group, Some(*day))?;
+            let days = own.evenings.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+            return Ok(with_curve(satisfaction_in_words(&own), EVENINGS, days));
         }
         LookQuestion::Reputation(group, day) => {
-            reputation_in_words(&session.reputation_equation(*group, Some(*day))?)
+            let own = session.reputation_equation(*group, Some(*day))?;
+            let lines = reputation_in_words(&own);
+            return Ok(with_curve(lines, EVENINGS, own.evenings));
         }
-        LookQuestion::Spillover(day) => spillover_in_words(&session.spillover(Some(*day))?),
+        LookQuestion::Spillover(day) => {
+            let own = session.spillover(Some(*day))?;
+            let map = Some(SpillMap::of(&own));
+            return Ok(LookFound { lines: spillover_in_words(&own), map, ..LookFound::default() });
+        }
         LookQuestion::Rivals(day) => rivals_in_words(&session.rival_state(Some(*day))?),
         LookQuestion::Drift(day) => drift_in_words(&session.drift_state(Some(*day))?),
         LookQuestion::Draws(part, _) => streams_in_words(&session.next_draws(*part, None)?),
         LookQuestion::Customer(customer, day) => match session.lens(*customer, Some(*day))? {
-            Lens::Individual(lens) => customer_in_words(&lens),
+            Lens::Individual(lens) => {
+                let days = lens.days.iter().map(|own| own.satisfaction).collect();
+                return Ok(with_curve(customer_in_words(&lens), SATISFACTION, days));
+            }
             Lens::Company(lens) => company_in_words(&lens),
         },
         LookQuestion::Breakpoints(work) => return of_breakpoints(session, work),
+        LookQuestion::Words(_, asked) => asked.answer(session)?.in_words(),
     };
-    Ok(LookFound { lines, breakpoints: Vec::new() })
+    Ok(LookFound { lines, ..LookFound::default() })
+}
+
+/// The equation of the leads, each factor with its days.
+fn of_leads(
+    session: &mut Session,
+    group: Group,
+    day: u32,
+    held: &[(LeadFactor, f64)],
+) -> Result<LookFound, Refusal> {
+    let days = session.lead_equations(group, Some(day))?;
+    let lines = leads_in_words(&days, held);
+    let value = |own: &LeadEquation, factor| if own.is_known { own.factor(factor) } else { f64::NAN };
+    let curve = |factor| LookCurve {
+        line: line_of_factor(factor),
+        days: days.iter().map(|own| value(own, factor)).collect(),
+    };
+    let is_known = days.last().is_some_and(|own| own.is_known);
+    let curves = if is_known { LeadFactor::ALL.map(curve).to_vec() } else { Vec::new() };
+    Ok(LookFound { lines, curves, ..LookFound::default() })
+}
+
+/// Words with the days of a figure beside the line that begins so, if there is one.
+fn with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> LookFound {
+    let line = lines.iter().position(|line| line.starts_with(begins));
+    let curves = line.map(|line| LookCurve { line, days }).into_iter().collect();
+    LookFound { lines, curves, ..LookFound::default() }
 }
 
 fn of_breakpoints(session: &mut Session, work: &BreakpointWork) -> Result<LookFound, Refusal> {
+    let found = |lines, session: &Session| {
+        let breakpoints = session.breakpoints()?.to_vec();
+        Ok(LookFound { lines, breakpoints, ..LookFound::default() })
+    };
     match work {
         BreakpointWork::List => {}
         BreakpointWork::Set(condition) => drop(session.set_breakpoint(*condition)?),
         BreakpointWork::Remove(number) => drop(session.clear_breakpoints(Some(*number))?),
         BreakpointWork::LookBack => {
-            let found = session.look_back_from(None)?;
-            let lines = found.iter().flat_map(look_back_in_words).collect();
-            return Ok(LookFound { lines, breakpoints: session.breakpoints()?.to_vec() });
+            let told = session.look_back_from(None)?;
+            return found(told.iter().flat_map(look_back_in_words).collect(), session);
         }
     }
-    let set = session.breakpoints()?;
-    Ok(LookFound { lines: breakpoints_in_words(set), breakpoints: set.to_vec() })
+    found(breakpoints_in_words(session.breakpoints()?), session)
 }

@@ -27,7 +27,7 @@ pub(super) struct OpenRun<'a> {
 
 impl OpenRun<'_> {
     /// The company as it is now.
-    fn company(&mut self) -> Arc<Company> {
+    pub(super) fn company(&mut self) -> Arc<Company> {
         let company = Arc::new(Company::after(self.session, self.shown.as_deref()));
         *self.shown = Some(company.clone());
         company

@@ -6,12 +6,9 @@ use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
 use crate::notation::json_number;
-use crate::report::xray::{
-    breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words, writes_in_words, written_by,
-};
+use crate::report::xray::{AskedWords, breakpoints_in_words, look_back_in_words, stop_in_words, written_by};
 use crate::session::{
-    Breakpoint, Condition, ConditionProblem, Judged, LookBack, ReputationCause, WhoWrites, Write,
-    WriteTarget, WrittenBy,
+    Breakpoint, Condition, ConditionProblem, Judged, LookBack, ReputationCause, WhoWrites, Write, WrittenBy,
 };
 
 impl Interpreter {
@@ -123,31 +120,12 @@ impl Interpreter {
 
     /// `find CONDITION`
     pub(super) fn find_days(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused("find", refusal));
-        }
-        let condition = condition(rest, column)?;
-        Ok(match self.session.find_days(condition) {
-            Ok(found) => {
-                let lines = found_in_words(&condition, &found, self.session.day());
-                let days: Vec<Value> = found.iter().map(judged_as_data).collect();
-                let data = json!({ "condition": condition.to_string(), "days": days });
-                Answer::done("find", lines.join("\n"), data)
-            }
-            Err(refusal) => Answer::refused("find", refusal),
-        })
+        self.ask_words("find", || AskedWords::find(rest, column))
     }
 
     /// `who FIGURE [DAY]`
     pub(super) fn who(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused("who", refusal));
-        }
-        let (target, day) = WriteTarget::parse_with_day(rest).map_err(|problem| at(problem, column))?;
-        Ok(match self.session.who_writes(target, day) {
-            Ok(own) => Answer::done("who", writes_in_words(&own).join("\n"), writes_as_data(&own)),
-            Err(refusal) => Answer::refused("who", refusal),
-        })
+        self.ask_words("who", || AskedWords::who(rest, column))
     }
 }
 
@@ -181,7 +159,7 @@ fn as_data(own: &Breakpoint) -> Value {
     json!({ "number": own.number, "condition": own.condition.to_string() })
 }
 
-fn judged_as_data(own: &Judged) -> Value {
+pub(super) fn judged_as_data(own: &Judged) -> Value {
     json!({
         "day": own.day, "value": own.value.map(json_number), "before": own.before.map(json_number),
         "true": own.is_true, "true_before": own.was_true,
@@ -198,7 +176,7 @@ fn look_back_as_data(own: &LookBack) -> Value {
     })
 }
 
-fn writes_as_data(own: &WhoWrites) -> Value {
+pub(super) fn writes_as_data(own: &WhoWrites) -> Value {
     let write = |write: &Write| {
         let mut data = json!({
             "by": written_by(write), "amount": write.amount(), "before": write.before, "after": write.after,

@@ -170,10 +170,8 @@ fn group_and_day(view: &str, arguments: &[&Argument]) -> Result<(Group, Option<u
     Ok((group, day))
 }
 
-pub(super) fn whole_number(argument: &Argument) -> Result<u32, Problem> {
-    let number = argument.value.as_u64().filter(|_| argument.key.is_none());
-    let number = number.and_then(|number| u32::try_from(number).ok());
-    number.ok_or_else(|| Problem { text: "a whole number is expected".to_owned(), column: argument.column })
+fn whole_number(argument: &Argument) -> Result<u32, Problem> {
+    argument.whole_number()
 }
 
 /// `R=1`: a factor that is held.

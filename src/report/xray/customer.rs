@@ -4,6 +4,9 @@ use super::table;
 use crate::session::{CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed};
 use crate::world::identifiers::Plan;
 
+/// How the line begins that lists satisfaction.
+pub const SATISFACTION: &str = "satisfaction:";
+
 /// Days between two values of the satisfaction that is listed.
 const LISTED_DAYS: usize = 7;
 
@@ -181,7 +184,7 @@ fn satisfaction(lens: &CustomerLens) -> String {
     let mut listed: Vec<String> =
         listed.map(|own| format!("day {} {:.3}", own.day, own.satisfaction)).collect();
     listed.reverse();
-    format!("satisfaction: {}", listed.join(", "))
+    format!("{SATISFACTION} {}", listed.join(", "))
 }
 
 /// What happened to it, day by day.

@@ -2,6 +2,11 @@
 
 use crate::session::{LeadEquation, LeadFactor};
 
+/// Place of the line that tells of a factor among the words of an equation.
+pub fn line_of_factor(factor: LeadFactor) -> usize {
+    2 + factor as usize
+}
+
 /// The equation of the last of some days, each factor with its range over all of them, and λ where factors are held.
 pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(own) = days.last() else { return Vec::new() };

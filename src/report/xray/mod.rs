@@ -1,5 +1,6 @@
 //! What the x-ray shows, in words: the same lines for plain mode and for the console.
 
+mod asked;
 mod breakpoints;
 mod company;
 mod customer;
@@ -9,20 +10,36 @@ mod market;
 mod quality;
 mod reputation;
 mod satisfaction;
+mod spillover;
 mod streams;
 mod writes;
 
+pub use asked::{AskedWords, WordsFound};
 pub use breakpoints::{breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words};
 pub use company::company_in_words;
-pub use customer::customer_in_words;
+pub use customer::{SATISFACTION, customer_in_words};
 pub use difference::{difference_as_data, difference_in_words, runs_in_words};
-pub use leads::leads_in_words;
+pub use leads::{leads_in_words, line_of_factor};
 pub use market::{drift_in_words, rivals_in_words};
 pub use quality::quality_in_words;
-pub use reputation::{reputation_in_words, spillover_in_words};
+pub use reputation::reputation_in_words;
 pub use satisfaction::satisfaction_in_words;
+pub use spillover::{HEAT, SpillCell, SpillMap, SpillRow, spillover_in_words};
 pub use streams::streams_in_words;
 pub use writes::{writes_in_words, written_by};
+
+use crate::report::words::count;
+
+/// How the line begins that tells of the last evenings of a group.
+pub const EVENINGS: &str = "  evenings of the last";
+
+/// Between which values a figure of evenings lay; none without any.
+fn evenings_in_words(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
+    let days = values.clone().count();
+    let (least, most) =
+        (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+    (days > 0).then(|| format!("{EVENINGS} {}: {least:.4} to {most:.4}", count(days as u32, "day")))
+}
 
 /// A table, indented.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {

@@ -1,7 +1,7 @@
-//! What moved reputations, in words: of a group, and how changes spilled over between groups.
+//! What moved the reputation of a group, in words.
 
-use super::table;
-use crate::session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill, Spillover};
+use super::{evenings_in_words, table};
+use crate::session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill};
 use crate::world::identifiers::Group;
 
 /// The reputation of a group: before, every term, after; and what was dropped.
@@ -23,6 +23,7 @@ pub fn reputation_in_words(own: &ReputationEquation) -> Vec<String> {
     rows.push(plain("after", *after));
     let mut lines = vec![format!("reputation of {group} on day {day}")];
     lines.extend(table(&["", ""], &rows).into_iter().skip(1));
+    lines.extend(evenings_in_words(own.evenings.iter().copied()));
     let dropped: Vec<&Spill> = own.spills.iter().filter(|spill| !spill.counts).collect();
     lines.extend(dropped_in_words(&dropped, least));
     lines
@@ -47,11 +48,12 @@ fn contribution(own: &OwnChange, least: &LeastChanges) -> String {
 }
 
 /// `0.0001`, never `1e-4`.
-fn small(value: f64) -> String {
+pub(super) fn small(value: f64) -> String {
     format!("{value}")
 }
 
-fn dropped_in_words(dropped: &[&Spill], least: &LeastChanges) -> Vec<String> {
+/// What was dropped of the spills, a line for each source.
+pub(super) fn dropped_in_words(dropped: &[&Spill], least: &LeastChanges) -> Vec<String> {
     let pairs = |from: Group| {
         let own = dropped.iter().filter(|spill| spill.from == from);
         own.map(|spill| format!("{}→{}", spill.from, spill.to)).collect::<Vec<String>>()
@@ -61,60 +63,4 @@ fn dropped_in_words(dropped: &[&Spill], least: &LeastChanges) -> Vec<String> {
         false => Some(format!("  {} below {}: dropped", pairs.join(", "), small(least.spill))),
     };
     Group::all().filter_map(|from| named(pairs(from))).collect()
-}
-
-/// Marks of a heat table, from the smallest share of the largest spill to the largest.
-const HEAT: [&str; 4] = ["░", "▒", "▓", "█"];
-
-/// Spills as a heat table: rows are sources, columns targets.
-pub fn spillover_in_words(own: &Spillover) -> Vec<String> {
-    let Spillover { day, known, spills, least, .. } = own;
-    let mut lines =
-        vec![format!("changes of reputation on day {day}: rows are sources, columns are targets")];
-    let sources: Vec<Group> = known.iter().copied().filter(|group| own.own[*group].subscribers > 0).collect();
-    if sources.is_empty() {
-        lines.push("  no group has subscribers".to_owned());
-        return lines;
-    }
-    let heard: Vec<&Spill> = spills.iter().filter(|spill| spill.counts).collect();
-    let largest = heard.iter().map(|spill| spill.change.abs()).fold(0.0, f64::max);
-    let targets: Vec<Group> =
-        known.iter().copied().filter(|target| heard.iter().any(|spill| spill.to == *target)).collect();
-    let mut head = vec!["from", "own change"];
-    head.extend(targets.iter().map(|group| group.id()));
-    let cell = |from: Group, to: Group| match own.between(from, to) {
-        Some(spill) if spill.counts => heat(&spill, largest),
-        Some(_) => "dropped".to_owned(),
-        None => "·".to_owned(),
-    };
-    let rows: Vec<Vec<String>> = sources
-        .iter()
-        .map(|from| {
-            let change = &own.own[*from];
-            let called = match change.counts {
-                true => format!("{:+.6}", change.called),
-                false => format!("{:+.6} dropped", change.called),
-            };
-            let cells = targets.iter().map(|to| cell(*from, *to));
-            [from.to_string(), called].into_iter().chain(cells).collect()
-        })
-        .collect();
-    lines.extend(table(&head, &rows));
-    if heard.is_empty() {
-        lines.push("  nothing spilled over".to_owned());
-    }
-    let small_own: Vec<&str> =
-        sources.iter().filter(|group| !own.own[**group].counts).map(|group| group.id()).collect();
-    if !small_own.is_empty() {
-        lines.push(format!("  own changes of {} below {}: dropped", small_own.join(", "), small(least.own)));
-    }
-    let dropped: Vec<&Spill> = spills.iter().filter(|spill| !spill.counts).collect();
-    lines.extend(dropped_in_words(&dropped, least));
-    lines
-}
-
-fn heat(spill: &Spill, largest: f64) -> String {
-    let share = if largest > 0.0 { spill.change.abs() / largest } else { 0.0 };
-    let step = ((share * HEAT.len() as f64).ceil() as usize).clamp(1, HEAT.len());
-    format!("{} {:+.6}", HEAT[step - 1], spill.change)
 }

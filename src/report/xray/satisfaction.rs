@@ -1,6 +1,6 @@
 //! What moved the satisfaction of a group, in words.
 
-use super::table;
+use super::{evenings_in_words, table};
 use crate::session::{MoodTerm, SatisfactionEquation};
 
 /// The mean before, each term, the mean after, and what came of it by the evening.
@@ -29,6 +29,7 @@ pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
         "  evening: {left} left and {came} came, {} stay, {moved}",
         subscribers_in_words(subscribers)
     ));
+    lines.extend(evenings_in_words(own.evenings.iter().flatten().copied()));
     lines
 }
 

@@ -1,5 +1,7 @@
 //! Groups from within on a day: their quality, satisfaction and reputation.
 
+use super::hidden_day::GroupEvening;
+use super::lead_equation::WINDOW_DAYS;
 use super::quality_equation::QualityEquation;
 use super::reputation_equation::{ReputationEquation, Spillover};
 use super::satisfaction_equation::SatisfactionEquation;
@@ -34,7 +36,8 @@ impl Session {
             1 => None,
             day => Some(self.hidden_day(day - 1)?.satisfaction[group]),
         };
-        Ok(SatisfactionEquation::of(group, day, seen.satisfaction[group], evening, yesterday))
+        let evenings = self.evenings(group, day, |own| own.mood.map(|(satisfaction, _)| satisfaction))?;
+        Ok(SatisfactionEquation::of(group, day, seen.satisfaction[group], evening, yesterday, evenings))
     }
 
     /// What moved the reputation of a group on a day, the last one if none is named. The look is recorded.
@@ -47,7 +50,21 @@ impl Session {
         day: Option<u32>,
     ) -> Result<ReputationEquation, Refusal> {
         let day = self.begin_look("reputation", group.id(), day)?;
-        self.hidden_day(day).map(|seen| ReputationEquation::of(group, day, &seen.reputation))
+        let evenings = self.evenings(group, day, |own| own.reputation)?;
+        self.hidden_day(day).map(|seen| ReputationEquation::of(group, day, &seen.reputation, evenings))
+    }
+
+    /// What is read of a group on the evening of a day and of up to 27 days before it.
+    fn evenings<T>(
+        &mut self,
+        group: Group,
+        day: u32,
+        read: impl Fn(&GroupEvening) -> T,
+    ) -> Result<Vec<T>, Refusal> {
+        let diary = self.diary_of_all_days(self.diary.keeps_threads())?;
+        let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
+        let evening = |day| diary.read(day, |seen| read(&seen.groups[group]));
+        Ok((first..=day).filter_map(evening).collect())
     }
 
     /// How changes of reputation spilled over on a day, the last one if none is named. The look is recorded.

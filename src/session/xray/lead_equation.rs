@@ -9,7 +9,7 @@ use crate::world::identifiers::{Channel, Group};
 use crate::world::market::leads::LeadFactors;
 
 /// Days that are shown with one: it and the days before it.
-const WINDOW_DAYS: u32 = 28;
+pub(in crate::session) const WINDOW_DAYS: u32 = 28;
 
 /// A factor of the leads of a group (docs/mechanics/market/leads.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

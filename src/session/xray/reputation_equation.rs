@@ -116,13 +116,20 @@ pub struct ReputationEquation {
     pub bounds: f64,
     /// Reputation in the evening.
     pub after: f64,
+    /// That of the evenings up to this one, at most 28, the first one first.
+    pub evenings: Vec<f64>,
     /// Below what changes are dropped.
     pub least: LeastChanges,
 }
 
 impl ReputationEquation {
-    /// The group on a day.
-    pub(in crate::session) fn of(group: Group, day: u32, seen: &ReputationDay) -> ReputationEquation {
+    /// The group on a day, with its reputation of evenings.
+    pub(in crate::session) fn of(
+        group: Group,
+        day: u32,
+        seen: &ReputationDay,
+        evenings: Vec<f64>,
+    ) -> ReputationEquation {
         ReputationEquation {
             group,
             day,
@@ -133,6 +140,7 @@ impl ReputationEquation {
             spills: seen.spills.iter().copied().filter(|spill| spill.to == group).collect(),
             bounds: seen.bounds[group],
             after: seen.after[group],
+            evenings,
             least: seen.least,
         }
     }
@@ -202,7 +210,7 @@ mod tests {
         world.market.reputation.set(s1, 0.0011);
         day(&mut world);
         let seen = diary.day(world.day).expect("a day").reputation;
-        let own = ReputationEquation::of(s1, world.day, &seen);
+        let own = ReputationEquation::of(s1, world.day, &seen, Vec::new());
         assert_eq!((own.before, own.after), (0.0011, params.reputation.reputation_floor));
         assert_eq!(own.after.to_bits(), world.market.reputation.of(s1).to_bits());
         assert!(own.own.called < 0.0 && own.bounds > 1e-6, "{own:?}");

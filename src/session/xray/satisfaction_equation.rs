@@ -147,7 +147,7 @@ impl SatisfactionDay {
 }
 
 /// The mean satisfaction of a group on a day: after = (1 - weight) before + weight (sum of the terms).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SatisfactionEquation {
     /// The group.
     pub group: Group,
@@ -163,18 +163,22 @@ pub struct SatisfactionEquation {
     pub subscribers: u32,
     /// Their mean satisfaction; none without any.
     pub evening: Option<f64>,
+    /// That of the evenings up to this one, at most 28, the first one first; none where there were no subscribers.
+    pub evenings: Vec<Option<f64>>,
     seen: SatisfactionDay,
     yesterday: Option<SatisfactionDay>,
 }
 
 impl SatisfactionEquation {
-    /// The group on a day, its subscribers in the evening with their mean satisfaction, and how it was on the day before.
+    /// The group on a day, its subscribers in the evening with their mean satisfaction, how it was on the day before, and
+    /// the mean satisfaction of evenings.
     pub(in crate::session) fn of(
         group: Group,
         day: u32,
         own: SatisfactionDay,
         (subscribers, evening): (u32, Option<f64>),
         yesterday: Option<SatisfactionDay>,
+        evenings: Vec<Option<f64>>,
     ) -> SatisfactionEquation {
         SatisfactionEquation {
             group,
@@ -184,6 +188,7 @@ impl SatisfactionEquation {
             came: (subscribers + own.left).saturating_sub(own.sums.count),
             subscribers,
             evening,
+            evenings,
             seen: own,
             yesterday,
         }

@@ -11,11 +11,21 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
-use crate::database::{Column, Table, tables};
+use crate::database::{Column, Table, hidden_tables, tables};
+
+/// Marks the tables of the x-ray.
+const XRAY: &str = "x-ray";
+
+/// A table by its place: those of the x-ray stand after the visible ones.
+fn table_at(at: usize) -> &'static Table {
+    tables().get(at).unwrap_or_else(|| &hidden_tables()[at - tables().len()])
+}
 
 /// The tree and where the person is in it.
 #[derive(Debug, Default)]
 pub struct Browser {
+    /// The tables of the x-ray stand below the others.
+    pub shows_hidden: bool,
     open: BTreeSet<usize>,
     selected: usize,
     filter: String,
@@ -32,7 +42,7 @@ pub struct BrowserRow {
 impl BrowserRow {
     /// The table.
     pub fn table(self) -> &'static Table {
-        &tables()[self.table]
+        table_at(self.table)
     }
 
     /// The column, if it is one.
@@ -52,7 +62,8 @@ impl Browser {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
         let mut entries = Vec::new();
-        for (at, table) in tables().iter().enumerate() {
+        let count = tables().len() + if self.shows_hidden { hidden_tables().len() } else { 0 };
+        for (at, table) in (0..count).map(|at| (at, table_at(at))) {
             let found = |column: usize| !wanted.is_empty() && holds(&table.columns[column].name);
             let columns = (0..table.columns.len()).filter(|own| self.open.contains(&at) || found(*own));
             let columns: Vec<usize> = columns.collect();
@@ -190,6 +201,10 @@ impl Browser {
             None => {
                 let mark = if self.open.contains(&entry.table) { "▾" } else { "▸" };
                 canvas.text(row, &format!("{mark} {}", entry.name()), over.unwrap_or(Role::Strong));
+                let taken = entry.name().len() as u16 + 2;
+                if entry.table >= tables().len() && row.width > taken + XRAY.len() as u16 {
+                    canvas.aligned(row, XRAY, over.unwrap_or(Role::Warning), Align::Right);
+                }
             }
             Some(column) => {
                 let kind = column.kind.as_str();

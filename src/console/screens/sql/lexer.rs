@@ -188,6 +188,20 @@ pub fn tokens(sql: &str) -> Vec<Token> {
     found
 }
 
+/// Whether a statement names a table of the x-ray: `hidden.groups`.
+pub fn names_hidden(sql: &str) -> bool {
+    let pieces: Vec<Token> =
+        tokens(sql).into_iter().filter(|token| token.kind != LexemeKind::Comment).collect();
+    let text = |token: &Token| sql[token.place.clone()].trim_matches(['"', '`', '[', ']']);
+    let is_hidden = |pair: &[Token]| {
+        pair[0].kind == LexemeKind::Name
+            && text(&pair[0]).eq_ignore_ascii_case("hidden")
+            && pair[1].kind == LexemeKind::Sign
+            && text(&pair[1]) == "."
+    };
+    pieces.windows(2).any(is_hidden)
+}
+
 /// Length of a quoted piece; a doubled quote does not end it.
 fn quoted(rest: &str, quote: char) -> usize {
     let mut at = 1;
@@ -286,5 +300,15 @@ mod tests {
         assert_eq!(statement_at("SELECT 1 -- ;\n", 2), (0..14, 1, 1));
         assert_eq!(statement_at("", 0), (0..0, 1, 1));
         assert_eq!(statement_at(";;", 1), (0..2, 1, 1));
+    }
+
+    #[test]
+    fn hidden_tables_are_named_by_their_schema() {
+        for sql in ["SELECT * FROM hidden.groups", "select 1 from \"Hidden\" . drift", "x [hidden]/**/.pmi"] {
+            assert!(names_hidden(sql), "{sql}");
+        }
+        for sql in ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""] {
+            assert!(!names_hidden(sql), "{sql}");
+        }
     }
 }

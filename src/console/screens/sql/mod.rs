@@ -35,6 +35,7 @@ use crate::session::Library;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
 use history::History;
+use lexer::names_hidden;
 use over::Over;
 use tabs::Tabs;
 
@@ -74,6 +75,8 @@ pub struct Sql {
     column_put_in: bool,
     /// The statement that was made of a result last.
     derived: String,
+    /// Hidden state may be shown: the tables of the x-ray can be asked.
+    may_look_inside: bool,
 }
 
 impl Default for Sql {
@@ -89,6 +92,7 @@ impl Default for Sql {
             running: None,
             column_put_in: false,
             derived: String::new(),
+            may_look_inside: false,
         }
     }
 }
@@ -150,7 +154,15 @@ impl Sql {
         self.history.remember(&statement.sql);
         let sql = statement.sql.clone();
         self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now() });
-        vec![Effect::Ask(sql)]
+        match self.looks_inside(&sql) {
+            true => vec![Effect::AskInside(sql)],
+            false => vec![Effect::Ask(sql)],
+        }
+    }
+
+    /// Whether a statement asks the tables of the x-ray, and may.
+    fn looks_inside(&self, sql: &str) -> bool {
+        self.may_look_inside && names_hidden(sql)
     }
 
     fn leave_editor(&mut self) -> Vec<Effect> {
@@ -166,6 +178,11 @@ impl Sql {
 }
 
 impl ScreenState for Sql {
+    fn renew(&mut self, look: &Look<'_>) {
+        self.may_look_inside = look.company.may_look_inside;
+        self.browser.shows_hidden = self.may_look_inside;
+    }
+
     fn opened(&self) -> usize {
         let filtered = self.focus == SqlPane::Tables && self.browser.is_filtered();
         usize::from(self.results.shown().is_chart()) + usize::from(filtered)

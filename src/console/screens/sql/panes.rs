@@ -67,6 +67,8 @@ impl Pane<Sql> for EditorPane {
             Some(title) => format!("Query · {title}"),
             None => "Query".to_owned(),
         };
+        let is_of_xray = sql.editor.statement().is_some_and(|statement| sql.looks_inside(&statement.sql));
+        let title = if is_of_xray { format!("{title} · x-ray") } else { title };
         let note = look.hints(&[Action::RunQuery, Action::History, Action::Library]);
         Border { title, note, ..Border::default() }
     }
@@ -123,7 +125,12 @@ impl Pane<Sql> for ResultsPane {
             true => ("Result".to_owned(), String::new()),
             false => sql.results.shown().head(),
         };
-        let title = title.replacen("Result", &format!("Result{}", sql.results.number()), 1);
+        let asked = match &sql.running {
+            Some(running) => Some(running.statement.sql.as_str()),
+            None => sql.results.statement(),
+        };
+        let mark = if asked.is_some_and(|asked| sql.looks_inside(asked)) { " · x-ray" } else { "" };
+        let title = title.replacen("Result", &format!("Result{}{mark}", sql.results.number()), 1);
         Border { title, note, keys: look.hints(sql.results.shown().keys()), ..Border::default() }
     }
 

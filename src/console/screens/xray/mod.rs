@@ -3,6 +3,8 @@
 //! The session's thread simulates days again for a look. One question is asked at a time; of those that come up meanwhile
 //! only the newest is asked next.
 
+mod heat;
+mod lines;
 mod panes;
 #[cfg(test)]
 mod tests;
@@ -26,6 +28,7 @@ use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::widgets::scroll::Scroll;
 use crate::console::widgets::{Cell, Column, Field, Table};
+use crate::report::xray::AskedWords;
 use crate::session::{Breakpoint, DrawnPart, LeadFactor, Refusal};
 use crate::world::identifiers::Group;
 
@@ -48,10 +51,13 @@ const LISTS: u16 = 16;
 /// Lowest window in which both lists stand below each other.
 const HIGH: u16 = 20;
 
+/// Said where a question is being answered.
+const ASKED_ALREADY: &str = "days are simulated again; try again when that is done";
+
 /// What a look has brought.
 struct Seen {
     question: LookQuestion,
-    found: Result<Vec<String>, String>,
+    found: Result<LookFound, String>,
 }
 
 /// The screen.
@@ -70,8 +76,8 @@ pub struct Xray {
     /// The day that is looked at; none for the last one.
     day: Option<u32>,
     customer: Option<u32>,
-    /// Factors of the leads that are held at 1.
-    held: Vec<LeadFactor>,
+    /// Factors of the leads that are held, and at what.
+    held: Vec<(LeadFactor, f64)>,
     /// The factor under the cursor.
     factor: usize,
     typing: Option<TypedLine>,
@@ -80,6 +86,8 @@ pub struct Xray {
     /// The question that is being answered.
     asked: Option<LookQuestion>,
     seen: Option<Seen>,
+    /// What was answered to words.
+    said: Option<Seen>,
     scroll: Scroll,
 }
 
@@ -121,7 +129,8 @@ impl Xray {
     /// The question whose answer is to be shown; none where something has to be chosen first, or no day has run.
     fn wanted(&self) -> Option<LookQuestion> {
         let day = self.day();
-        if !self.is_open || (day == 0 && self.view() != View::Breakpoints) {
+        let needs_day = !matches!(self.view(), View::Breakpoints | View::Words);
+        if !self.is_open || (day == 0 && needs_day) {
             return None;
         }
         Some(match self.view() {
@@ -135,6 +144,8 @@ impl Xray {
             View::Streams => LookQuestion::Draws(self.part()?, self.last_day),
             View::Customer => LookQuestion::Customer(self.customer?, day),
             View::Breakpoints => LookQuestion::Breakpoints(BreakpointWork::List),
+            // What was asked is asked once: words may set something.
+            View::Words => return None,
         })
     }
 
@@ -156,13 +167,21 @@ impl Xray {
     /// Has something done with breakpoints.
     fn work(&mut self, work: BreakpointWork) -> Vec<Effect> {
         match &self.asked {
-            Some(_) => vec![Effect::Complain("days are simulated again; try again when that is done".to_owned())],
+            Some(_) => vec![Effect::Complain(ASKED_ALREADY.to_owned())],
             None => self.send(LookQuestion::Breakpoints(work)),
         }
     }
 
     fn take(&mut self, found: &Result<LookFound, Refusal>) -> Vec<Effect> {
         let Some(mut question) = self.asked.take() else { return Vec::new() };
+        let shown = || found.clone().map_err(|refusal| refusal.message);
+        if let LookQuestion::Words(_, asked) = &question {
+            if asked.changes_run() {
+                self.seen = None;
+            }
+            self.said = Some(Seen { found: shown(), question });
+            return self.ask();
+        }
         if let LookQuestion::Breakpoints(work) = &mut question {
             // What was done is shown like the list, and not done again.
             *work = BreakpointWork::List;
@@ -172,11 +191,7 @@ impl Xray {
             }
         }
         if self.wanted().as_ref() == Some(&question) {
-            let found = match found {
-                Ok(found) => Ok(found.lines.clone()),
-                Err(refusal) => Err(refusal.message.clone()),
-            };
-            self.seen = Some(Seen { question, found });
+            self.seen = Some(Seen { question, found: shown() });
             return Vec::new();
         }
         self.ask()
@@ -185,7 +200,8 @@ impl Xray {
     /// Shows why days stopped that were run from here.
     pub fn tell(&mut self, ran: &DaysRan) {
         let question = LookQuestion::Breakpoints(BreakpointWork::List);
-        self.seen = Some(Seen { question, found: Ok(ran.lines.clone()) });
+        let lines = ran.lines.clone();
+        self.seen = Some(Seen { question, found: Ok(LookFound { lines, ..LookFound::default() }) });
     }
 
     /// Turns to the breakpoints.
@@ -247,9 +263,9 @@ impl Xray {
             return vec![Effect::Complain("only factors of the leads are held".to_owned())];
         }
         let factor = LeadFactor::ALL[self.factor.min(LeadFactor::ALL.len() - 1)];
-        match self.held.iter().position(|own| *own == factor) {
+        match self.held.iter().position(|(own, _)| *own == factor) {
             Some(at) => drop(self.held.remove(at)),
-            None => self.held.push(factor),
+            None => return self.type_in(Some(Expected::Held(factor))),
         }
         self.ask()
     }
@@ -280,9 +296,35 @@ impl Xray {
             }
             Typed::Customer(customer) => self.customer = Some(customer),
             Typed::Condition(condition) => return self.work(BreakpointWork::Set(condition)),
+            Typed::Held(factor, value) => self.held.push((factor, value)),
+            Typed::Words(words, asked) => return self.say_words(words, asked),
             Typed::Days(days) => return vec![Effect::Request(Request::RunDays(days))],
         }
         self.ask()
+    }
+
+    /// Asks with words; those that set something are confirmed first.
+    fn say_words(&mut self, words: String, asked: AskedWords) -> Vec<Effect> {
+        match asked.changes_run() {
+            true => vec![Effect::ConfirmWords(words)],
+            false => self.send_asked(words, asked),
+        }
+    }
+
+    fn send_asked(&mut self, words: String, asked: AskedWords) -> Vec<Effect> {
+        if self.asked.is_some() {
+            return vec![Effect::Complain(ASKED_ALREADY.to_owned())];
+        }
+        self.scroll = Scroll::default();
+        self.send(LookQuestion::Words(words, asked))
+    }
+
+    /// Sends words that were confirmed.
+    pub fn send_words(&mut self, words: &str) -> Vec<Effect> {
+        match AskedWords::read(words) {
+            Ok(asked) if self.is_open => self.send_asked(words.to_owned(), asked),
+            _ => Vec::new(),
+        }
     }
 
     /// What the keys of the breakpoints do.
@@ -327,7 +369,7 @@ impl ScreenState for Xray {
 
     fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
         match news {
-            News::LookedInside(_, found) => self.take(found),
+            News::LookedInside(_, found, _) => self.take(found),
             _ => Vec::new(),
         }
     }
@@ -374,6 +416,10 @@ impl Paned for Xray {
             Action::DayWeekBefore => self.walk(-7),
             Action::DayWeekAfter => self.walk(7),
             Action::HoldFactor => self.hold(),
+            Action::AskWords => {
+                self.show(View::Words);
+                self.type_in(Some(Expected::Words))
+            }
             Action::TypeChoice => self.type_in(Expected::in_view(self.view())),
             Action::RunDays | Action::LookBack | Action::RemoveBreakpoint => self.act_on_breakpoints(action),
             _ => return None,

@@ -2,21 +2,20 @@
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
-use unicode_width::UnicodeWidthStr;
 
 use super::typing::Expected;
 use super::view::{Choices, View};
-use super::{Xray, XrayPane};
-use crate::notation::capital;
+use super::{Xray, XrayPane, lines};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, rows_of};
 use crate::console::effect::Effect;
+use crate::console::look_inside::LookQuestion;
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Table;
-use crate::session::{LeadFactor, REFUSED_LOOK};
+use crate::notation::capital;
+use crate::session::LeadFactor;
 
 /// What can be looked at.
 pub struct ViewsPane;
@@ -37,13 +36,26 @@ fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
 /// Keys of a view.
 fn keys_of(view: View) -> &'static [Action] {
     match view {
-        View::Leads => &[Action::Left, Action::Right, Action::HoldFactor, Action::TypeChoice],
-        View::Streams => &[Action::TypeChoice],
-        View::Breakpoints => {
-            &[Action::TypeChoice, Action::RunDays, Action::LookBack, Action::RemoveBreakpoint]
+        View::Leads => &[
+            Action::Left,
+            Action::Right,
+            Action::HoldFactor,
+            Action::TypeChoice,
+            Action::AskWords,
+        ],
+        View::Streams => &[Action::TypeChoice, Action::AskWords],
+        View::Words => &[Action::AskWords],
+        View::Breakpoints => &[
+            Action::TypeChoice,
+            Action::RunDays,
+            Action::LookBack,
+            Action::RemoveBreakpoint,
+            Action::AskWords,
+        ],
+        _ if Expected::in_view(view).is_none() => {
+            &[Action::Left, Action::Right, Action::DayWeekBefore, Action::AskWords]
         }
-        _ if Expected::in_view(view).is_none() => &[Action::Left, Action::Right, Action::DayWeekBefore],
-        _ => &[Action::Left, Action::Right, Action::TypeChoice],
+        _ => &[Action::Left, Action::Right, Action::TypeChoice, Action::AskWords],
     }
 }
 
@@ -72,9 +84,13 @@ impl Pane<Xray> for ViewsPane {
     fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
         match action {
             Action::Open => {
-                let is_empty = xray.view() == View::Customer && xray.customer.is_none();
+                let is_empty = match xray.view() {
+                    View::Customer => xray.customer.is_none(),
+                    View::Words => xray.said.is_none(),
+                    _ => false,
+                };
                 match is_empty {
-                    true => return xray.type_in(Some(Expected::Customer)),
+                    true => return xray.type_in(Expected::in_view(xray.view())),
                     false => xray.focus = XrayPane::Seen,
                 }
             }
@@ -186,7 +202,7 @@ impl Pane<Xray> for SeenPane {
         match action {
             Action::Commit | Action::CommitDown => return xray.commit(),
             Action::Discard => (xray.typing, xray.problem) = (None, None),
-            Action::Open if matches!(xray.view(), View::Customer | View::Breakpoints) => {
+            Action::Open if matches!(xray.view(), View::Customer | View::Breakpoints | View::Words) => {
                 return xray.type_in(Expected::in_view(xray.view()));
             }
             Action::Close => xray.focus = XrayPane::Views,
@@ -221,6 +237,10 @@ impl Pane<Xray> for SeenPane {
         let view = xray.view();
         let title = match (view, view.choices()) {
             (View::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
+            (View::Words, _) => match xray.said.as_ref().map(|said| &said.question) {
+                Some(LookQuestion::Words(words, _)) => format!(": {words}"),
+                _ => String::new(),
+            },
             (_, Choices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
             (_, Choices::Parts) => xray.part().map_or(String::new(), |own| format!(" of {}", own.id())),
             _ => String::new(),
@@ -256,7 +276,7 @@ impl Pane<Xray> for SeenPane {
         let below = u16::from(xray.typing.is_some()) + u16::from(xray.problem.is_some());
         let below = below.min(seat.area.height);
         let area = Rect { height: seat.area.height - below, ..seat.area };
-        draw_lines(xray, canvas, Seat { area, ..seat }, look);
+        lines::draw(xray, canvas, Seat { area, ..seat }, look);
         let mut rows = rows_of(Rect { y: area.bottom(), height: below, ..seat.area });
         if let (Some(problem), Some(row)) = (&xray.problem, rows.next()) {
             canvas.text(row, problem, Role::Bad);
@@ -266,104 +286,6 @@ impl Pane<Xray> for SeenPane {
             let before = (prompt.len() as u16 + 1).min(row.width);
             canvas.text(row, prompt, Role::Key);
             typing.field.draw(canvas, Rect { x: row.x + before, width: row.width - before, ..row });
-        }
-    }
-}
-
-/// The words that are shown, broken into the width, with the cursor on a factor of the leads.
-fn draw_lines(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-    let (lines, role) = lines_of(xray, look);
-    let cursor = (xray.view() == View::Leads && role == Role::Text).then(|| LeadFactor::ALL[xray.factor]);
-    let is_marked = |line: &str| {
-        let mut words = line.split_whitespace();
-        let letter = words.next();
-        // Both the letter and its name: the equation above begins with a letter, too.
-        cursor.is_some_and(|own| letter == Some(own.letter()) && line.contains(own.in_words()))
-    };
-    let width = usize::from(seat.area.width);
-    let broken = |(at, line): (usize, &String)| {
-        let role = match (at, is_marked(line)) {
-            (_, true) if seat.focused => Role::Selection,
-            (_, true) => Role::SelectionIdle,
-            (0, _) if role == Role::Text => Role::Header,
-            _ => role,
-        };
-        broken_into(line, width).into_iter().map(move |part| (part, role))
-    };
-    let rows: Vec<(String, Role)> = lines.iter().enumerate().flat_map(broken).collect();
-    let height = usize::from(seat.area.height);
-    let from = xray.scroll.within(rows.len().saturating_sub(height));
-    if seat.focused {
-        canvas.page = seat.area.height.max(1);
-    }
-    for (row, (text, role)) in rows_of(seat.area).zip(rows.iter().skip(from)) {
-        canvas.text(row, text, *role);
-    }
-}
-
-/// The words that are shown.
-fn lines_of(xray: &Xray, look: &Look<'_>) -> (Vec<String>, Role) {
-    let one = |text: String| vec![text];
-    if !xray.is_open {
-        return (one(capital(REFUSED_LOOK) + "."), Role::Dim);
-    }
-    let wanted = xray.wanted();
-    match &xray.seen {
-        Some(seen) if Some(&seen.question) == wanted.as_ref() => match &seen.found {
-            Ok(lines) => (lines.clone(), Role::Text),
-            Err(problem) => (one(problem.clone()), Role::Bad),
-        },
-        _ if wanted.is_some() => (one("simulating days again …".to_owned()), Role::Dim),
-        _ if xray.last_day == 0 => (one("no day has run yet".to_owned()), Role::Dim),
-        _ if xray.view() == View::Customer => {
-            let key = look.keys.label(Action::TypeChoice).unwrap_or_default();
-            (one(format!("{key} types the number of a customer")), Role::Dim)
-        }
-        _ => (one("nothing is chosen".to_owned()), Role::Dim),
-    }
-}
-
-/// Columns by which what goes on in the next row is set back.
-const SET_BACK: usize = 6;
-
-/// What stands between two columns of a table at least.
-const GAP: &str = "  ";
-
-/// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
-/// each other; the cells that do not go on in the next row.
-fn broken_into(line: &str, width: usize) -> Vec<String> {
-    if line.width() <= width || !line.trim_start().contains(GAP) {
-        return wrapped(line, width);
-    }
-    let mut rows = Vec::new();
-    let mut rest = line.to_owned();
-    while rest.width() > width && width > 2 * SET_BACK {
-        let gaps = rest.match_indices(GAP).map(|(at, _)| at);
-        let fits = |at: &usize| rest[..*at].width() <= width && !rest[..*at].trim().is_empty();
-        let Some(cut) = gaps.filter(fits).last() else { break };
-        rows.push(rest[..cut].trim_end().to_owned());
-        rest = format!("{}{}", " ".repeat(SET_BACK), rest[cut..].trim_start());
-        if rest.trim().is_empty() {
-            return rows;
-        }
-    }
-    rows.extend(wrapped(&rest, width));
-    rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_of_tables_keep_their_columns_as_far_as_they_fit() {
-        let rows = |line: &str| broken_into(line, 26);
-        assert_eq!(rows("  plan  price  quality  required"), ["  plan  price  quality", "      required"]);
-        assert_eq!(rows("  A     12.00  0.21     0.26"), ["  A     12.00  0.21", "      0.26"]);
-        assert_eq!(rows("  words that are no row of a table"), ["  words that are no row of", "  a table"]);
-        assert_eq!(rows("short  line"), ["short  line"]);
-        for width in 0..40 {
-            broken_into("  plan  price  averyveryverylongwordthatfitsnowhere  required", width);
         }
     }
 }

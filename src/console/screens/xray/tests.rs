@@ -1,6 +1,11 @@
 use super::*;
+use crate::console::app::Settings;
+use crate::console::glyphs::Glyphs;
+use crate::console::headless::Headless;
 use crate::console::keys::Keys;
 use crate::console::screens::Screen;
+use crate::console::theme::Theme;
+use crate::session::{Configuration, Mode, NewRun, Session, Storage, Via};
 use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
 
 fn open(company: Company) -> Company {
@@ -10,11 +15,11 @@ fn open(company: Company) -> Company {
 fn hear(screen: &mut Xray, company: &Company, found: Result<LookFound, Refusal>) -> Vec<Effect> {
     let keys = Keys::shipped();
     let look = Look { company, keys: &keys, page: 5 };
-    screen.hear(&News::LookedInside(1, Box::new(found)), &look)
+    screen.hear(&News::LookedInside(1, Box::new(found), None), &look)
 }
 
 fn found(line: &str) -> Result<LookFound, Refusal> {
-    Ok(LookFound { lines: vec![line.to_owned()], breakpoints: Vec::new() })
+    Ok(LookFound { lines: vec![line.to_owned()], ..LookFound::default() })
 }
 
 fn day_asked(effects: &[Effect]) -> Option<u32> {
@@ -121,4 +126,60 @@ fn before_the_first_day_nothing_is_asked() {
     screen.renew(&Look { company: &company, keys: &keys, page: 5 });
     assert!(screen.ask().is_empty());
     assert!(drawn(&screen, &company, 80, 21).contains("no day has run yet"));
+}
+
+/// Effects that no screen would give: hidden state stays hidden all the same, and nothing is recorded or set.
+#[test]
+fn requests_that_go_around_the_screen_are_refused() {
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let new = NewRun {
+            mode,
+            days: Some(28),
+            participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+            storage: Storage::Runs(runs.path().to_owned()),
+            ..NewRun::default()
+        };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let forecasts = session.naive_forecasts();
+        session.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+        let file = session.folder().expect("a folder").join("trajectory.jsonl");
+        drop(session);
+        let mut console = Headless::new(settings(runs.path()), (200, 60));
+        console.settle().expect("the menu");
+        console.open("latest").expect("it opens");
+        let group = Group::all().next().expect("a group");
+        let words = |text: &str| {
+            let asked = AskedWords::read(text).expect(text);
+            Effect::LookInside(LookQuestion::Words(text.to_owned(), asked))
+        };
+        for effect in [
+            Effect::LookInside(LookQuestion::Leads(group, 7, Vec::new())),
+            Effect::LookInside(LookQuestion::Spillover(7)),
+            words("find leads >= 0"),
+            words("who cash"),
+            words("diff 6 7"),
+            words("set group.S1.c_max_mean 300"),
+            Effect::SendWords("set group.S1.c_max_mean 300".to_owned()),
+            Effect::AskInside("SELECT * FROM hidden.groups".to_owned()),
+        ] {
+            console.app.start_with(effect);
+            console.settle().expect("an answer");
+        }
+        console.finish();
+        let lines = std::fs::read_to_string(&file).expect("lines");
+        assert!(!lines.contains("\"xray\"") && !lines.contains("\"override\""), "{mode:?}: {lines}");
+    }
+}
+
+fn settings(runs: &std::path::Path) -> Settings {
+    Settings {
+        theme: Theme::find("dark", &Configuration::shipped()).expect("a theme"),
+        keys: Keys::shipped(),
+        glyphs: Glyphs::Braille,
+        configuration: Configuration::shipped(),
+        runs: runs.to_owned(),
+        again: "novamind --run latest".to_owned(),
+        lists_everybody: false,
+    }
 }

@@ -1,9 +1,10 @@
-//! What is typed on the X-ray screen: a group, a part, the number of a customer, a condition, a number of days.
+//! What is typed on the X-ray screen: a group, a part, the number of a customer, a condition, a number, words.
 
 use super::view::{Choices, View};
 use crate::console::widgets::Field;
 use crate::notation::nearest;
-use crate::session::{Condition, ConditionProblem, DrawnPart};
+use crate::report::xray::AskedWords;
+use crate::session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use crate::world::identifiers::Group;
 
 /// What is expected.
@@ -19,10 +20,14 @@ pub enum Expected {
     Condition,
     /// A number of days.
     Days,
+    /// The value at which a factor of the leads is held.
+    Held(LeadFactor),
+    /// Words that ask, or set a parameter.
+    Words,
 }
 
 /// What was typed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Typed {
     /// A group.
     Group(Group),
@@ -34,6 +39,10 @@ pub enum Typed {
     Condition(Condition),
     /// A number of days, at least 1.
     Days(u32),
+    /// A factor, and the value at which it is held.
+    Held(LeadFactor, f64),
+    /// Words, as they were typed and read.
+    Words(String, AskedWords),
 }
 
 /// A line that is being typed.
@@ -45,11 +54,16 @@ pub struct TypedLine {
     pub field: Field,
 }
 
+/// What stands before the value of a factor, in the order of the equation.
+const HELD: [&str; LeadFactor::ALL.len()] =
+    ["R held at (1)", "D held at (1)", "C held at (1)", "M held at (1)", "A held at (1)", "Z held at (1)"];
+
 impl Expected {
     /// What can be typed in a view; none where there is nothing to choose.
     pub fn in_view(view: View) -> Option<Expected> {
         match (view, view.choices()) {
             (View::Customer, _) => Some(Expected::Customer),
+            (View::Words, _) => Some(Expected::Words),
             (_, Choices::Groups) => Some(Expected::Group),
             (_, Choices::Parts) => Some(Expected::Part),
             (_, Choices::Breakpoints) => Some(Expected::Condition),
@@ -65,6 +79,8 @@ impl Expected {
             Expected::Customer => "customer",
             Expected::Condition => "stop when",
             Expected::Days => "days to run",
+            Expected::Held(factor) => HELD[factor as usize],
+            Expected::Words => "find, who, diff or set",
         }
     }
 
@@ -90,6 +106,18 @@ impl Expected {
                 .map(Typed::Customer)
                 .map_err(|_| "type the number of a customer, for instance 4711".to_owned()),
             Expected::Condition => text.parse().map(Typed::Condition).map_err(problem_in_words),
+            Expected::Held(factor) => match text {
+                "" => Ok(Typed::Held(factor, 1.0)),
+                text => {
+                    let value = text.parse().ok().filter(|value: &f64| value.is_finite() && *value >= 0.0);
+                    let value = value.map(|value| Typed::Held(factor, value));
+                    value.ok_or_else(|| format!("{factor} is held at a number of at least 0"))
+                }
+            },
+            Expected::Words => {
+                let read = AskedWords::read(text).map(|asked| Typed::Words(text.to_owned(), asked));
+                read.map_err(|problem| problem.text)
+            }
             Expected::Days => {
                 let days = text.parse().ok().filter(|days| *days > 0);
                 days.map(Typed::Days).ok_or_else(|| "type a number of days, for instance 28".to_owned())

@@ -26,6 +26,8 @@ pub enum View {
     Customer,
     /// Breakpoints.
     Breakpoints,
+    /// Words as plain mode takes them.
+    Words,
 }
 
 /// What a view has to choose from.
@@ -55,6 +57,7 @@ impl View {
             View::Streams => "streams",
             View::Customer => "customer",
             View::Breakpoints => "breakpoints",
+            View::Words => "words",
         }
     }
 
@@ -64,13 +67,13 @@ impl View {
             View::Leads | View::Quality | View::Satisfaction | View::Reputation => Choices::Groups,
             View::Streams => Choices::Parts,
             View::Breakpoints => Choices::Breakpoints,
-            View::Spillover | View::Rivals | View::Drift | View::Customer => Choices::Nothing,
+            View::Spillover | View::Rivals | View::Drift | View::Customer | View::Words => Choices::Nothing,
         }
     }
 
     /// Whether it shows one day; the others show what comes next, or what is set.
     pub fn has_day(self) -> bool {
-        !matches!(self, View::Streams | View::Breakpoints)
+        !matches!(self, View::Streams | View::Breakpoints | View::Words)
     }
 
     /// The entry of the glossary that explains it.

@@ -1,0 +1,128 @@
+//! Spills between groups as a heat map: marks and signs say what colours say.
+
+use std::ops::Range;
+
+use unicode_width::UnicodeWidthStr;
+
+use super::lines::Row;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::report::xray::{HEAT, SpillCell, SpillMap, SpillRow};
+
+/// Columns of a cell with its number.
+const WIDE: usize = 13;
+/// Columns of a cell that is a mark and a sign.
+const NARROW: usize = 5;
+/// Columns of the group at the left.
+const NAME: usize = 6;
+
+/// The rows of a map in a width. Numbers stand in the cells where there is room, and below the map otherwise; columns that
+/// have no room go on in another block.
+pub fn rows(map: &SpillMap, width: usize) -> Vec<Row> {
+    let plain = |text: &str, role| wrapped(text, width).into_iter().map(move |part| vec![(part, role)]);
+    let mut rows: Vec<Row> = plain(&map.heading, Role::Header).collect();
+    if !map.rows.is_empty() {
+        let own = map.rows.iter().map(|row| row.own.width()).chain([OWN.width()]).max().unwrap_or(0) + 2;
+        let room = width.saturating_sub(NAME + own);
+        let is_wide = map.targets.len() * WIDE <= room;
+        let cell = if is_wide { WIDE } else { NARROW };
+        let in_block = (room / cell).max(1);
+        for from in (0..map.targets.len().max(1)).step_by(in_block) {
+            let block = from..(from + in_block).min(map.targets.len());
+            let mut head = format!("{:<NAME$}{OWN:<own$}", "from");
+            map.targets[block.clone()].iter().for_each(|group| head += &format!("{:<cell$}", group.id()));
+            rows.push(vec![(head, Role::Header)]);
+            rows.extend(map.rows.iter().map(|row| row_of(row, block.clone(), own, is_wide)));
+        }
+        rows.extend(plain(LEGEND, Role::Dim));
+        if !is_wide {
+            let told = map.rows.iter().filter_map(|row| numbers(row, map));
+            rows.extend(told.flat_map(|text| plain(&text, Role::Text).collect::<Vec<Row>>()));
+        }
+    }
+    rows.extend(map.notes.iter().flat_map(|note| plain(note, Role::Text)));
+    rows
+}
+
+const OWN: &str = "own change";
+const LEGEND: &str = "░ ▒ ▓ █ share of the largest spill · + raises, - lowers · x dropped · a dot: no weight";
+
+fn row_of(row: &SpillRow, block: Range<usize>, own: usize, is_wide: bool) -> Row {
+    let mut pieces =
+        vec![(format!("{:<NAME$}", row.from.id()), Role::Header), (format!("{:<own$}", row.own), Role::Text)];
+    pieces.extend(row.cells[block].iter().map(|cell| {
+        let (text, role) = match *cell {
+            SpillCell::NoWeight => ("·".to_owned(), Role::Dim),
+            SpillCell::Dropped if is_wide => (cell.in_words(), Role::Dim),
+            SpillCell::Dropped => ("x".to_owned(), Role::Dim),
+            SpillCell::Heard(change, _) if is_wide => (cell.in_words(), role_of(change)),
+            SpillCell::Heard(change, mark) => {
+                let sign = if change < 0.0 { "-" } else { "+" };
+                (format!("{}{sign}", HEAT[mark].repeat(2)), role_of(change))
+            }
+        };
+        let wide = if is_wide { WIDE } else { NARROW };
+        (format!("{text:<wide$}"), role)
+    }));
+    pieces
+}
+
+fn role_of(change: f64) -> Role {
+    if change < 0.0 { Role::Bad } else { Role::Good }
+}
+
+/// The numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; none where nobody heard of it.
+fn numbers(row: &SpillRow, map: &SpillMap) -> Option<String> {
+    let heard = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
+        SpillCell::Heard(change, _) => Some(format!("{to} {change:+.6}")),
+        SpillCell::NoWeight | SpillCell::Dropped => None,
+    });
+    let heard: Vec<String> = heard.collect();
+    (!heard.is_empty()).then(|| format!("  {}→ {}", row.from, heard.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::identifiers::Group;
+
+    fn map(targets: usize) -> SpillMap {
+        let groups: Vec<Group> = Group::all().take(targets).collect();
+        let cell = |at: usize| match at % 4 {
+            0 => SpillCell::NoWeight,
+            1 => SpillCell::Dropped,
+            mark => SpillCell::Heard(if mark == 2 { -0.0002 } else { 0.0003 }, mark),
+        };
+        let row = SpillRow {
+            from: groups[0],
+            own: "+0.001000 dropped".to_owned(),
+            cells: (0..targets).map(cell).collect(),
+        };
+        SpillMap { heading: "changes".to_owned(), targets: groups, rows: vec![row], notes: vec!["note".to_owned()] }
+    }
+
+    #[test]
+    fn every_spill_stands_in_a_map_of_any_width_as_a_mark_and_a_number() {
+        for (targets, width) in [(4, 120), (4, 40), (12, 120), (12, 60), (26, 30), (1, 1)] {
+            let map = map(targets);
+            let rows: Vec<String> =
+                rows(&map, width).iter().map(|row| row.iter().map(|(text, _)| text.as_str()).collect()).collect();
+            let text = rows.join("\n");
+            let heard = map.rows[0].cells.iter().filter(|cell| matches!(cell, SpillCell::Heard(..))).count();
+            let words: String = text.split_whitespace().collect();
+            assert_eq!(words.matches("0.0002").count() + words.matches("0.0003").count(), heard, "{text}");
+            let wide = |row: &&String| row.trim_end().width() > width;
+            assert!(width < 40 || !rows.iter().any(|row| wide(&row)), "{width}:\n{text}");
+        }
+    }
+
+    #[test]
+    fn signs_tell_what_colours_tell() {
+        let map = map(4);
+        let cells: Vec<(String, Role)> = rows(&map, 40)[2].iter().skip(2).cloned().collect();
+        let shown: Vec<(&str, Role)> = cells.iter().map(|(text, role)| (text.trim_end(), *role)).collect();
+        let expected = [("·", Role::Dim), ("x", Role::Dim), ("▓▓-", Role::Bad), ("██+", Role::Good)];
+        assert_eq!(shown, expected[..shown.len()]);
+        assert!(shown.len() >= 3);
+    }
+}

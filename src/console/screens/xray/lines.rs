@@ -1,0 +1,166 @@
+//! What was seen, row by row: words broken into the width, figures of days beside them, and spills as a heat map.
+
+use unicode_width::UnicodeWidthStr;
+
+use super::view::View;
+use super::{Xray, heat};
+use crate::console::action::Action;
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::look_inside::{LookCurve, LookFound, LookQuestion};
+use crate::console::screens::Look;
+use crate::console::screens::panes::Seat;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::spark;
+use crate::notation::capital;
+use crate::report::xray::line_of_factor;
+use crate::session::{LeadFactor, REFUSED_LOOK};
+use ratatui::layout::Rect;
+
+/// A row: pieces of text one after the other.
+pub type Row = Vec<(String, Role)>;
+
+/// Days that a figure is drawn for at most.
+const DAYS: usize = 28;
+
+/// The words that are shown, broken into the width, with the cursor on a factor of the leads.
+pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    let width = usize::from(seat.area.width);
+    let rows = match shown(xray, look) {
+        Shown::Sentence(text, role) => wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect(),
+        Shown::Found(LookFound { map: Some(map), .. }) => heat::rows(map, width),
+        Shown::Found(found) => {
+            let marked = (xray.view() == View::Leads && !found.curves.is_empty())
+                .then(|| line_of_factor(LeadFactor::ALL[xray.factor]));
+            rows_of_words(found, marked, seat.focused, width)
+        }
+    };
+    let height = usize::from(seat.area.height);
+    let from = xray.scroll.within(rows.len().saturating_sub(height));
+    if seat.focused {
+        canvas.page = seat.area.height.max(1);
+    }
+    for (row, pieces) in rows_of(seat.area).zip(rows.iter().skip(from)) {
+        let mut x = row.x;
+        for (text, role) in pieces {
+            let room = row.right().saturating_sub(x);
+            canvas.text(Rect { x, width: room, ..row }, text, *role);
+            x = x.saturating_add(text.width() as u16).min(row.right());
+        }
+    }
+}
+
+/// The rows of words, each figure of days behind its line, or below it where there is no room.
+fn rows_of_words(found: &LookFound, marked: Option<usize>, focused: bool, width: usize) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (at, line) in found.lines.iter().enumerate() {
+        let role = match at {
+            at if marked == Some(at) && focused => Role::Selection,
+            at if marked == Some(at) => Role::SelectionIdle,
+            0 => Role::Header,
+            _ => Role::Text,
+        };
+        let first = rows.len();
+        rows.extend(broken_into(line, width).into_iter().map(|part| vec![(part, role)]));
+        let Some(curve) = found.curves.iter().find(|curve| curve.line == at) else { continue };
+        let (days, fits) = (spark_of(curve), rows.len() == first + 1);
+        match fits && line.width() + 2 + days.width() <= width {
+            true => rows[first].extend([("  ".to_owned(), Role::Text), (days, Role::Series(0))]),
+            false => {
+                let days = if days.width() + SET_BACK > width { String::new() } else { days };
+                rows.push(vec![(" ".repeat(SET_BACK), Role::Text), (days, Role::Series(0))]);
+            }
+        }
+    }
+    rows
+}
+
+fn spark_of(curve: &LookCurve) -> String {
+    spark(&curve.days, DAYS)
+}
+
+/// What stands there.
+enum Shown<'a> {
+    /// A sentence.
+    Sentence(String, Role),
+    /// What was found.
+    Found(&'a LookFound),
+}
+
+fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Shown<'a> {
+    let sentence = |text: &str, role| Shown::Sentence(text.to_owned(), role);
+    let key = |action| look.keys.label(action).unwrap_or_default();
+    if !xray.is_open {
+        return Shown::Sentence(capital(REFUSED_LOOK) + ".", Role::Dim);
+    }
+    let is_of_words = xray.view() == View::Words;
+    let wanted = xray.wanted();
+    let seen = match is_of_words {
+        true => xray.said.as_ref().filter(|_| !matches!(xray.asked, Some(LookQuestion::Words(..)))),
+        false => xray.seen.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),
+    };
+    match seen.map(|seen| &seen.found) {
+        Some(Ok(found)) => Shown::Found(found),
+        Some(Err(problem)) => sentence(problem, Role::Bad),
+        None if wanted.is_some() => sentence("simulating days again …", Role::Dim),
+        None if is_of_words && xray.asked.is_some() => sentence("simulating days again …", Role::Dim),
+        None if is_of_words => {
+            let text = format!(
+                "{} types words as plain mode takes them, for instance find churn(S1) > 5% over 7, who cash 84, diff 83 84, \
+                 or set group.S1.c_max_mean 300 from 30 in a debug run",
+                key(Action::AskWords)
+            );
+            Shown::Sentence(text, Role::Dim)
+        }
+        None if xray.last_day == 0 => sentence("no day has run yet", Role::Dim),
+        None if xray.view() == View::Customer => {
+            Shown::Sentence(format!("{} types the number of a customer", key(Action::TypeChoice)), Role::Dim)
+        }
+        None => sentence("nothing is chosen", Role::Dim),
+    }
+}
+
+/// Columns by which what goes on in the next row is set back.
+const SET_BACK: usize = 6;
+
+/// What stands between two columns of a table at least.
+const GAP: &str = "  ";
+
+/// A line in rows of a width. Rows of tables keep the blanks that line up their columns, so that those that fit stand below
+/// each other; the cells that do not go on in the next row.
+fn broken_into(line: &str, width: usize) -> Vec<String> {
+    if line.width() <= width || !line.trim_start().contains(GAP) {
+        return wrapped(line, width);
+    }
+    let mut rows = Vec::new();
+    let mut rest = line.to_owned();
+    while rest.width() > width && width > 2 * SET_BACK {
+        let gaps = rest.match_indices(GAP).map(|(at, _)| at);
+        let fits = |at: &usize| rest[..*at].width() <= width && !rest[..*at].trim().is_empty();
+        let Some(cut) = gaps.filter(fits).last() else { break };
+        rows.push(rest[..cut].trim_end().to_owned());
+        rest = format!("{}{}", " ".repeat(SET_BACK), rest[cut..].trim_start());
+        if rest.trim().is_empty() {
+            return rows;
+        }
+    }
+    rows.extend(wrapped(&rest, width));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_tables_keep_their_columns_as_far_as_they_fit() {
+        let rows = |line: &str| broken_into(line, 26);
+        assert_eq!(rows("  plan  price  quality  required"), ["  plan  price  quality", "      required"]);
+        assert_eq!(rows("  A     12.00  0.21     0.26"), ["  A     12.00  0.21", "      0.26"]);
+        assert_eq!(rows("  words that are no row of a table"), ["  words that are no row of", "  a table"]);
+        assert_eq!(rows("short  line"), ["short  line"]);
+        for width in 0..40 {
+            broken_into("  plan  price  averyveryverylongwordthatfitsnowhere  required", width);
+        }
+    }
+}

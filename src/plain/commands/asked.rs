@@ -1,0 +1,54 @@
+//! `find`, `who`, `diff` and `set`: words that the console asks as well (docs/debugging.md).
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::Problem;
+use super::Interpreter;
+use super::breakpoints::{judged_as_data, writes_as_data};
+use crate::report::xray::{AskedWords, WordsFound, difference_as_data};
+use crate::session::ChangedParameter;
+
+impl Interpreter {
+    /// Answers what is asked. Nothing is read of it before it is clear that it may be asked.
+    pub(super) fn ask_words(
+        &mut self,
+        word: &str,
+        read: impl FnOnce() -> Result<AskedWords, Problem>,
+    ) -> Result<Answer, Problem> {
+        if let Err(refusal) = AskedWords::refuse(word, &self.session) {
+            return Ok(Answer::refused(word, refusal));
+        }
+        Ok(match read()?.answer(&mut self.session) {
+            Ok(found) => Answer::done(word, found.in_words().join("\n"), as_data(&found)),
+            Err(refusal) => Answer::refused(word, refusal),
+        })
+    }
+}
+
+fn as_data(found: &WordsFound) -> Value {
+    match found {
+        WordsFound::Days(condition, found, _) => {
+            let days: Vec<Value> = found.iter().map(judged_as_data).collect();
+            json!({ "condition": condition.to_string(), "days": days })
+        }
+        WordsFound::Writes(own) => writes_as_data(own),
+        WordsFound::Difference(one, other, found) => {
+            json!({ "days": [one, other], "difference": difference_as_data(found) })
+        }
+        WordsFound::Parameters(changed) => {
+            let list = |all: &[ChangedParameter]| all.iter().map(set_as_data).collect::<Vec<Value>>();
+            json!({
+                "scenario": changed.scenario,
+                "in_force": list(&changed.in_force),
+                "waiting": list(&changed.waiting),
+            })
+        }
+        WordsFound::Parameter(key, value) => json!({ "key": key, "value": value }),
+        WordsFound::Set(set, _) => set_as_data(set),
+    }
+}
+
+fn set_as_data(own: &ChangedParameter) -> Value {
+    json!({ "key": own.key, "old": own.old, "new": own.new, "from_day": own.from_day })
+}

@@ -1,0 +1,253 @@
+//! Words that ask of the hidden state of a run, or set a parameter of it, and what is answered: the same in plain mode and in
+//! the console (docs/debugging.md).
+
+use serde_json::Value;
+
+use super::{difference_in_words, found_in_words, writes_in_words};
+use crate::notation::nearest;
+use crate::report::parameters::{changed_in_words, set_in_words};
+use crate::session::{
+    ChangedParameter, ChangedParameters, Condition, ConditionProblem, Difference, Judged, Refusal, Session,
+    WhoWrites, WriteTarget,
+};
+use crate::tools::written::{Argument, Problem, Reader};
+
+const USAGE_OF_DIFF: &str = "name two days: diff 83 84";
+const USAGE_OF_SET: &str =
+    "name a parameter, its value and a day or none: set group.S1.c_max_mean 300 from 30";
+
+/// What is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AskedWords {
+    /// `find CONDITION`: the days on which a condition became true.
+    Find(Condition),
+    /// `who FIGURE [DAY]`: what wrote a figure on a day, the last one if none is named.
+    Who(WriteTarget, Option<u32>),
+    /// `diff DAY DAY`: what differs between the ends of two days.
+    Diff(u32, u32),
+    /// `set`: which parameters were set.
+    Parameters,
+    /// `set KEY`: a parameter.
+    Parameter(String),
+    /// `set KEY VALUE [from DAY]`: sets one.
+    Set(String, Value, Option<u32>),
+}
+
+/// What is answered.
+#[derive(Debug, Clone)]
+pub enum WordsFound {
+    /// The days, and the last day that has run.
+    Days(Condition, Vec<Judged>, u32),
+    /// The writes.
+    Writes(WhoWrites),
+    /// What differs between two days.
+    Difference(u32, u32, Difference),
+    /// Which parameters were set.
+    Parameters(ChangedParameters),
+    /// A parameter and its value.
+    Parameter(String, Value),
+    /// What was set, on this day.
+    Set(ChangedParameter, u32),
+}
+
+impl AskedWords {
+    /// The first words that ask.
+    pub const FIRST: [&str; 4] = ["find", "who", "diff", "set"];
+
+    /// Reads a line that begins with one of them.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn read(line: &str) -> Result<AskedWords, Problem> {
+        let mut reader = Reader::of(line);
+        reader.skip_blanks();
+        let (begin, word) = (reader.column(), reader.word());
+        match word.as_str() {
+            "find" | "who" => {
+                reader.skip_blanks();
+                let (rest, column) = (reader.rest(), reader.column());
+                if word == "find" { AskedWords::find(rest, column) } else { AskedWords::who(rest, column) }
+            }
+            "diff" => AskedWords::diff(&reader.arguments()?),
+            "set" => AskedWords::set(&reader.arguments()?),
+            other => {
+                let all = AskedWords::FIRST.join(", ");
+                let text = match nearest(other, AskedWords::FIRST.into_iter())[..] {
+                    [] => format!("a line begins with {all}"),
+                    ref near => format!("{other} is not one of {all}; did you mean {}?", near.join(" or ")),
+                };
+                Err(Problem { text, column: begin })
+            }
+        }
+    }
+
+    /// Reads what follows `find`; it begins in a column.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn find(rest: &str, column: usize) -> Result<AskedWords, Problem> {
+        rest.parse().map(AskedWords::Find).map_err(|problem| in_line(problem, column))
+    }
+
+    /// Reads what follows `who`.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn who(rest: &str, column: usize) -> Result<AskedWords, Problem> {
+        let read = WriteTarget::parse_with_day(rest);
+        read.map(|(target, day)| AskedWords::Who(target, day)).map_err(|problem| in_line(problem, column))
+    }
+
+    /// Reads the arguments of `diff`.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn diff(arguments: &[Argument]) -> Result<AskedWords, Problem> {
+        let days: Vec<u32> = arguments.iter().map(Argument::whole_number).collect::<Result<_, _>>()?;
+        match days[..] {
+            [one, other] => Ok(AskedWords::Diff(one, other)),
+            _ => Err(Problem::of(arguments, USAGE_OF_DIFF)),
+        }
+    }
+
+    /// Reads the arguments of `set`.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn set(arguments: &[Argument]) -> Result<AskedWords, Problem> {
+        let usage = || Problem::of(arguments, USAGE_OF_SET);
+        let (key, value, rest) = match arguments {
+            [] => return Ok(AskedWords::Parameters),
+            [Argument { key: None, value: Value::String(key), .. }] => {
+                return Ok(AskedWords::Parameter(key.clone()));
+            }
+            [Argument { key: Some(key), value, .. }, rest @ ..] => (key, value, rest),
+            [
+                Argument { key: None, value: Value::String(key), .. },
+                Argument { key: None, value, .. },
+                rest @ ..,
+            ] => (key, value, rest),
+            _ => return Err(usage()),
+        };
+        let is_from = |argument: &Argument| argument.key.is_none() && argument.value == "from";
+        let day = match rest {
+            [] => return Ok(AskedWords::Set(key.clone(), value.clone(), None)),
+            [own] if own.key.as_deref() == Some("from") => own,
+            [from, own] if is_from(from) && own.key.is_none() => own,
+            _ => return Err(usage()),
+        };
+        let number = day.value.as_u64().and_then(|number| u32::try_from(number).ok());
+        match number {
+            Some(number) => Ok(AskedWords::Set(key.clone(), value.clone(), Some(number))),
+            None => Err(Problem { text: "a day is a whole number".to_owned(), column: day.column }),
+        }
+    }
+
+    /// Whether the run is another one afterwards.
+    pub fn changes_run(&self) -> bool {
+        matches!(self, AskedWords::Set(..))
+    }
+
+    /// Refuses where it may not be asked, whatever follows the first word.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn refuse(word: &str, session: &Session) -> Result<(), Refusal> {
+        if word == "set" { session.refuse_parameters() } else { session.refuse_to_look_inside() }
+    }
+
+    /// Answers. A look is recorded, and so is what is set.
+    ///
+    /// # Errors
+    /// Those of [`Session::find_days`], [`Session::who_writes`], [`Session::difference_of_days`], [`Session::parameter`] and
+    /// [`Session::set_parameter`].
+    pub fn answer(&self, session: &mut Session) -> Result<WordsFound, Refusal> {
+        let today = session.day();
+        match self {
+            AskedWords::Find(condition) => {
+                session.find_days(*condition).map(|found| WordsFound::Days(*condition, found, today))
+            }
+            AskedWords::Who(target, day) => session.who_writes(*target, *day).map(WordsFound::Writes),
+            AskedWords::Diff(one, other) => session
+                .difference_of_days(*one, *other)
+                .map(|found| WordsFound::Difference(*one, *other, found)),
+            AskedWords::Parameters => session.changed_parameters().map(WordsFound::Parameters),
+            AskedWords::Parameter(key) => {
+                session.parameter(key).map(|value| WordsFound::Parameter(key.clone(), value))
+            }
+            AskedWords::Set(key, value, from) => {
+                session.set_parameter(key, value, *from).map(|set| WordsFound::Set(set, today))
+            }
+        }
+    }
+}
+
+impl WordsFound {
+    /// The answer in words.
+    pub fn in_words(&self) -> Vec<String> {
+        match self {
+            WordsFound::Days(condition, found, last) => found_in_words(condition, found, *last),
+            WordsFound::Writes(own) => writes_in_words(own),
+            WordsFound::Difference(one, other, found) => {
+                difference_in_words(found, (&format!("day {one}"), &format!("day {other}")))
+            }
+            WordsFound::Parameters(changed) => changed_in_words(changed),
+            WordsFound::Parameter(key, value) => vec![format!("{key} = {value}")],
+            WordsFound::Set(set, today) => vec![set_in_words(set, *today)],
+        }
+    }
+}
+
+/// A problem of the rest of a line, in the columns of the line.
+fn in_line(problem: ConditionProblem, column: usize) -> Problem {
+    Problem { text: problem.message, column: column + problem.column - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde_json::json;
+
+    #[test]
+    fn words_are_read_as_they_are_typed() {
+        let read =
+            |line: &str| AskedWords::read(line).unwrap_or_else(|problem| panic!("{line}: {problem:?}"));
+        assert_eq!(read(" diff 83 84 # the days"), AskedWords::Diff(83, 84));
+        assert_eq!(read("set"), AskedWords::Parameters);
+        assert_eq!(read("set group.S1"), AskedWords::Parameter("group.S1".to_owned()));
+        let set = AskedWords::Set("run.x".to_owned(), json!([1, 2]), Some(30));
+        assert_eq!(read("set run.x [1,2] from 30"), set);
+        assert_eq!(read("set run.x=[1,2] from=30"), set);
+        assert!(matches!(read("find churn(S1) > 5% over 7"), AskedWords::Find(_)));
+        assert!(matches!(
+            read("who reputation(S3) 84"),
+            AskedWords::Who(WriteTarget::Reputation(_), Some(84))
+        ));
+        assert!([set.changes_run(), !read("set").changes_run()].iter().all(|holds| *holds));
+    }
+
+    #[test]
+    fn what_cannot_be_read_names_the_column() {
+        for (line, column, part) in [
+            ("", 1, "a line begins with find"),
+            ("fond x", 1, "did you mean find?"),
+            ("find leads >", 13, ""),
+            ("who nobody", 5, ""),
+            ("diff 3", 6, "two days"),
+            ("diff 3 x", 8, "whole number"),
+            ("set group.S1.c_max_mean 3 from x", 32, "whole number"),
+        ] {
+            let problem = AskedWords::read(line).expect_err(line);
+            assert!(problem.text.contains(part), "{line}: {problem:?}");
+            assert_eq!(problem.column, column, "{line}: {problem:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_line_panics(first in "find|who|diff|set|x", rest in "\\PC{0,40}") {
+            let _ = AskedWords::read(&format!("{first} {rest}"));
+        }
+    }
+}

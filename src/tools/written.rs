@@ -1,0 +1,211 @@
+//! Arguments as they are written in a line: `name=value` or values alone, with commas and brackets or without
+//! (docs/interfaces/plain-mode.md#grammar).
+
+use serde_json::Value;
+
+/// One argument.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Argument {
+    /// Its name, if it was given one.
+    pub key: Option<String>,
+    /// Its value.
+    pub value: Value,
+    /// Column where it begins, from 1.
+    pub column: usize,
+}
+
+/// What is wrong with a line, and in which column.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// What is wrong.
+    pub text: String,
+    /// Column, from 1, in characters.
+    pub column: usize,
+}
+
+impl Argument {
+    /// The whole number that it is.
+    ///
+    /// # Errors
+    /// It is none, or has a name.
+    pub fn whole_number(&self) -> Result<u32, Problem> {
+        let number = self.value.as_u64().filter(|_| self.key.is_none());
+        let number = number.and_then(|number| u32::try_from(number).ok());
+        number.ok_or_else(|| Problem { text: "a whole number is expected".to_owned(), column: self.column })
+    }
+}
+
+impl Problem {
+    /// A problem of arguments as a whole.
+    pub fn of(arguments: &[Argument], text: &str) -> Problem {
+        Problem { text: text.to_owned(), column: arguments.first().map_or(1, |argument| argument.column) }
+    }
+}
+
+/// Reads a line from left to right.
+pub struct Reader<'a> {
+    line: &'a str,
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// At the beginning of a line.
+    pub fn of(line: &'a str) -> Reader<'a> {
+        Reader { line, at: 0 }
+    }
+
+    /// What is still to be read.
+    pub fn rest(&self) -> &'a str {
+        &self.line[self.at..]
+    }
+
+    /// Column of it, from 1.
+    pub fn column(&self) -> usize {
+        self.line[..self.at].chars().count() + 1
+    }
+
+    /// A problem in this column.
+    pub fn problem(&self, text: impl Into<String>) -> Problem {
+        Problem { text: text.into(), column: self.column() }
+    }
+
+    /// Passes over blanks.
+    pub fn skip_blanks(&mut self) {
+        self.at += self.rest().len() - self.rest().trim_start().len();
+    }
+
+    /// A word of letters, digits, dots, dashes and underscores; empty where there is none.
+    pub fn word(&mut self) -> String {
+        let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);
+        let end = self.rest().find(|letter| !is_word(letter)).unwrap_or(self.rest().len());
+        let word = self.rest()[..end].to_owned();
+        self.at += end;
+        word
+    }
+
+    /// The arguments up to the end of the line.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn arguments(&mut self) -> Result<Vec<Argument>, Problem> {
+        self.skip_blanks();
+        let opened = self.rest().starts_with('(');
+        self.at += usize::from(opened);
+        let mut arguments: Vec<Argument> = Vec::new();
+        let mut after_comma = false;
+        loop {
+            let before = self.at;
+            self.skip_blanks();
+            let rest = self.rest();
+            let comment = rest.starts_with('#') && (self.at > before || arguments.is_empty());
+            if rest.is_empty() || comment {
+                return if opened { Err(self.problem("the bracket is not closed")) } else { Ok(arguments) };
+            }
+            if opened && rest.starts_with(')') {
+                self.at += 1;
+                return self.nothing_more(arguments);
+            }
+            if rest.starts_with(',') {
+                if arguments.is_empty() || after_comma {
+                    return Err(self.problem("put a comma between two arguments"));
+                }
+                self.at += 1;
+                after_comma = true;
+                continue;
+            }
+            let argument = self.argument()?;
+            if let Some(key) = &argument.key
+                && arguments.iter().any(|other| other.key.as_ref() == Some(key))
+            {
+                return Err(Problem { text: format!("{key} is given twice"), column: argument.column });
+            }
+            arguments.push(argument);
+            after_comma = false;
+        }
+    }
+
+    fn nothing_more(&mut self, arguments: Vec<Argument>) -> Result<Vec<Argument>, Problem> {
+        self.skip_blanks();
+        if self.rest().is_empty() || self.rest().starts_with('#') {
+            Ok(arguments)
+        } else {
+            Err(self.problem("nothing can follow the closing bracket but a comment"))
+        }
+    }
+
+    /// `key = value`, or a value alone.
+    fn argument(&mut self) -> Result<Argument, Problem> {
+        let (column, start) = (self.column(), self.at);
+        let word = self.word();
+        self.skip_blanks();
+        if !word.is_empty() && self.rest().starts_with('=') {
+            self.at += 1;
+            self.skip_blanks();
+            return Ok(Argument { key: Some(word), value: self.value()?, column });
+        }
+        self.at = start;
+        Ok(Argument { key: None, value: self.value()?, column })
+    }
+
+    fn value(&mut self) -> Result<Value, Problem> {
+        match self.rest().chars().next() {
+            Some('{' | '[' | '"') => self.json(),
+            _ => self.bare(),
+        }
+    }
+
+    fn json(&mut self) -> Result<Value, Problem> {
+        let mut values = serde_json::Deserializer::from_str(self.rest()).into_iter::<Value>();
+        match values.next() {
+            Some(Ok(value)) => {
+                self.at += values.byte_offset();
+                Ok(value)
+            }
+            Some(Err(error)) => {
+                self.at += offset_of(self.rest(), error.line(), error.column());
+                while !self.line.is_char_boundary(self.at) {
+                    self.at -= 1;
+                }
+                let message = error.to_string();
+                let message = message.split(" at line ").next().unwrap_or_default();
+                Err(self.problem(format!("the value is not JSON: {message}")))
+            }
+            None => Err(self.problem("a value is missing")),
+        }
+    }
+
+    fn bare(&mut self) -> Result<Value, Problem> {
+        let ends = |letter: char| letter.is_whitespace() || ",=#\"()[]{}".contains(letter);
+        let end = self.rest().find(ends).unwrap_or(self.rest().len());
+        if end == 0 {
+            return Err(match self.rest().chars().next() {
+                Some(letter) => self.problem(format!("a value is expected, not {letter}")),
+                None => self.problem("a value is missing"),
+            });
+        }
+        let text = &self.rest()[..end];
+        self.at += end;
+        Ok(plain_value(text))
+    }
+}
+
+/// What a bare word stands for: null, true, false, a number (also 1_000_000), otherwise itself.
+fn plain_value(text: &str) -> Value {
+    let digits = text.replace('_', "");
+    let json = digits.strip_prefix('+').unwrap_or(&digits);
+    match text {
+        "null" => Value::Null,
+        "true" => Value::Bool(true),
+        "false" => Value::Bool(false),
+        _ => match serde_json::from_str::<Value>(json) {
+            Ok(number) if number.is_number() => number,
+            _ => text.into(),
+        },
+    }
+}
+
+/// Byte offset of serde_json's line and column.
+fn offset_of(text: &str, line: usize, column: usize) -> usize {
+    let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    (before + column.saturating_sub(1)).min(text.len())
+}

@@ -1,6 +1,8 @@
-//! How numbers are written: the same on every screen, in every report and every message.
+//! How numbers are written, and arguments of a line: the same on every screen, in every report and every message.
 //!
 //! Rounding is half to even on the exact binary value everywhere.
+
+pub mod written;
 
 use std::borrow::Cow;
 

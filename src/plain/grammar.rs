@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use crate::tools::written::Reader;
-pub use crate::tools::written::{Argument, Problem};
+use crate::notation::written::Reader;
+pub use crate::notation::written::{Argument, Problem};
 
 /// What a line says.
 #[derive(Debug, Clone, PartialEq)]

@@ -19,7 +19,6 @@ mod refusal;
 mod spec;
 mod surroundings;
 mod view;
-pub mod written;
 
 mod analytics;
 mod calculations;

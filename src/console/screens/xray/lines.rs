@@ -27,9 +27,9 @@ const DAYS: usize = 28;
 pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
     let width = usize::from(seat.area.width);
     let rows = match shown(xray, look) {
-        Shown::Sentence(text, role) => wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect(),
-        Shown::Found(LookFound { map: Some(map), .. }) => heat::rows(map, width),
-        Shown::Found(found) => {
+        Content::Sentence(text, role) => wrapped(&text, width).into_iter().map(|part| vec![(part, role)]).collect(),
+        Content::Found(LookFound { map: Some(map), .. }) => heat::rows(map, width),
+        Content::Found(found) => {
             let marked = (xray.view() == View::Leads && !found.curves.is_empty())
                 .then(|| line_of_factor(LeadFactor::ALL[xray.factor]));
             rows_of_words(found, marked, seat.focused, width)
@@ -80,18 +80,18 @@ fn spark_of(curve: &LookCurve) -> String {
 }
 
 /// What stands there.
-enum Shown<'a> {
+enum Content<'a> {
     /// A sentence.
     Sentence(String, Role),
     /// What was found.
     Found(&'a LookFound),
 }
 
-fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Shown<'a> {
-    let sentence = |text: &str, role| Shown::Sentence(text.to_owned(), role);
+fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Content<'a> {
+    let sentence = |text: &str, role| Content::Sentence(text.to_owned(), role);
     let key = |action| look.keys.label(action).unwrap_or_default();
     if !xray.is_open {
-        return Shown::Sentence(capital(REFUSED_LOOK) + ".", Role::Dim);
+        return Content::Sentence(capital(REFUSED_LOOK) + ".", Role::Dim);
     }
     let is_of_words = xray.view() == View::Words;
     let wanted = xray.wanted();
@@ -100,7 +100,7 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Shown<'a> {
         false => xray.seen.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),
     };
     match seen.map(|seen| &seen.found) {
-        Some(Ok(found)) => Shown::Found(found),
+        Some(Ok(found)) => Content::Found(found),
         Some(Err(problem)) => sentence(problem, Role::Bad),
         None if wanted.is_some() => sentence("simulating days again …", Role::Dim),
         None if is_of_words && xray.asked.is_some() => sentence("simulating days again …", Role::Dim),
@@ -110,11 +110,11 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Shown<'a> {
                  or set group.S1.c_max_mean 300 from 30 in a debug run",
                 key(Action::AskWords)
             );
-            Shown::Sentence(text, Role::Dim)
+            Content::Sentence(text, Role::Dim)
         }
         None if xray.last_day == 0 => sentence("no day has run yet", Role::Dim),
         None if xray.view() == View::Customer => {
-            Shown::Sentence(format!("{} types the number of a customer", key(Action::TypeChoice)), Role::Dim)
+            Content::Sentence(format!("{} types the number of a customer", key(Action::TypeChoice)), Role::Dim)
         }
         None => sentence("nothing is chosen", Role::Dim),
     }

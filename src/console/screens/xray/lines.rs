@@ -75,8 +75,10 @@ fn rows_of_words(found: &LookFound, marked: Option<usize>, focused: bool, width:
     rows
 }
 
+/// Days are drawn as fine as the words beside them are: what these call the same is level.
 fn spark_of(curve: &LookCurve) -> String {
-    spark(&curve.days, DAYS)
+    let shown: Vec<f64> = curve.days.iter().map(|value| (value * 1e4).round() / 1e4).collect();
+    spark(&shown, DAYS)
 }
 
 /// What stands there.
@@ -162,5 +164,23 @@ mod tests {
         for width in 0..40 {
             broken_into("  plan  price  averyveryverylongwordthatfitsnowhere  required", width);
         }
+    }
+
+    #[test]
+    fn days_stand_behind_their_line_or_below_it_and_are_level_where_the_words_are() {
+        let curve = LookCurve { line: 1, days: vec![0.10001, 0.10002, f64::NAN, 0.10004] };
+        let lines = vec!["head".to_owned(), "R reputation".to_owned()];
+        let found = LookFound { lines, curves: vec![curve], ..LookFound::default() };
+        let text = |width| -> Vec<String> {
+            let rows = rows_of_words(&found, Some(1), true, width);
+            rows.iter().map(|row| row.iter().map(|(text, _)| text.as_str()).collect()).collect()
+        };
+        assert_eq!(text(30), ["head", "R reputation  ▄▄ ▄"]);
+        assert_eq!(text(14), ["head", "R reputation", "      ▄▄ ▄"]);
+        for width in 0..40 {
+            text(width);
+        }
+        let marked = &rows_of_words(&found, Some(1), true, 30)[1][0];
+        assert_eq!(marked.1, Role::Selection);
     }
 }

@@ -1,4 +1,4 @@
-//! Scenarios, themes and policies that came with the program: every file of their folders in `configs/`, compiled in.
+//! Scenarios, lessons, themes and policies that came with the program: every file of their folders in `configs/`, compiled in.
 //! A new one needs no line of code.
 
 use include_dir::{Dir, include_dir};
@@ -9,6 +9,9 @@ pub type Shipped = (&'static str, &'static str);
 static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/scenarios");
 static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/themes");
 static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/policies");
+
+static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/lessons");
+static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/lessons");
 
 /// The scenarios, by name.
 pub fn scenarios() -> Vec<Shipped> {
@@ -24,6 +27,34 @@ pub fn themes() -> Vec<Shipped> {
 pub fn policies() -> Vec<Shipped> {
     of(&POLICIES)
 }
+
+/// The lessons, by name, in the order of the course.
+pub fn lessons() -> Vec<Shipped> {
+    let mut lessons = of(&LESSONS);
+    let place = |name: &str| COURSE.iter().position(|own| *own == name).unwrap_or(COURSE.len());
+    lessons.sort_by_key(|(name, _)| place(name));
+    lessons
+}
+
+/// The texts of a lesson.
+pub fn lesson_texts(name: &str) -> Option<&'static str> {
+    LESSON_TEXTS.get_file(format!("{name}.md"))?.contents_utf8()
+}
+
+/// The lessons in the order in which a course takes them.
+const COURSE: [&str; 11] = [
+    "price-follows-quality",
+    "price-of-the-quarter",
+    "ladder",
+    "unaffordable-customer",
+    "unpaid-rise",
+    "cheapest-dollar",
+    "silent-overload",
+    "launch-now",
+    "copied",
+    "first-number",
+    "capstone",
+];
 
 fn of(folder: &'static Dir<'static>) -> Vec<Shipped> {
     let named = |file: &'static include_dir::File<'static>| {

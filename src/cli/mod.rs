@@ -5,6 +5,7 @@ mod completions;
 mod failure;
 mod keys;
 mod lab;
+mod lesson;
 mod pictures;
 mod play;
 mod query;
@@ -77,6 +78,8 @@ enum Command {
     Pictures(pictures::Options),
     /// Show the scenarios and their parameters.
     Scenario(scenario::Options),
+    /// List, show and check lessons.
+    Lesson(lesson::Options),
     /// Set up studies with people: protocol, participants, checks.
     Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
@@ -102,6 +105,7 @@ impl Command {
             Command::Keys(_) => "keys",
             Command::Pictures(_) => "pictures",
             Command::Scenario(_) => "scenario",
+            Command::Lesson(_) => "lesson",
             Command::Study(_) => "study",
             Command::Lab(_) => "lab",
             Command::Bench(_) => "bench",
@@ -321,6 +325,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Keys(options)) => keys::run(&options, &context),
         Some(Command::Pictures(options)) => pictures::run(&options, &context),
         Some(Command::Scenario(options)) => scenario::run(&options, &context),
+        Some(Command::Lesson(options)) => lesson::run(&options, &context),
         Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),

@@ -116,6 +116,7 @@ impl Options {
             scenario: self.scenario.clone().unwrap_or(standard.scenario),
             overrides: self.set.clone(),
             fault: self.planted,
+            lesson: None,
             mode: self.mode.unwrap_or(standard.mode),
             participant: self.participant.clone(),
             agreed: self.consent.then(|| ConsentGiven::on_paper().now()),

@@ -202,6 +202,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         Some(Ended::Horizon) => "FINISHED".to_owned(),
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
         Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
+        Some(Ended::Lesson) => "LESSON OVER".to_owned(),
     };
     let state = format!("{}{state} ", time_left(app));
     let width = (state.width() as u16).min(row.width);

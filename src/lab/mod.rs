@@ -10,6 +10,7 @@ pub(crate) mod comparison;
 mod example_tests;
 mod forecasts;
 mod golden;
+mod lesson_check;
 mod metrics;
 mod policy;
 mod routine;
@@ -20,6 +21,9 @@ mod symbols;
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
+pub use lesson_check::{
+    FigureResult, GoalResult, LessonCheck, PlayResult, SEEDS, TOLERANCE, answers_by_rules, check_lesson,
+};
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};

@@ -12,9 +12,6 @@ use crate::world::params::Params;
 const ADS_FROM_DAY: u32 = 20;
 /// The second target group waits for this day.
 const SECOND_GROUP_FROM_DAY: u32 = 30;
-/// Share of capacity that usage should take.
-const UTILISATION: f64 = 0.8;
-
 /// The calls of the routine on a decision day, in their order.
 pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
     let seen = session.observe();
@@ -30,7 +27,7 @@ pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
         calls.extend(targeted(rules, &seen, on, session.params()));
     }
     if rules.capacity == CapacityRule::Utilisation {
-        calls.push((ToolId::SetCapacityTier, json!({ "tier": capacity_tier(&seen, session) })));
+        calls.push((ToolId::SetCapacityTier, json!({ "tier": session.capacity_towards_usage() })));
     }
     calls
 }
@@ -73,19 +70,6 @@ fn targeted(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) ->
 }
 
 /// One tier towards the smallest that holds the mean usage of the week at 80 %.
-fn capacity_tier(seen: &Observation, session: &Session) -> u8 {
-    let mean = seen.last_week.map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
-    let need = if seen.day == 0 { 0.0 } else { mean / UTILISATION };
-    let tiers = &session.params().capacity_tier;
-    let target = tiers.iter().find(|tier| f64::from(tier.capacity_units) >= need).map_or(7, |tier| tier.tier);
-    let now = session.current(ToolId::SetCapacityTier).get("tier").and_then(Value::as_u64).unwrap_or(0) as u8;
-    match now.cmp(&target) {
-        std::cmp::Ordering::Less => now + 1,
-        std::cmp::Ordering::Equal => now,
-        std::cmp::Ordering::Greater => now - 1,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -18,6 +18,7 @@ pub(crate) mod html;
 pub(crate) mod insights;
 pub(crate) mod lead_costs;
 pub(crate) mod logbook;
+pub(crate) mod lesson;
 mod markdown;
 pub(crate) mod measures;
 mod movement;

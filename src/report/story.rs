@@ -102,6 +102,7 @@ impl Story {
             Some(Ended::Abandoned) => {
                 format!("Day {day}. The run was given up with {}; it has no score.", money(self.seen.cash))
             }
+            Some(Ended::Lesson) => format!("Day {day}. The lesson ends with {}.", money(self.seen.cash)),
             None => format!("Day {day} of {}. Cash is {}.", self.seen.last_day, money(self.seen.cash)),
         }
     }

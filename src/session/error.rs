@@ -145,6 +145,14 @@ pub enum RunError {
         /// Those there are.
         known: String,
     },
+    /// There is no such lesson.
+    #[error("there is no lesson {name}; the lessons are {known}")]
+    NoLesson {
+        /// What was asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
     /// The run cannot be started as asked.
     #[error("{0}")]
     NotPossible(String),

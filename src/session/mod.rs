@@ -11,6 +11,7 @@ mod counterfactual;
 mod error;
 mod figures;
 mod folder;
+mod lesson;
 mod play;
 mod playback;
 mod resume;
@@ -65,6 +66,17 @@ pub use folder::runs::{
 pub use folder::world_log::{
     WORLDS, WorldLine, WorldLog, list_world, list_worlds_as_experimenter, list_worlds_in,
 };
+pub use lesson::conduct::LessonEntry;
+pub use lesson::definition::{
+    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart, LessonPlan, LessonStep,
+    MeasuredFigure, Pitfall, PitfallBound, RationaleAsked, ReferencePlay, ScheduledCalls,
+};
+pub use lesson::lesson_call::LessonCall;
+pub use lesson::lesson_file::Lesson;
+pub use lesson::measurement::{Measurement, NumberSource, Over};
+pub use lesson::reference::{AnswersCompanies, PartPlay, play_part};
+pub use lesson::stamp::LessonStamp;
+pub use lesson::standing::LessonStanding;
 pub use play::act::Preview;
 pub use play::advance::{DayReport, Week};
 pub use play::afterwards::lines_afterwards;
@@ -103,7 +115,7 @@ pub use study::visit::{DECLINED, NextStep, Visit};
 pub use study::visit_log::{
     VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits, visits_of,
 };
-pub use trajectory::record::{Activity, Ended, Parent, QuerySource, Reversal, Via};
+pub use trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
     Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, record, steady,
     written_moment,

@@ -12,6 +12,7 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::list_world;
+use crate::session::lesson::standing::LessonStanding;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -71,6 +72,8 @@ pub struct Session {
     pub(super) breakpoints: Breakpoints,
     /// The hidden tables; none before somebody asks them.
     pub(super) hidden_tables: Option<HiddenTables>,
+    /// The lesson that it belongs to, and how it went; none outside lessons.
+    pub(super) lesson: Option<Box<LessonStanding>>,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.
@@ -182,7 +185,7 @@ impl Session {
         match self.history.ended {
             Some(Ended::Horizon) => Some(self.simulation.world.finance.cash),
             Some(Ended::Bankruptcy) => Some(0.0),
-            Some(Ended::Abandoned) | None => None,
+            Some(Ended::Abandoned | Ended::Lesson) | None => None,
         }
     }
 

@@ -281,6 +281,7 @@ fn headline(company: &Company) -> String {
         Some(Ended::Horizon) => format!("Day {}. You end with {}.", seen.day, dollars(seen.cash)),
         Some(Ended::Bankruptcy) => format!("Day {}. The company is bankrupt; the score is $0.", seen.day),
         Some(Ended::Abandoned) => format!("Day {}. The run was given up; it has no score.", seen.day),
+        Some(Ended::Lesson) => format!("Day {}. The lesson ends with {}.", seen.day, dollars(seen.cash)),
         None => format!("Day {}", seen.day),
     }
 }

@@ -64,6 +64,7 @@ pub(super) fn brief(activity: &Activity) -> (String, Role) {
         Activity::Question(asked) => format!("asked: {}", asked.text),
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),
         Activity::Answer(answer) => format!("{}: {}", answer.id, answer.value),
+        Activity::Lesson(note) => crate::report::lesson::in_words(note),
         Activity::Look(look) => format!("read from outside: {} {}", look.command, look.detail),
         Activity::Xray(look) => format!("x-ray of day {}: {} {}", look.shown_day, look.what, look.which),
     };

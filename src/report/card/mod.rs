@@ -87,6 +87,7 @@ fn headline(story: &Story) -> String {
         Some(Ended::Horizon) => format!("{cash} after {day} days"),
         Some(Ended::Bankruptcy) => format!("Bankrupt on day {day}"),
         Some(Ended::Abandoned) => format!("Given up on day {day} with {cash}, without a score"),
+        Some(Ended::Lesson) => format!("{cash} when the lesson was over on day {day}"),
         None => format!("{cash} on day {day} of {}", story.seen.last_day),
     }
 }

@@ -74,6 +74,7 @@ impl Effort {
             | Activity::Limit(_)
             | Activity::Question(_)
             | Activity::Answer(_)
+            | Activity::Lesson(_)
             | Activity::Look(_)
             | Activity::Xray(_) => {}
         }

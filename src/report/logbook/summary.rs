@@ -58,6 +58,7 @@ fn headline(book: &Logbook) -> String {
         Some(Ended::Horizon) => "to the last day",
         Some(Ended::Bankruptcy) => "into bankruptcy",
         Some(Ended::Abandoned) => "and gave up",
+        Some(Ended::Lesson) => "to the end of the lesson",
         None => "and has not finished",
     };
     format!("{who} played {weeks} in {minutes} minutes, {how}; cash is {}.", money(book.cash))

@@ -3,6 +3,7 @@
 use super::answers::value_in_words;
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading, number, word};
+use crate::notation::json_number;
 use crate::session::record::{Call, DialogStep, Draft, Outcome, Presence, Start};
 use crate::session::{Activity, Record, Reversal};
 
@@ -185,6 +186,11 @@ impl Event {
                 event.detail =
                     vec![("occasion", answer.occasion.clone()), ("changes", answer.changes.to_string())];
                 event.detail.extend(answer.as_expected.map(|expected| ("as_expected", flag(expected))));
+            }
+            Activity::Lesson(note) => {
+                (event.what, event.which) = (crate::report::lesson::word(note.event).to_owned(), note.step.to_string());
+                event.value = note.value.map(|value| json_number(value).to_string()).unwrap_or_default();
+                event.text = crate::report::lesson::in_words(note);
             }
             Activity::Look(look) => (event.what, event.text) = (look.command.clone(), look.detail.clone()),
             Activity::Xray(look) => {

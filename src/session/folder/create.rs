@@ -12,6 +12,7 @@ use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
 use crate::database::{Location, Position, Projector};
 use crate::session::error::RunError;
+use crate::session::lesson::conduct::LessonEntry;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -52,6 +53,8 @@ pub struct NewRun {
     pub agreed: Option<Agreed>,
     /// The study it belongs to, and what that lays down.
     pub study: Option<StudyEntry>,
+    /// The lesson it is a part of; lesson runs only.
+    pub lesson: Option<LessonEntry>,
     /// Where the run is kept.
     pub storage: Storage,
     /// Whether the database is kept up to date; without it queries are refused.
@@ -95,6 +98,7 @@ impl Default for NewRun {
             participant: None,
             agreed: None,
             study: None,
+            lesson: None,
             storage: Storage::Memory,
             projection: true,
             sync_calls: true,
@@ -110,6 +114,10 @@ impl Session {
     /// The scenario, the parameters or the values do not allow it, or the folder cannot be written. Then there
     /// is no run.
     pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
+        let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.terms_of(new.clone()));
+        let shipped = Configuration::shipped();
+        // A lesson is the same on every machine.
+        let configuration = if new.lesson.is_some() { &shipped } else { configuration };
         let (manifest, params) = plan_run(&new, configuration)?;
         match &new.storage {
             Storage::Memory => Session::begin(manifest, params, None, &new),
@@ -141,8 +149,12 @@ impl Session {
         let simulation = Simulation::open(&manifest, params);
         let begun = Session::assemble(manifest, folder, simulation, Projection::of(projector));
         let (position, seal_key) = (recorder.position(), new.seal_key.clone());
-        let session = Session { position, seal_key, recorder: Some(recorder), ..begun };
+        let mut session = Session { position, seal_key, recorder: Some(recorder), ..begun };
         session.project_opening();
+        if let Some(entry) = &new.lesson {
+            session.keep_lesson(entry)?;
+            session.begin_lesson(entry)?;
+        }
         Ok(session)
     }
 
@@ -173,6 +185,7 @@ impl Session {
             breakpoints: Breakpoints::default(),
             hidden_tables: None,
             clock: PersonalClock::default(),
+            lesson: None,
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,
@@ -207,7 +220,11 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
             format!("a baseline run needs a shipped scenario; {} is a file of your own", scenario.name);
         return Err(RunError::NotPossible(message));
     }
-    if !new.overrides.is_empty() && new.mode != Mode::Debug {
+    if new.lesson.is_some() && new.mode != Mode::Lesson {
+        let message = format!("a lesson is played in a lesson run; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    if !new.overrides.is_empty() && !matches!(new.mode, Mode::Debug | Mode::Lesson) {
         let message = format!("parameters can be set in debug runs only; this one would be {}", new.mode);
         return Err(RunError::NotPossible(message));
     }
@@ -257,6 +274,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         parameters_digest: params.digest(),
         parent: None,
         study,
+        lesson: new.lesson.as_ref().map(LessonEntry::stamp),
         rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
         earlier,
         fault: new.fault,

@@ -23,6 +23,7 @@ pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
         participant: manifest.participant,
         consent: manifest.consent,
         study: manifest.study,
+        lesson: manifest.lesson,
         rules: manifest.rules,
         earlier_runs: manifest.earlier,
         parent: manifest.parent,

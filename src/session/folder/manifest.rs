@@ -9,6 +9,7 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::mode::Mode;
 use crate::session::error::RunError;
+use crate::session::lesson::stamp::LessonStamp;
 use crate::session::study::rules::{ResultsShown, SessionRules};
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::session::trajectory::record::Parent;
@@ -64,6 +65,9 @@ pub struct Manifest {
     /// The study it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
+    /// The lesson it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<LessonStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
@@ -161,6 +165,7 @@ impl Manifest {
             parameters_digest: start.parameters_digest,
             parent: start.parent,
             study: start.study,
+            lesson: start.lesson,
             rules: start.rules,
             earlier: start.earlier_runs,
             fault: start.fault,

@@ -127,6 +127,7 @@ impl Session {
         let started = Instant::now();
         let tool = self.tool(name)?;
         let allowed = self.refuse_if_over(tool.spec().kind);
+        let allowed = allowed.and_then(|()| self.refuse_outside_lesson(tool.spec().id, via));
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(given, planned)| {
             let Planned { command, change, row, reply } = planned;
             let resolved = self.simulation.resolve(command);
@@ -279,6 +280,9 @@ impl Session {
                 }
                 crate::session::trajectory::record::Ended::Abandoned => {
                     format!("it was given up on day {day}")
+                }
+                crate::session::trajectory::record::Ended::Lesson => {
+                    format!("its lesson was over on day {day}")
                 }
             };
             return Err(Refusal::new(

@@ -95,7 +95,8 @@ impl Session {
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
-        let checked = self.refuse_if_over(Kind::Time).and_then(|()| {
+        let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
+        let checked = allowed.and_then(|()| {
             let text = tools::rationale(rationale)?;
             let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;
             Ok((text, Forecasts { all, filled_naively }))
@@ -108,6 +109,7 @@ impl Session {
                 return Err(refusal);
             }
         };
+        self.prepare_week_of_lesson()?;
         let calculated = self.run_calculations();
         let filed = Advance {
             rationale: text.clone(),
@@ -118,7 +120,9 @@ impl Session {
         let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
         self.history.calculated = calculated;
         self.file(text, &forecasts, &at);
-        Ok(self.run_week(progress))
+        let week = self.run_week(progress);
+        self.settle_lesson();
+        Ok(Week { ended: self.history.ended, ..week })
     }
 
     /// Simulates single days of a debug run, at most to the end of the week.
@@ -265,7 +269,7 @@ impl Session {
         }
     }
 
-    fn close_run(&mut self, ended: Ended) -> Option<String> {
+    pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.history.ended = Some(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
         self.append_done(&Record::End(end))

@@ -52,6 +52,23 @@ impl Session {
         from_day: Option<u32>,
     ) -> Result<ChangedParameter, Refusal> {
         self.refuse_parameters()?;
+        self.set_parameter_anyway(key, value, from_day)
+    }
+
+    /// Sets a parameter as the lesson of the run does, from now on.
+    ///
+    /// # Errors
+    /// As [`Session::set_parameter`].
+    pub(in crate::session) fn set_parameter_of_lesson(&mut self, key: &str, value: &Value) -> Result<(), Refusal> {
+        self.set_parameter_anyway(key, value, None).map(|_| ())
+    }
+
+    fn set_parameter_anyway(
+        &mut self,
+        key: &str,
+        value: &Value,
+        from_day: Option<u32>,
+    ) -> Result<ChangedParameter, Refusal> {
         self.refuse_if_over(Kind::Time)?;
         let (today, last) = (self.simulation.world.day, self.manifest.days);
         if let Some(day) = from_day.filter(|day| !(today + 1..=last).contains(day)) {
@@ -80,8 +97,8 @@ impl Session {
     /// # Errors
     /// The line does not follow from what is before it.
     pub(in crate::session) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
-        if self.manifest.mode != Mode::Debug {
-            return Err("it sets a parameter, which only a debug run can".to_owned());
+        if self.manifest.mode != Mode::Debug && self.manifest.lesson.is_none() {
+            return Err("it sets a parameter, which only a debug run and a lesson can".to_owned());
         }
         let today = self.simulation.world.day;
         if line.from_day.is_some_and(|day| day <= today) {

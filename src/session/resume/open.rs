@@ -109,6 +109,7 @@ impl Session {
         session.viewed = trajectory.lines.iter().filter_map(view).collect();
         session.check_memo(&trajectory, access);
         session.finish_week(&trajectory);
+        session.resume_lesson(folder, &trajectory.lines)?;
         Ok(session)
     }
 

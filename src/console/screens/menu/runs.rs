@@ -55,7 +55,7 @@ fn row(run: &RunSummary, marked: bool) -> Vec<Cell> {
     }
     let role = match run.ended {
         None => Role::Text,
-        Some(Ended::Horizon) => Role::Good,
+        Some(Ended::Horizon | Ended::Lesson) => Role::Good,
         Some(Ended::Bankruptcy) => Role::Bad,
         Some(Ended::Abandoned) => Role::Dim,
     };
@@ -309,6 +309,7 @@ pub(super) fn state(run: &RunSummary) -> String {
         Some(Ended::Horizon) => format!("finished day {}", run.day),
         Some(Ended::Bankruptcy) => format!("bankrupt day {}", run.day),
         Some(Ended::Abandoned) => format!("given up day {}", run.day),
+        Some(Ended::Lesson) => format!("lesson over day {}", run.day),
     }
 }
 

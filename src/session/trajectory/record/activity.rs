@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::answers::{Answered, Asked};
+use super::lesson::LessonNote;
 use super::presence::{Clock, Limit, Presence};
 
 /// Something a person did that changes nothing.
@@ -30,6 +31,8 @@ pub enum Activity {
     Question(Asked),
     /// It was answered, or passed over.
     Answer(Answered),
+    /// Something happened in the lesson that the run belongs to.
+    Lesson(LessonNote),
     /// The run was read from outside: by a command, without playing.
     Look(Look),
     /// Hidden state was shown.
@@ -176,6 +179,7 @@ impl Activity {
             Activity::Draft(_) => "draft",
             Activity::Question(_) => "question",
             Activity::Answer(_) => "answer",
+            Activity::Lesson(_) => "lesson",
             Activity::Look(_) => "look",
             Activity::Xray(_) => "xray",
         }
@@ -212,6 +216,7 @@ impl Activity {
             "draft" => of(line, Activity::Draft),
             "question" => of(line, Activity::Question),
             "answer" => of(line, Activity::Answer),
+            "lesson" => of(line, Activity::Lesson),
             "look" => of(line, Activity::Look),
             "xray" => of(line, Activity::Xray),
             _ => return None,
@@ -231,6 +236,7 @@ impl Activity {
             Activity::Draft(draft) => serde_json::to_value(draft),
             Activity::Question(question) => serde_json::to_value(question),
             Activity::Answer(answer) => serde_json::to_value(answer),
+            Activity::Lesson(note) => serde_json::to_value(note),
             Activity::Look(look) => serde_json::to_value(look),
             Activity::Xray(look) => serde_json::to_value(look),
         }

@@ -50,6 +50,8 @@ pub enum Via {
     Script,
     /// A branch that keeps the decisions of its run.
     Branch,
+    /// The file of a lesson: its start, and what it does by itself.
+    Lesson,
 }
 
 /// What a call does to earlier calls of its week.

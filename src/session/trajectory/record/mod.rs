@@ -6,6 +6,7 @@
 mod activity;
 mod answers;
 mod call;
+mod lesson;
 mod notes;
 mod presence;
 mod start;
@@ -21,6 +22,7 @@ pub use activity::{
 };
 pub use answers::{Answered, Asked};
 pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
+pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
 pub use presence::{
     Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,

@@ -6,6 +6,7 @@ use toml::Table;
 use super::shortest;
 use crate::session::folder::consent::Consent;
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::stamp::LessonStamp;
 use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::world::fault::Fault;
@@ -49,6 +50,9 @@ pub struct Start {
     /// The study it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
+    /// The lesson it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<LessonStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,

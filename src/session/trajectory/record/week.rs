@@ -108,6 +108,8 @@ pub enum Ended {
     Bankruptcy,
     /// Somebody gave it up.
     Abandoned,
+    /// The lesson that it was played in was over.
+    Lesson,
 }
 
 impl Ended {
@@ -117,6 +119,7 @@ impl Ended {
             Ended::Horizon => "horizon",
             Ended::Bankruptcy => "bankruptcy",
             Ended::Abandoned => "abandoned",
+            Ended::Lesson => "lesson",
         }
     }
 }

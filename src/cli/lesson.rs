@@ -1,0 +1,134 @@
+//! `novamind lesson`: the lessons, and whether they hold what they promise.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use clap::{Args, Subcommand};
+
+use super::{Context, Failure, print};
+use crate::lab::{LessonCheck, PlayResult, SEEDS, check_lesson};
+use crate::notation::compact;
+use crate::session::{Configuration, Lesson};
+
+/// Options of `lesson`.
+#[derive(Debug, Args)]
+pub struct Options {
+    #[command(subcommand)]
+    command: LessonCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum LessonCommand {
+    /// List all lessons.
+    List,
+    /// Show what a lesson asks, and what its instructor should know.
+    Show {
+        /// Name of the lesson, or path of its file.
+        lesson: String,
+    },
+    /// Play the reference plays of lessons on six seeds: the good one reaches every goal, the bad one meets its pitfall, and
+    /// the figures that texts name hold.
+    Check {
+        /// Name of a lesson, or path of its file; all lessons if none is named.
+        lesson: Option<String>,
+    },
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let configuration = &context.configuration;
+    match &options.command {
+        LessonCommand::List => list(configuration),
+        LessonCommand::Show { lesson } => print(&shown(&lesson_of(lesson, configuration)?)),
+        LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson.clone()], configuration),
+        LessonCommand::Check { lesson: None } => check(&configuration.lessons(), configuration),
+    }
+}
+
+/// A lesson by its name, or by the path of its file.
+fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
+    let path = Path::new(name);
+    let is_file = path.components().count() > 1 || name.ends_with(".toml");
+    Ok(if is_file { Lesson::of_file(path)? } else { configuration.lesson(name)? })
+}
+
+fn list(configuration: &Configuration) -> Result<(), Failure> {
+    let (mut text, mut unreadable) = (String::new(), Vec::new());
+    for name in configuration.lessons() {
+        match configuration.lesson(&name) {
+            Ok(lesson) => {
+                let plan = &lesson.plan;
+                text += &format!("{name:<24}  {:>3} min  {}\n", plan.minutes, plan.title);
+            }
+            // One wrong file does not hide the others.
+            Err(error) => unreadable.push(error.to_string()),
+        }
+    }
+    print(&text)?;
+    if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
+}
+
+/// A lesson for its instructor.
+fn shown(lesson: &Lesson) -> String {
+    let plan = &lesson.plan;
+    let mut text = format!("{}\n{} minutes. {}\n", plan.title, plan.minutes, plan.learning_goal);
+    for part in &plan.parts {
+        for step in &part.steps {
+            let weeks = crate::report::count(step.weeks, "week");
+            text += &format!("\n{} ({weeks})\n{}\n", step.title, lesson.filled(&step.text));
+            for goal in &step.goals {
+                text += &format!("  goal: {}\n", lesson.filled(&goal.text));
+            }
+            for hint in &step.hints {
+                text += &format!("  hint: {}\n", lesson.filled(hint));
+            }
+        }
+    }
+    text += &format!("\nGood play: {}\nBad play: {}\n", plan.good.text, plan.bad.text);
+    for (heading, own) in [("Debrief", &lesson.debrief), ("For the teacher", &lesson.for_teachers)] {
+        text += &format!("\n{heading}\n\n{}\n", lesson.filled(own));
+    }
+    text
+}
+
+fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure> {
+    let mut failed = 0;
+    for name in names {
+        let lesson = Arc::new(lesson_of(name, configuration)?);
+        let check = check_lesson(&lesson, configuration)?;
+        let problems = check.problems();
+        failed += usize::from(!problems.is_empty());
+        print(&checked(&lesson, &check, &problems))?;
+    }
+    match failed {
+        0 => Ok(()),
+        failed => Err(Failure::failed(format!("{failed} of {} lessons do not hold what they promise", names.len()))),
+    }
+}
+
+fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String {
+    let verdict = if problems.is_empty() { "holds" } else { "DOES NOT HOLD" };
+    let mut text = format!("{}: {verdict} on seeds {} to {}\n", lesson.name, SEEDS.start(), SEEDS.end());
+    for (name, plays) in [("good", &check.good), ("bad", &check.bad)] {
+        for (at, goal) in plays.iter().take(1).flat_map(|play| play.goals.iter().enumerate()) {
+            text += &format!("  {name:<4}  {:<44}  {}\n", goal.text, values(plays, at));
+        }
+    }
+    for figure in &check.figures {
+        let stated = &figure.stated;
+        text += &format!("  {}: {} (stated {})\n", stated.text, stated.write(figure.mean), stated.written());
+    }
+    for problem in problems {
+        text += &format!("  ! {problem}\n");
+    }
+    text
+}
+
+/// What the plays have for a goal, by seed.
+fn values(plays: &[PlayResult], at: usize) -> String {
+    let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {
+        let value = goal.value.map_or_else(|| "-".to_owned(), compact);
+        if goal.met { value } else { format!("({value})") }
+    });
+    written.collect::<Vec<String>>().join(" ")
+}

@@ -1,0 +1,49 @@
+//! A call as the file of a lesson writes it: a tool and its arguments, or rules for companies.
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use crate::tools::{ToolId, find};
+
+/// A call as the file of a lesson writes it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "String")]
+pub enum LessonCall {
+    /// A tool is called.
+    Tool(ToolId, Value),
+    /// Every company that waits is answered by rules.
+    Rules(String),
+}
+
+impl TryFrom<String> for LessonCall {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<LessonCall, String> {
+        if let Some(rules) = text.strip_prefix("rules:") {
+            return Ok(LessonCall::Rules(rules.trim().to_owned()));
+        }
+        let (name, rest) = text.trim().split_once(' ').unwrap_or((text.trim(), ""));
+        let tool = find(name).ok_or_else(|| format!("there is no tool {name}"))?;
+        let args = match rest.trim() {
+            "" => Value::Object(Map::new()),
+            rest => serde_json::from_str(rest)
+                .map_err(|error| format!("the arguments of {name} are no JSON: {error}"))?,
+        };
+        Ok(LessonCall::Tool(tool.spec().id, args))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_are_read_and_wrong_ones_say_why() {
+        let read = |text: &str| LessonCall::try_from(text.to_owned());
+        let call = read(r#"set_prices {"A": 12}"#).expect("a call");
+        assert_eq!(call, LessonCall::Tool(ToolId::SetPrices, serde_json::json!({ "A": 12 })));
+        assert_eq!(read("rules: reject rest").expect("rules"), LessonCall::Rules("reject rest".to_owned()));
+        assert!(read("set_price {}").expect_err("no tool").contains("set_price"));
+        assert!(read("set_prices {A}").expect_err("no JSON").contains("no JSON"));
+    }
+}

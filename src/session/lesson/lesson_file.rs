@@ -1,0 +1,160 @@
+//! A lesson as it was read: its plan and its texts.
+
+use std::path::Path;
+
+use super::definition::LessonPlan;
+use super::soundness::unsound;
+use crate::notation::{grouped, percent, short_dollars};
+use crate::session::error::RunError;
+use crate::session::folder::manifest::write_whole;
+use crate::session::lesson::definition::MeasuredFigure;
+use crate::session::lesson::measurement::NumberSource;
+use crate::session::why::FigureUnit;
+use crate::world::params::{ParameterError, ParameterSource};
+
+/// Name of the plan in the folder of a run.
+const PLAN_FILE: &str = "lesson.toml";
+/// Name of the texts in the folder of a run.
+const TEXTS_FILE: &str = "lesson.md";
+
+/// A lesson.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lesson {
+    /// Name of its files.
+    pub name: String,
+    /// What its file says.
+    pub plan: LessonPlan,
+    /// What a student reads at the end, in Markdown; figures stand in as `{name}`.
+    pub debrief: String,
+    /// What is for instructors, in Markdown.
+    pub for_teachers: String,
+    /// blake3 digest of plan and texts, in hexadecimal digits.
+    pub digest: String,
+    /// Whether it came with the program.
+    pub shipped: bool,
+    plan_text: String,
+    texts: String,
+}
+
+impl Lesson {
+    /// Reads a lesson from the text of its plan, and its texts.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with file, line and key.
+    pub(super) fn read(
+        name: &str,
+        plan: ParameterSource,
+        texts: String,
+        shipped: bool,
+    ) -> Result<Lesson, ParameterError> {
+        let read: LessonPlan = toml::from_str(&plan.text).map_err(|error| ParameterError {
+            source: plan.name.clone(),
+            line: error.span().map(|span| plan.text[..span.start].matches('\n').count() + 1),
+            key: String::new(),
+            problem: error.message().to_owned(),
+        })?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(plan.text.as_bytes()).update(b"\0").update(texts.as_bytes());
+        let lesson = Lesson {
+            name: name.to_owned(),
+            debrief: section(&texts, "Debrief"),
+            for_teachers: section(&texts, "For the teacher"),
+            digest: hasher.finalize().to_hex().to_string(),
+            shipped,
+            plan: read,
+            plan_text: plan.text,
+            texts,
+        };
+        match unsound(&lesson) {
+            None => Ok(lesson),
+            Some(found) => Err(ParameterError {
+                source: plan.name,
+                line: lesson.plan_text.lines().position(|line| line.contains(&found.place)).map(|at| at + 1),
+                key: found.key.to_owned(),
+                problem: found.problem,
+            }),
+        }
+    }
+
+    /// Reads a lesson from its file; its texts lie beside it.
+    ///
+    /// # Errors
+    /// A file cannot be read, or is wrong.
+    pub fn of_file(path: &Path) -> Result<Lesson, RunError> {
+        let text = std::fs::read_to_string(path).map_err(RunError::io(path))?;
+        let texts = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Lesson::read(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
+    }
+
+    /// Reads the lesson that is kept with a run.
+    ///
+    /// # Errors
+    /// A file is missing or wrong.
+    pub(super) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+        let text = |file| {
+            let path = folder.join(file);
+            std::fs::read_to_string(&path).map_err(RunError::io(&path))
+        };
+        let source = ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
+        Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
+    }
+
+    /// Keeps it with a run, so that the run can be judged wherever it goes.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub(super) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
+        write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
+        write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
+    }
+
+    /// A text with the measured figures that it names.
+    pub fn filled(&self, text: &str) -> String {
+        let written = |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
+        self.plan.measured.iter().fold(text.to_owned(), written)
+    }
+}
+
+impl MeasuredFigure {
+    /// Its value as texts write it.
+    pub fn written(&self) -> String {
+        self.write(self.value)
+    }
+
+    /// A value of this figure as texts write it.
+    pub fn write(&self, value: f64) -> String {
+        match &self.measurement.source {
+            NumberSource::Cash => short_dollars(value),
+            NumberSource::Figure(figure) => match figure.unit() {
+                FigureUnit::Dollars => short_dollars(value),
+                FigureUnit::Share | FigureUnit::FineShare => percent(value, 0),
+                _ => grouped(value, 0),
+            },
+            NumberSource::Sql(_) => grouped(value, if value.abs() < 100.0 { 2 } else { 0 }),
+        }
+    }
+}
+
+/// The text below a heading of the second level.
+fn section(texts: &str, heading: &str) -> String {
+    let mut lines = texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
+    let mut own = Vec::new();
+    while let Some(line) = lines.next_if(|line| !line.starts_with("## ")) {
+        own.push(line);
+    }
+    own.join("\n").trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_of_texts_are_found() {
+        let texts = "# A\n\n## Debrief\n\nOne.\n\nTwo.\n\n## For the teacher\nThree.\n";
+        assert_eq!(section(texts, "Debrief"), "One.\n\nTwo.");
+        assert_eq!(section(texts, "For the teacher"), "Three.");
+        assert_eq!(section(texts, "Nothing"), "");
+    }
+}

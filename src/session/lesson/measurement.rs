@@ -1,0 +1,160 @@
+//! What goals, guesses and pitfalls measure: a figure of weeks, or what a statement answers.
+
+use serde::Deserialize;
+
+use crate::database::Cell;
+use crate::session::figures::week::WeekFigures;
+use crate::session::state::Session;
+use crate::session::why::WeekFigure;
+
+/// What is measured over some weeks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Where a number comes from.
+    pub source: NumberSource,
+    /// What is made of the numbers of several weeks.
+    pub over: Over,
+}
+
+/// Where a number comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NumberSource {
+    /// Cash at the end of a week, dollars.
+    Cash,
+    /// A figure of a week.
+    Figure(WeekFigure),
+    /// A statement that answers with one number; `{from_day}` and `{to_day}` stand for the days of the weeks.
+    Sql(String),
+}
+
+/// What is made of the numbers of several weeks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Over {
+    /// The last counts.
+    #[default]
+    End,
+    /// They are added.
+    Sum,
+    /// Their mean counts.
+    Mean,
+}
+
+/// A measurement as files write it.
+#[derive(Debug, Deserialize)]
+pub(super) struct MeasurementFile {
+    pub figure: Option<String>,
+    pub sql: Option<String>,
+    pub over: Option<String>,
+}
+
+impl TryFrom<MeasurementFile> for Measurement {
+    type Error = String;
+
+    fn try_from(file: MeasurementFile) -> Result<Measurement, String> {
+        let source = match (file.figure.as_deref(), file.sql) {
+            (Some("cash"), None) => NumberSource::Cash,
+            (Some(name), None) => {
+                let figure = WeekFigure::named(name);
+                NumberSource::Figure(figure.ok_or_else(|| format!("there is no figure {name} of a week"))?)
+            }
+            (None, Some(sql)) => NumberSource::Sql(sql),
+            _ => return Err("what is measured is one of figure and sql".to_owned()),
+        };
+        let over = match file.over.as_deref() {
+            None | Some("end") => Over::End,
+            Some("sum") => Over::Sum,
+            Some("mean") => Over::Mean,
+            Some(other) => return Err(format!("over is end, sum or mean, not {other}")),
+        };
+        if over != Over::End && matches!(source, NumberSource::Sql(_)) {
+            return Err("a statement says itself over which days it counts: leave over out".to_owned());
+        }
+        Ok(Measurement { source, over })
+    }
+}
+
+impl Measurement {
+    /// Whether it asks the database.
+    pub(super) fn needs_database(&self) -> bool {
+        matches!(self.source, NumberSource::Sql(_))
+    }
+
+    /// Its value over all weeks that a student could decide of, up to the present one.
+    ///
+    /// # Errors
+    /// The statement is refused, or answers with something else than one number.
+    pub fn over_part(&self, session: &mut Session) -> Result<Option<f64>, String> {
+        let weeks = session.lesson().map_or(0, |standing| standing.own_part().start_weeks);
+        self.of(session, weeks * session.params().run.days_per_week)
+    }
+
+    /// Its value over the weeks that ended on days after `from_day`; none where there is none.
+    ///
+    /// # Errors
+    /// The statement is refused, or answers with something else than one number.
+    pub(super) fn of(&self, session: &mut Session, from_day: u32) -> Result<Option<f64>, String> {
+        let weeks: Vec<WeekFigures> =
+            session.weeks().iter().copied().filter(|week| week.day > from_day).collect();
+        let value: Box<dyn Fn(&WeekFigures) -> f64> = match &self.source {
+            NumberSource::Cash => Box::new(|week| week.cash),
+            NumberSource::Figure(figure) => Box::new(|week| figure.of(week)),
+            NumberSource::Sql(sql) => {
+                return answer(session, &filled(sql, from_day + 1, session.day()));
+            }
+        };
+        let values: Vec<f64> = weeks.iter().map(value).filter(|value| value.is_finite()).collect();
+        let sum: f64 = values.iter().sum();
+        Ok(match self.over {
+            Over::End => values.last().copied(),
+            Over::Sum => Some(sum),
+            Over::Mean => (!values.is_empty()).then(|| sum / values.len() as f64),
+        })
+    }
+}
+
+fn filled(sql: &str, from_day: u32, to_day: u32) -> String {
+    sql.replace("{from_day}", &from_day.to_string()).replace("{to_day}", &to_day.to_string())
+}
+
+fn answer(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
+    let rows = session.look_into_database(sql).map_err(|refusal| refusal.message)?;
+    match rows.rows.as_slice() {
+        [row] if row.len() == 1 => Ok(match &row[0] {
+            Cell::Integer(number) => Some(*number as f64),
+            Cell::Real(number) => Some(*number),
+            _ => None,
+        }),
+        rows => Err(format!("the statement answers with {} rows, not with one number", rows.len())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
+        let own = |text: Option<&str>| text.map(str::to_owned);
+        Measurement::try_from(MeasurementFile { figure: own(figure), sql: own(sql), over: own(over) })
+    }
+
+    #[test]
+    fn a_measurement_is_a_figure_or_a_statement() {
+        assert_eq!(read(Some("cash"), None, None).expect("cash").source, NumberSource::Cash);
+        let sum = read(Some("payments"), None, Some("sum")).expect("payments");
+        assert_eq!((sum.source, sum.over), (NumberSource::Figure(WeekFigure::Payments), Over::Sum));
+        for (figure, sql, over) in [
+            (None, None, None),
+            (Some("cash"), Some("SELECT 1"), None),
+            (Some("luck"), None, None),
+            (Some("cash"), None, Some("top")),
+            (None, Some("SELECT 1"), Some("sum")),
+        ] {
+            assert!(read(figure, sql, over).is_err(), "{figure:?} {sql:?} {over:?}");
+        }
+    }
+
+    #[test]
+    fn days_stand_in_for_their_names() {
+        assert_eq!(filled("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
+    }
+}

@@ -1,0 +1,135 @@
+//! Reference plays: a part of a lesson played by its file, in memory.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::conduct::LessonEntry;
+use super::definition::ScheduledCalls;
+use super::lesson_call::LessonCall;
+use super::lesson_file::Lesson;
+use super::standing::LessonStanding;
+use crate::session::error::RunError;
+use crate::session::folder::configuration::Configuration;
+use crate::session::folder::create::NewRun;
+use crate::session::folder::mode::Mode;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Via;
+use crate::tools::{Refusal, ToolId};
+
+/// What rules would have the companies that wait be told.
+pub type AnswersCompanies<'a> = &'a dyn Fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
+
+/// A play of a part that is done by its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartPlay<'a> {
+    /// The lesson.
+    pub lesson: &'a Arc<Lesson>,
+    /// The part, counted from 0.
+    pub part: usize,
+    /// The seed; the student's if none is named.
+    pub seed: Option<u64>,
+    /// What is called, and when.
+    pub plays: &'a [ScheduledCalls],
+    /// It stops after so many weeks of the company; at the end of the part if none are named.
+    pub weeks: Option<u32>,
+    /// Whether goals that are relative to the good play are judged.
+    pub is_judged: bool,
+}
+
+/// Plays a part in memory.
+///
+/// # Errors
+/// The part cannot begin, or a call is refused.
+pub fn play_part(
+    play: &PartPlay<'_>,
+    configuration: &Configuration,
+    answers: AnswersCompanies<'_>,
+) -> Result<Session, RunError> {
+    let part = &play.lesson.plan.parts[play.part];
+    let entry = LessonEntry { lesson: play.lesson.clone(), part: play.part, is_judged: play.is_judged };
+    let new = NewRun {
+        mode: Mode::Lesson,
+        seed: play.seed,
+        lesson: Some(entry),
+        projection: play.lesson.asks_database(),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, configuration)?;
+    let last = play.weeks.unwrap_or(part.weeks()).min(part.weeks());
+    for week in part.start_weeks..last {
+        if session.ended().is_some() {
+            break;
+        }
+        let made = play_week(&mut session, play, week, answers);
+        made.map_err(|refusal| {
+            let name = &play.lesson.name;
+            RunError::NotPossible(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
+        })?;
+    }
+    Ok(session)
+}
+
+fn play_week(
+    session: &mut Session,
+    play: &PartPlay<'_>,
+    week: u32,
+    answers: AnswersCompanies<'_>,
+) -> Result<(), Refusal> {
+    let due = play.plays.iter().filter(|own| own.are_due(play.part, week));
+    for call in due.flat_map(|own| &own.calls) {
+        match call {
+            LessonCall::Tool(tool, args) => {
+                session.call(tool, args, Via::Script)?;
+            }
+            LessonCall::Rules(rules) => {
+                for (tool, args) in answers(rules, session)? {
+                    session.call(tool, &args, Via::Script)?;
+                }
+            }
+        }
+    }
+    let asked = session.lesson_step().is_some_and(|step| session.lesson().is_some_and(|own| own.awaits_guess(step)));
+    if asked {
+        session.guess_in_lesson(1.0)?;
+    }
+    let forecasts = session.naive_forecasts();
+    session.advance("reference play", &forecasts, Via::Script, &mut |_| {}).map(|_| ())
+}
+
+impl Lesson {
+    /// Whether anything of it is measured by a statement.
+    fn asks_database(&self) -> bool {
+        let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
+        let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
+        let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
+            super::definition::GuessForm::Number { outcome, .. } => Some(outcome),
+            super::definition::GuessForm::Choice { .. } => None,
+        });
+        let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
+        let measured = self.plan.measured.iter().map(|own| &own.measurement);
+        goals.chain(guesses).chain(pitfalls).chain(measured).any(|own| own.needs_database())
+    }
+}
+
+impl Session {
+    /// What the good play has for a goal of a step on the seed of this run; none where it cannot be played.
+    pub(super) fn good_play_value(&self, standing: &LessonStanding, step: usize, goal: usize) -> Option<f64> {
+        let part = standing.own_part();
+        let own = &standing.lesson.plan.good;
+        let (begin, end) = part.weeks_of(step);
+        let play = PartPlay {
+            lesson: &standing.lesson,
+            part: standing.part,
+            seed: Some(self.manifest.seed),
+            plays: &own.plays,
+            weeks: Some(end),
+            // Its own goals would ask for the good play again.
+            is_judged: false,
+        };
+        let measurement = &part.steps.get(step)?.goals.get(goal)?.measurement;
+        let refuses = |_: &str, _: &mut Session| Err(Refusal::new("not_possible", "no rules"));
+        let mut played = play_part(&play, &Configuration::shipped(), &refuses).ok()?;
+        measurement.of(&mut played, begin * self.simulation.params.run.days_per_week).ok().flatten()
+    }
+}

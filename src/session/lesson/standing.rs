@@ -1,0 +1,132 @@
+//! Where a student stands in a lesson: what follows from its plan, the days that passed, and the lines of the record.
+
+use std::sync::Arc;
+
+use super::definition::{GuessForm, LessonPart, LessonStep};
+use super::lesson_file::Lesson;
+use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::session::trajectory::{Line, Record};
+
+/// A lesson that is played, and what happened in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LessonStanding {
+    /// The lesson.
+    pub lesson: Arc<Lesson>,
+    /// The part that this run is, counted from 0.
+    pub part: usize,
+    /// Whether goals that are relative to the good play are judged.
+    pub(in crate::session) is_judged: bool,
+    /// What happened, in order, each with its day.
+    pub notes: Vec<(u32, LessonNote)>,
+}
+
+impl LessonPart {
+    /// Weeks from the first day of the company to the end of the last step.
+    pub fn weeks(&self) -> u32 {
+        self.start_weeks + self.steps.iter().map(|step| step.weeks).sum::<u32>()
+    }
+
+    /// Weeks that have passed when a step begins, and when it is over; steps are counted from 0.
+    pub fn weeks_of(&self, step: usize) -> (u32, u32) {
+        let before: u32 = self.steps.iter().take(step).map(|own| own.weeks).sum();
+        let begin = self.start_weeks + before;
+        (begin, begin + self.steps.get(step).map_or(0, |own| own.weeks))
+    }
+
+    /// The step that holds the week after so many; none once all are over.
+    pub fn step_after(&self, weeks: u32) -> Option<usize> {
+        (0..self.steps.len()).find(|step| weeks < self.weeks_of(*step).1)
+    }
+}
+
+impl LessonStanding {
+    /// A lesson whose record says this.
+    pub(super) fn of<'a>(
+        lesson: Arc<Lesson>,
+        part: usize,
+        lines: impl IntoIterator<Item = &'a Line>,
+    ) -> LessonStanding {
+        let noted = |line: &Line| match &line.record {
+            Record::Activity(Activity::Lesson(note)) => Some((line.day, note.clone())),
+            _ => None,
+        };
+        LessonStanding { lesson, part, is_judged: true, notes: lines.into_iter().filter_map(noted).collect() }
+    }
+
+    /// The part that this run is.
+    pub fn own_part(&self) -> &LessonPart {
+        &self.lesson.plan.parts[self.part]
+    }
+
+    /// A step of it, counted from 0.
+    pub fn step(&self, step: usize) -> Option<&LessonStep> {
+        self.own_part().steps.get(step)
+    }
+
+    /// The newest try of a step.
+    pub fn tries(&self, step: usize) -> u32 {
+        let of_try = |note: &LessonNote| note.number;
+        self.last(LessonEvent::Begun, step).and_then(of_try).unwrap_or(0)
+    }
+
+    /// Whether a step has begun.
+    pub fn has_begun(&self, step: usize) -> bool {
+        self.last(LessonEvent::Begun, step).is_some()
+    }
+
+    /// What was guessed in a step; of choices the number of the one taken, counted from 1.
+    pub fn guess(&self, step: usize) -> Option<f64> {
+        self.last(LessonEvent::Guess, step)?.value
+    }
+
+    /// What came of what was to be guessed in a step, and whether the guess was right where it was a choice.
+    pub fn outcome(&self, step: usize) -> Option<&LessonNote> {
+        self.last(LessonEvent::Outcome, step)
+    }
+
+    /// Whether a step asks for a guess that is not there yet.
+    pub fn awaits_guess(&self, step: usize) -> bool {
+        self.step(step).is_some_and(|own| own.guess.is_some()) && self.guess(step).is_none()
+    }
+
+    /// How many hints of a step were asked for.
+    pub fn hints(&self, step: usize) -> usize {
+        self.notes_of(LessonEvent::Hint, step).count()
+    }
+
+    /// What the goals of a step came to, in their order; empty before it is over.
+    pub fn goals(&self, step: usize) -> Vec<&LessonNote> {
+        self.notes_of(LessonEvent::Goal, step).collect()
+    }
+
+    /// Whether every goal of every step was reached.
+    pub fn has_reached_all(&self) -> bool {
+        let wanted: usize = self.own_part().steps.iter().map(|step| step.goals.len()).sum();
+        let reached = |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
+        self.notes.iter().filter(reached).count() == wanted
+    }
+
+    /// Names of the pitfalls that were met, in their order.
+    pub fn pitfalls(&self) -> Vec<&str> {
+        let met = self.notes.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
+        met.filter_map(|(_, note)| note.name.as_deref()).collect()
+    }
+
+    /// The choices of a guess, if it is one.
+    pub fn choices(&self, step: usize) -> Option<&[String]> {
+        match &self.step(step)?.guess.as_ref()?.form {
+            GuessForm::Choice { choices, .. } => Some(choices),
+            GuessForm::Number { .. } => None,
+        }
+    }
+
+    fn notes_of(&self, event: LessonEvent, step: usize) -> impl DoubleEndedIterator<Item = &LessonNote> {
+        let number = step as u32 + 1;
+        let is_it = move |note: &&LessonNote| note.event == event && note.step == number;
+        self.notes.iter().map(|(_, note)| note).filter(is_it)
+    }
+
+    fn last(&self, event: LessonEvent, step: usize) -> Option<&LessonNote> {
+        self.notes_of(event, step).next_back()
+    }
+}

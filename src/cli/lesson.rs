@@ -26,6 +26,14 @@ enum LessonCommand {
         /// Name of the lesson, or path of its file.
         lesson: String,
     },
+    /// Play a lesson.
+    Play {
+        /// Name of the lesson, or path of its file.
+        #[arg(id = "name", value_name = "LESSON")]
+        name: String,
+        #[command(flatten)]
+        play: Box<super::play::Options>,
+    },
     /// Play the reference plays of lessons on six seeds: the good one reaches every goal, the bad one meets its pitfall, and
     /// the figures that texts name hold.
     Check {
@@ -35,18 +43,21 @@ enum LessonCommand {
 }
 
 /// Runs the command.
-pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
-    match &options.command {
+    match options.command {
+        LessonCommand::Play { name, play } => {
+            super::play::run(super::play::Options::of_lesson(name, *play), context)
+        }
         LessonCommand::List => list(configuration),
-        LessonCommand::Show { lesson } => print(&shown(&lesson_of(lesson, configuration)?)),
-        LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson.clone()], configuration),
+        LessonCommand::Show { lesson } => print(&shown(&lesson_of(&lesson, configuration)?)),
+        LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson], configuration),
         LessonCommand::Check { lesson: None } => check(&configuration.lessons(), configuration),
     }
 }
 
 /// A lesson by its name, or by the path of its file.
-fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
+pub(super) fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
     let path = Path::new(name);
     let is_file = path.components().count() > 1 || name.ends_with(".toml");
     Ok(if is_file { Lesson::of_file(path)? } else { configuration.lesson(name)? })

@@ -325,7 +325,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Keys(options)) => keys::run(&options, &context),
         Some(Command::Pictures(options)) => pictures::run(&options, &context),
         Some(Command::Scenario(options)) => scenario::run(&options, &context),
-        Some(Command::Lesson(options)) => lesson::run(&options, &context),
+        Some(Command::Lesson(options)) => lesson::run(options, &context),
         Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),

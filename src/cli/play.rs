@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::Path;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -16,7 +17,7 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Library, Mode, NewRun, RunError, Session,
+    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, LessonEntry, Library, Mode, NewRun, RunError, Session,
     Storage, Study, find_run, steady,
 };
 
@@ -24,7 +25,7 @@ use crate::session::{
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct Options {
     /// Open a run; `latest` is the newest unfinished one.
-    #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
+    #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson"])]
     run: Option<String>,
     /// Follow a run read-only while somebody else plays it.
     #[arg(long, requires = "run")]
@@ -59,6 +60,9 @@ pub struct Options {
     /// Make one mechanism of a debug run wrong, without saying which.
     #[arg(long, value_name = "N", value_parser = parse_fault)]
     planted: Option<Fault>,
+    /// Play a lesson.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["seed", "days", "cash", "scenario", "mode", "set", "planted"])]
+    lesson: Option<String>,
     /// Theme of the console.
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
@@ -104,6 +108,7 @@ impl Options {
             || self.participant.is_some()
             || !self.set.is_empty()
             || self.planted.is_some()
+            || self.lesson.is_some()
     }
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
@@ -116,8 +121,8 @@ impl Options {
             scenario: self.scenario.clone().unwrap_or(standard.scenario),
             overrides: self.set.clone(),
             fault: self.planted,
-            lesson: None,
-            mode: self.mode.unwrap_or(standard.mode),
+            lesson: self.lesson_entry(context)?,
+            mode: if self.lesson.is_some() { Mode::Lesson } else { self.mode.unwrap_or(standard.mode) },
             participant: self.participant.clone(),
             agreed: self.consent.then(|| ConsentGiven::on_paper().now()),
             study: None,
@@ -128,6 +133,19 @@ impl Options {
         };
         new.check_baseline(&context.configuration)?;
         Ok(new)
+    }
+}
+
+impl Options {
+    /// Options that begin a lesson.
+    pub fn of_lesson(name: String, options: Options) -> Options {
+        Options { lesson: Some(name), ..options }
+    }
+
+    fn lesson_entry(&self, context: &Context) -> Result<Option<LessonEntry>, Failure> {
+        let Some(name) = &self.lesson else { return Ok(None) };
+        let lesson = super::lesson::lesson_of(name, &context.configuration)?;
+        Ok(Some(LessonEntry { lesson: Arc::new(lesson), part: 0, is_judged: true }))
     }
 }
 

@@ -4,12 +4,10 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use serde_json::Value;
 
-use crate::rules::{self, AskingThread, Batch};
+use crate::rules::answers_to_companies;
 use crate::session::{
-    Configuration, Lesson, LessonEvent, MeasuredFigure, PartPlay, ReferencePlay, Refusal, RunError, Session, ToolId,
-    play_part,
+    Configuration, Lesson, LessonEvent, MeasuredFigure, PartPlay, ReferencePlay, RunError, play_part,
 };
 
 /// Seeds of the check.
@@ -125,7 +123,7 @@ fn played(
     for (part, own) in lesson.plan.parts.iter().enumerate() {
         let of_part =
             PartPlay { lesson, part, seed: Some(seed), plays: &play.plays, weeks: None, is_judged: true };
-        let session = play_part(&of_part, configuration, &answers_by_rules)?;
+        let session = play_part(&of_part, configuration, &answers_to_companies)?;
         let Some(standing) = session.lesson() else { continue };
         for (step, own) in own.steps.iter().enumerate() {
             let judged = standing.goals(step);
@@ -160,21 +158,11 @@ fn mean_of(
             weeks: stated.week,
             is_judged: false,
         };
-        let mut session = play_part(&play, configuration, &answers_by_rules)?;
+        let mut session = play_part(&play, configuration, &answers_to_companies)?;
         let problem = |problem| RunError::NotPossible(format!("measured figure {}: {problem}", stated.name));
         if let Some(value) = stated.measurement.over_part(&mut session).map_err(problem)? {
             (sum, count) = (sum + value, count + 1);
         }
     }
     Ok(sum / f64::from(count))
-}
-
-/// What rules would have the companies that wait be told.
-///
-/// # Errors
-/// The rules cannot be read, or the database cannot be asked.
-pub fn answers_by_rules(text: &str, session: &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal> {
-    let rules = rules::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
-    let (threads, market) = AskingThread::all(session)?;
-    Ok(Batch::of(rules, threads, &market).calls())
 }

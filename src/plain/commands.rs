@@ -7,6 +7,7 @@ mod difference;
 mod groups;
 mod help;
 mod inbox;
+mod lesson;
 mod memo;
 mod parameters;
 mod queries;
@@ -123,6 +124,10 @@ const COMMANDS: &[(&str, &str)] = &[
         "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
     ),
     ("diff", "diff DAY DAY             the same: what differs between the ends of two days"),
+    ("lesson", "lesson [next]            lessons: the task, its goals and what they stand at; next: the next part"),
+    ("guess", "guess ANSWER             lessons: answer the question of the step"),
+    ("hint", "hint                     lessons: the next hint of the step"),
+    ("again", "again [STEP]             lessons: try a step again from its beginning"),
     ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists what differs"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; only resume, help and quit work then"),
@@ -312,6 +317,10 @@ impl Interpreter {
             "report" => name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => self.branch(arguments),
+            "lesson" => self.lesson(arguments),
+            "guess" => self.guess(arguments),
+            "hint" => none(arguments).map(|()| self.hint()),
+            "again" => self.again(arguments),
             "branches" => none(arguments).map(|()| self.branches()),
             "xray" => self.xray(arguments),
             "lens" => self.lens(arguments),

@@ -1,7 +1,7 @@
 //! What happened in a lesson, in words.
 
-use crate::notation::compact;
-use crate::session::{LessonEvent, LessonNote};
+use crate::notation::{compact, short_dollars};
+use crate::session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
 
 /// The word of an event, as lines write it.
 pub fn word(event: LessonEvent) -> &'static str {
@@ -30,5 +30,97 @@ pub fn in_words(note: &LessonNote) -> String {
             let met = if note.met == Some(true) { "reached" } else { "missed" };
             format!("step {}: goal {number} {met} with {value}", note.step)
         }
+    }
+}
+
+/// What a student sees of a lesson, as lines of text.
+pub fn page_in_words(page: &LessonPage) -> Vec<String> {
+    let mut lines = vec![heading(page)];
+    lines.extend(page.text.lines().map(str::to_owned));
+    if let Some(question) = &page.question {
+        lines.push(String::new());
+        lines.extend(question_in_words(question));
+    }
+    if !page.goals.is_empty() {
+        lines.push(String::new());
+        lines.extend(page.goals.iter().map(goal_in_words));
+    }
+    for (at, hint) in page.hints.iter().enumerate() {
+        lines.push(format!("Hint {} of {}: {hint}", at + 1, page.hints_in_all));
+    }
+    for (day, say) in &page.pitfalls {
+        lines.push(format!("Day {day}: {say}"));
+    }
+    lines.push(String::new());
+    lines.push(next_in_words(page));
+    lines
+}
+
+/// Which step of which lesson it is.
+pub fn heading(page: &LessonPage) -> String {
+    let part = page.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
+    let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
+    format!(
+        "{}{part} · step {} of {}: {}, week {} of {}{again}",
+        page.title,
+        page.step + 1,
+        page.steps,
+        page.step_title,
+        (page.weeks.0 + 1).min(page.weeks.1),
+        page.weeks.1
+    )
+}
+
+/// The question of a step, what was guessed, and what came of it.
+pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
+    let mut lines = vec![format!("Your guess: {}", question.text)];
+    lines.extend(question.choices.iter().enumerate().map(|(at, choice)| format!("  {} {choice}", at + 1)));
+    let written = |value: f64| guess_in_words(question, value);
+    match (question.guess, question.outcome) {
+        (Some(guess), Some(outcome)) => {
+            lines.push(format!("You guessed {}; it was {}.", written(guess), written(outcome)));
+        }
+        (Some(guess), None) => lines.push(format!("You guessed {}.", written(guess))),
+        (None, _) => {}
+    }
+    lines
+}
+
+/// A guess or an outcome in words.
+fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
+    match question.choices.get((value - 1.0).max(0.0) as usize) {
+        Some(choice) => choice.clone(),
+        None if question.unit == "$" => short_dollars(value),
+        None if question.unit == "%" => format!("{value:.0}%"),
+        None if question.unit.is_empty() => compact(value),
+        None => format!("{} {}", compact(value), question.unit),
+    }
+}
+
+/// A goal and what it stands at.
+pub fn goal_in_words(goal: &GoalPage) -> String {
+    let mark = match goal.met {
+        Some(true) => "reached",
+        Some(false) => "missed",
+        None => "goal",
+    };
+    let at = match goal.value {
+        Some(value) => format!(", now {}", compact(value)),
+        None => String::new(),
+    };
+    format!("{mark:<8} {}{at}", goal.text)
+}
+
+/// What can be done next.
+fn next_in_words(page: &LessonPage) -> String {
+    let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
+    match page.next_part {
+        Some(part) => format!("This part is over. lesson next begins part {part}; again {} tries the step again.", page.step + 1),
+        None if page.is_over => {
+            format!("The lesson is over: debrief shows what came of it; again {} tries the step again.", page.step + 1)
+        }
+        None if open => "Answer with guess ANSWER; then next runs a week.".to_owned(),
+        None if page.hints.len() < page.hints_in_all => "next runs a week; hint gives a hint.".to_owned(),
+        None => "next runs a week.".to_owned(),
     }
 }

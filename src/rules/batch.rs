@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::grammar::{Action, OfferLine, Price, Rule};
 use super::thread::{AskingThread, Market, TOOLS};
 use crate::notation::{cents, dollars, grouped, percent};
-use crate::session::{CompanyNames, ToolId};
+use crate::session::{CompanyNames, Refusal, Session, ToolId};
 use crate::world::identifiers::Plan;
 
 /// What a thread would be sent.
@@ -102,6 +102,16 @@ pub struct Batch {
     pub threads: Vec<RuledThread>,
     /// Sums by rule, then those of threads that no rule means.
     pub sums: Vec<Sums>,
+}
+
+/// The calls by which rules answer every company that waits.
+///
+/// # Errors
+/// `rules_not_readable`; the database cannot be asked.
+pub fn answers_to_companies(text: &str, session: &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal> {
+    let rules = super::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
+    let (threads, market) = AskingThread::all(session)?;
+    Ok(Batch::of(rules, threads, &market).calls())
 }
 
 impl Batch {

@@ -13,7 +13,7 @@ mod offer_row;
 mod thread;
 mod usage;
 
-pub use batch::{Batch, RuledThread};
+pub use batch::{Batch, RuledThread, answers_to_companies};
 pub use filter::Filter;
 pub use grammar::{Problem, Rule, parse};
 pub use offer_row::offer_of;

@@ -202,7 +202,7 @@ impl Interpreter {
     }
 
     /// Leaves this run for another one; its name and day.
-    fn go_on_in(&mut self, other: Session) -> (String, u32) {
+    pub(super) fn go_on_in(&mut self, other: Session) -> (String, u32) {
         self.session.leave(LeavingCause::Quit);
         let _ = self.session.save();
         self.session = other;

@@ -25,9 +25,9 @@ impl Mode {
     /// The modes of new runs. There are no lessons yet; runs that were recorded as one are read and played on.
     pub const OFFERED: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
 
-    /// The mode of a branch of a run of this mode, unless another is asked for: no branch is a baseline.
+    /// The mode of a branch of a run of this mode, unless another is asked for: no branch is a baseline, and none belongs to a lesson.
     pub fn of_branch(self) -> Mode {
-        if self == Mode::Baseline { Mode::Sandbox } else { self }
+        if matches!(self, Mode::Baseline | Mode::Lesson) { Mode::Sandbox } else { self }
     }
 
     /// Word as options and manifests write it.

@@ -91,7 +91,7 @@ impl Lesson {
     ///
     /// # Errors
     /// A file is missing or wrong.
-    pub(super) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+    pub(in crate::session) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
         let text = |file| {
             let path = folder.join(file);
             std::fs::read_to_string(&path).map_err(RunError::io(&path))
@@ -104,7 +104,7 @@ impl Lesson {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub(super) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
+    pub(in crate::session) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
         write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
         write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }

@@ -4,11 +4,13 @@
 //! before they run, goals, and hints. What a student did in it are lines of kind `lesson`. A reference play makes its calls
 //! through the same doors, in memory.
 
+mod again;
 pub(in crate::session) mod conduct;
 pub(in crate::session) mod definition;
 pub(in crate::session) mod lesson_call;
 pub(in crate::session) mod lesson_file;
 pub(in crate::session) mod measurement;
+pub(in crate::session) mod page;
 pub(in crate::session) mod reference;
 pub(in crate::session) mod shelf;
 pub(in crate::session) mod soundness;

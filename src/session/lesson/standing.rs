@@ -74,6 +74,11 @@ impl LessonStanding {
         self.last(LessonEvent::Begun, step).is_some()
     }
 
+    /// The last step that has begun; the first if none has.
+    pub fn last_begun(&self) -> usize {
+        (0..self.own_part().steps.len()).rev().find(|step| self.has_begun(*step)).unwrap_or(0)
+    }
+
     /// What was guessed in a step; of choices the number of the one taken, counted from 1.
     pub fn guess(&self, step: usize) -> Option<f64> {
         self.last(LessonEvent::Guess, step)?.value

@@ -8,9 +8,10 @@ use crate::session::folder::create::new_id;
 use crate::session::folder::first_line::start_of;
 use crate::session::folder::manifest::{FORMAT, Manifest, sync_folder};
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::lesson_file::Lesson;
 use crate::session::state::Session;
 use crate::session::study::rules::SessionRules;
-use crate::session::trajectory::record::{Branch, Ended, Parent};
+use crate::session::trajectory::record::{Activity, Branch, Ended, Parent};
 use crate::session::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
 use crate::tools::Refusal;
 
@@ -71,7 +72,7 @@ pub(in crate::session) fn branch_of(
         return Err(Refusal::new("not_in_this_mode", message));
     }
     let shared = shared_lines(lines);
-    if mode != Mode::Debug && shared.iter().any(|line| matches!(line.record, Record::Override(_))) {
+    if mode != Mode::Debug && parent.lesson.is_none() && shared.iter().any(|line| matches!(line.record, Record::Override(_))) {
         let message = "parameters were set in its past, so a branch of it is a debug run";
         return Err(Refusal::new("not_in_this_mode", message));
     }
@@ -82,13 +83,44 @@ pub(in crate::session) fn branch_of(
         format: FORMAT,
         mode,
         study: None,
+        lesson: None,
         rules: Some(SessionRules::of_mode(mode)),
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
+    open_branch(folder, &manifest, &shared)
+}
+
+/// Starts a run that is another try of a lesson from a day on, and opens it.
+///
+/// # Errors
+/// `not_saved`.
+pub(in crate::session) fn branch_of_lesson(
+    folder: &Path,
+    parent: &Manifest,
+    trajectory: &Trajectory,
+    day: u32,
+) -> Result<Session, Refusal> {
+    let lines = before(trajectory, day);
+    let is_of_lesson = |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
+    let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).collect();
+    let manifest = Manifest {
+        id: new_id(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        created: now(),
+        format: FORMAT,
+        parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
+        ..parent.clone()
+    };
+    open_branch(folder, &manifest, &shared)
+}
+
+fn open_branch(folder: &Path, manifest: &Manifest, shared: &[&Line]) -> Result<Session, Refusal> {
     let own = folder.with_file_name(&manifest.id);
     let opened =
-        write_branch(&own, &manifest, &shared).and_then(|()| Session::open(&own, Access::Write, true));
+        write_branch(&own, manifest, shared)
+            .and_then(|()| keep_lesson_of(folder, &own, manifest))
+            .and_then(|()| Session::open(&own, Access::Write, true));
     if let Ok(session) = &opened {
         session.list_as("branch");
     }
@@ -111,14 +143,21 @@ fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
 
 /// Those lines that make a company what it is.
 fn shared_lines(lines: &[Line]) -> Vec<&Line> {
-    let makes = |line: &&Line| {
-        line.record.accepted_call().is_some()
-            || matches!(
-                line.record,
-                Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_)
-            )
-    };
-    lines.iter().filter(makes).collect()
+    lines.iter().filter(|line| makes_company(line)).collect()
+}
+
+fn makes_company(line: &Line) -> bool {
+    let record = &line.record;
+    record.accepted_call().is_some()
+        || matches!(record, Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_))
+}
+
+/// A try of a lesson has the lesson beside it.
+fn keep_lesson_of(folder: &Path, own: &Path, manifest: &Manifest) -> Result<(), RunError> {
+    match &manifest.lesson {
+        Some(stamp) => Lesson::of_run(folder, &stamp.name)?.keep_with(own),
+        None => Ok(()),
+    }
 }
 
 fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {

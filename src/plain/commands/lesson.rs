@@ -1,0 +1,125 @@
+//! `lesson`, `guess`, `hint` and `again`: a lesson line by line.
+
+use serde_json::{Value, json};
+
+use super::super::answers::Answer;
+use super::super::grammar::{Argument, Problem};
+use super::{Interpreter, problem};
+use crate::report::lesson::page_in_words;
+use crate::session::{LessonPage, Refusal, Session};
+
+impl Interpreter {
+    /// `lesson`, `lesson next`
+    pub(super) fn lesson(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        match arguments {
+            [] => Ok(self.lesson_page("lesson")),
+            [only] if only.key.is_none() && only.value == "next" => Ok(self.next_part()),
+            _ => Err(problem(arguments, "lesson takes nothing, or next")),
+        }
+    }
+
+    /// What the student sees, or why there is nothing to see.
+    fn lesson_page(&mut self, command: &str) -> Answer {
+        match self.session.lesson_page() {
+            Some(page) => Answer::done(command, page_in_words(&page).join("\n"), as_data(&page)),
+            None => Answer::refused(command, no_lesson()),
+        }
+    }
+
+    fn next_part(&mut self) -> Answer {
+        let next = self.session.lesson_page().map(|page| page.next_part);
+        let begun = match next {
+            None => Err(no_lesson()),
+            Some(None) => Err(Refusal::new("no_part", "there is no next part, or this one is not over")),
+            Some(Some(part)) => self.session.begin_part(part as usize - 1),
+        };
+        self.go_to_lesson("lesson", begun)
+    }
+
+    /// `guess ANSWER`
+    pub(super) fn guess(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let [only] = arguments else {
+            return Err(problem(arguments, "guess takes one answer, for instance guess 12000"));
+        };
+        let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
+        let bare = written.trim_start_matches('$').trim_end_matches('%').replace(',', "");
+        let value: f64 = bare
+            .parse()
+            .map_err(|_| problem(arguments, "a guess is a number, or the number of a choice"))?;
+        Ok(match self.session.guess_in_lesson(value) {
+            Ok(()) => self.lesson_page("guess"),
+            Err(refusal) => Answer::refused("guess", refusal),
+        })
+    }
+
+    /// `hint`
+    pub(super) fn hint(&mut self) -> Answer {
+        match self.session.hint_in_lesson() {
+            Ok(text) => Answer::done("hint", text.clone(), json!({ "hint": text })),
+            Err(refusal) => Answer::refused("hint", refusal),
+        }
+    }
+
+    /// `again [STEP]`
+    pub(super) fn again(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+        let step = match arguments {
+            [] => self.session.lesson().map_or(0, |standing| standing.last_begun()),
+            [only] if only.key.is_none() => only
+                .value
+                .as_u64()
+                .and_then(|number| (number as usize).checked_sub(1))
+                .ok_or_else(|| problem(arguments, "again takes the number of a step, for instance again 2"))?,
+            _ => return Err(problem(arguments, "again takes the number of a step, or nothing")),
+        };
+        let again = self.session.try_step_again(step);
+        Ok(self.go_to_lesson("again", again))
+    }
+
+    fn go_to_lesson(&mut self, command: &str, begun: Result<Session, Refusal>) -> Answer {
+        match begun {
+            Ok(session) => {
+                self.go_on_in(session);
+                self.lesson_page(command)
+            }
+            Err(refusal) => Answer::refused(command, refusal),
+        }
+    }
+}
+
+fn no_lesson() -> Refusal {
+    Refusal::new("not_in_a_lesson", "this run belongs to no lesson; novamind lesson list names them")
+}
+
+fn as_data(page: &LessonPage) -> Value {
+    let goals: Vec<Value> = page
+        .goals
+        .iter()
+        .map(|goal| json!({ "text": goal.text, "value": goal.value, "bound": goal.bound, "met": goal.met }))
+        .collect();
+    let question = page.question.as_ref().map(|question| {
+        json!({
+            "text": question.text,
+            "choices": question.choices,
+            "unit": question.unit,
+            "guess": question.guess,
+            "outcome": question.outcome,
+        })
+    });
+    json!({
+        "title": page.title,
+        "part": page.part,
+        "step": page.step + 1,
+        "steps": page.steps,
+        "step_title": page.step_title,
+        "text": page.text,
+        "weeks": { "passed": page.weeks.0, "of": page.weeks.1 },
+        "try": page.try_number,
+        "question": question,
+        "goals": goals,
+        "hints": page.hints,
+        "hints_in_all": page.hints_in_all,
+        "pitfalls": page.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
+        "over": page.is_over,
+        "next_part": page.next_part,
+    })
+}

@@ -1,0 +1,152 @@
+//! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
+
+use super::definition::{GoalBound, GuessForm};
+use super::standing::LessonStanding;
+use crate::session::state::Session;
+use crate::session::trajectory::record::LessonNote;
+
+/// What a student sees of a lesson.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LessonPage {
+    /// Title of the lesson.
+    pub title: String,
+    /// Title of the part, where there are several.
+    pub part: Option<String>,
+    /// The step that goes on, or the last one.
+    pub step: usize,
+    /// How many steps the part has.
+    pub steps: usize,
+    /// Title of the step.
+    pub step_title: String,
+    /// What the student reads.
+    pub text: String,
+    /// Weeks of the step that have passed, and how many it takes.
+    pub weeks: (u32, u32),
+    /// Which try of the step it is.
+    pub try_number: u32,
+    /// The question of the step.
+    pub question: Option<LessonQuestion>,
+    /// The goals of the step.
+    pub goals: Vec<GoalPage>,
+    /// Hints that were given.
+    pub hints: Vec<String>,
+    /// How many hints the step has.
+    pub hints_in_all: usize,
+    /// What was said of the pitfalls that were met, with the day.
+    pub pitfalls: Vec<(u32, String)>,
+    /// Whether the part is over.
+    pub is_over: bool,
+    /// Number of the next part, counted from 1, once this one is over and there is one.
+    pub next_part: Option<u32>,
+    /// Names of the screens that the lesson has besides the Overview; all where none are named.
+    pub screens: Option<Vec<String>>,
+}
+
+/// The question of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LessonQuestion {
+    /// The question.
+    pub text: String,
+    /// What can be chosen; empty where a number is asked for.
+    pub choices: Vec<String>,
+    /// What a number is counted in.
+    pub unit: String,
+    /// What was guessed; of choices the number of the one taken, counted from 1.
+    pub guess: Option<f64>,
+    /// What came of it, once that is known.
+    pub outcome: Option<f64>,
+}
+
+/// A goal and what it stands at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GoalPage {
+    /// Its text.
+    pub text: String,
+    /// What it stands at; none where there is nothing yet.
+    pub value: Option<f64>,
+    /// What is to be reached; none where it is relative to the good play, and not judged yet.
+    pub bound: Option<f64>,
+    /// Whether the least is wanted.
+    pub wants_least: bool,
+    /// Whether it was reached, once it is judged.
+    pub met: Option<bool>,
+}
+
+impl Session {
+    /// What a student sees of the lesson; none outside lessons.
+    pub fn lesson_page(&mut self) -> Option<LessonPage> {
+        let standing = self.lesson.as_deref()?.clone();
+        let part = standing.own_part();
+        let going = self.lesson_step();
+        let step = going.unwrap_or_else(|| standing.last_begun());
+        let own = part.steps.get(step)?;
+        let (begin, end) = part.weeks_of(step);
+        let passed = (self.day() / self.params().run.days_per_week).clamp(begin, end) - begin;
+        let plan = &standing.lesson.plan;
+        let filled = |text: &String| standing.lesson.filled(text);
+        let next_part = (standing.part as u32 + 2, plan.parts.len() as u32);
+        Some(LessonPage {
+            title: plan.title.clone(),
+            part: (plan.parts.len() > 1).then(|| part.title.clone()),
+            step,
+            steps: part.steps.len(),
+            step_title: own.title.clone(),
+            text: filled(&own.text),
+            weeks: (passed, own.weeks),
+            try_number: standing.tries(step),
+            question: question(&standing, step),
+            goals: self.goal_pages(&standing, step, begin, passed),
+            hints: own.hints.iter().take(standing.hints(step)).map(filled).collect(),
+            hints_in_all: own.hints.len(),
+            pitfalls: pitfalls(&standing),
+            is_over: going.is_none(),
+            next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
+            screens: plan.access.screens.clone(),
+        })
+    }
+
+    fn goal_pages(&mut self, standing: &LessonStanding, step: usize, begin: u32, passed: u32) -> Vec<GoalPage> {
+        let from = begin * self.params().run.days_per_week;
+        let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
+        let judged: Vec<LessonNote> = standing.goals(step).into_iter().cloned().collect();
+        let page = |(at, goal): (usize, super::definition::LessonGoal)| {
+            let note = judged.get(at);
+            let value = match note {
+                Some(note) => note.value,
+                None if passed == 0 => None,
+                None => goal.measurement.of(self, from).ok().flatten(),
+            };
+            let bound = match goal.bound {
+                GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
+                GoalBound::OfGoodPlay(_) => note.and_then(|note| note.bound),
+            };
+            GoalPage {
+                text: standing.lesson.filled(&goal.text),
+                value,
+                bound,
+                wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
+                met: note.and_then(|note| note.met),
+            }
+        };
+        goals.into_iter().enumerate().map(page).collect()
+    }
+}
+
+fn question(standing: &LessonStanding, step: usize) -> Option<LessonQuestion> {
+    let guess = standing.step(step)?.guess.as_ref()?;
+    let (choices, unit) = match &guess.form {
+        GuessForm::Number { unit, .. } => (Vec::new(), unit.clone()),
+        GuessForm::Choice { choices, .. } => (choices.clone(), String::new()),
+    };
+    let outcome = standing.outcome(step).and_then(|note| note.value);
+    Some(LessonQuestion { text: guess.question.clone(), choices, unit, guess: standing.guess(step), outcome })
+}
+
+fn pitfalls(standing: &LessonStanding) -> Vec<(u32, String)> {
+    let said = |(day, note): &(u32, LessonNote)| {
+        let name = note.name.as_deref()?;
+        let pitfall = standing.lesson.plan.pitfalls.iter().find(|own| own.name == name)?;
+        Some((*day, standing.lesson.filled(&pitfall.say)))
+    };
+    standing.notes.iter().filter_map(said).collect()
+}

@@ -129,7 +129,7 @@ impl MeasuredFigure {
             NumberSource::Figure(figure) => match figure.unit() {
                 FigureUnit::Dollars => short_dollars(value),
                 FigureUnit::Share | FigureUnit::FineShare => percent(value, 0),
-                _ => grouped(value, 0),
+                FigureUnit::Count | FigureUnit::Level => grouped(value, 0),
             },
             NumberSource::Sql(_) => grouped(value, if value.abs() < 100.0 { 2 } else { 0 }),
         }

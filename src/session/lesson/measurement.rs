@@ -54,8 +54,11 @@ impl TryFrom<MeasurementFile> for Measurement {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
-                let figure = WeekFigure::named(name);
-                NumberSource::Figure(figure.ok_or_else(|| format!("there is no figure {name} of a week"))?)
+                let figure = WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name} of a week"))?;
+                if figure.of_week(&WeekFigures::default()).is_none() {
+                    return Err(format!("{name} is not measured in lessons; use sql"));
+                }
+                NumberSource::Figure(figure)
             }
             (None, Some(sql)) => NumberSource::Sql(sql),
             _ => return Err("what is measured is one of figure and sql".to_owned()),
@@ -97,7 +100,7 @@ impl Measurement {
             session.weeks().iter().copied().filter(|week| week.day > from_day).collect();
         let value: Box<dyn Fn(&WeekFigures) -> f64> = match &self.source {
             NumberSource::Cash => Box::new(|week| week.cash),
-            NumberSource::Figure(figure) => Box::new(|week| figure.of(week)),
+            NumberSource::Figure(figure) => Box::new(|week| figure.of_week(week).unwrap_or(f64::NAN)),
             NumberSource::Sql(sql) => {
                 return answer(session, &filled(sql, from_day + 1, session.day()));
             }

@@ -1,6 +1,7 @@
 //! Figures of a week whose change can be explained.
 
 use super::simulated_week::{GroupOfWeek, SimulatedWeek};
+use crate::session::figures::week::WeekFigures;
 use crate::world::events::Category;
 
 /// What a figure is counted in.
@@ -140,6 +141,16 @@ impl WeekFigure {
     /// Whether no player may see it whose run goes on, outside of debug runs.
     pub fn is_hidden(self) -> bool {
         matches!(self, WeekFigure::Satisfaction | WeekFigure::Reputation)
+    }
+
+    /// Its value in a week whose groups are not told; none for a figure that is made of groups or hidden. Not a number where
+    /// it has no value.
+    pub(in crate::session) fn of_week(self, figures: &WeekFigures) -> Option<f64> {
+        use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
+        if matches!(self, Leads | Churn | Satisfaction | Reputation) {
+            return None;
+        }
+        Some(self.of_company()?(&SimulatedWeek::without_groups(*figures)))
     }
 
     /// Whether it is one of the company.

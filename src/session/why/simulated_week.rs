@@ -54,6 +54,11 @@ impl SimulatedWeek {
         }
     }
 
+    /// A week of which only the figures of the company are known.
+    pub(super) fn without_groups(figures: WeekFigures) -> SimulatedWeek {
+        SimulatedWeek { figures, satisfaction: f64::NAN, groups: ByGroup::default() }
+    }
+
     /// All customers who came.
     pub(super) fn leads(&self) -> f64 {
         Group::all().map(|group| f64::from(self.groups[group].measured.leads)).sum()

@@ -17,7 +17,7 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
     }
     lines.push(equation(own));
     lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
-    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.4}"));
+    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.6}"));
     let by_group: Vec<String> = by_group.collect();
     lines.push(match by_group.is_empty() {
         true => "  word of mouth from nobody: there are no subscribers".to_owned(),

@@ -88,7 +88,7 @@ pub fn drift_in_words(own: &DriftState) -> Vec<String> {
         format!("expectations and budgets on the evening of day {day}"),
         match next_day {
             Some(next) => {
-                format!("  next drift on day {next}: it adds {step:+.4} to everyone's expectations")
+                format!("  next drift on day {next}: it adds {step:+.6} to everyone's expectations")
             }
             None => "  no drift is to come before the end of the run".to_owned(),
         },
@@ -103,10 +103,10 @@ pub fn drift_in_words(own: &DriftState) -> Vec<String> {
             format!("{everyone:+.4}"),
             format!("{:+.4}", own.own),
             format!("{:+.4}", own.expectation.quality),
-            format!("{:+.2}", own.expectation.c_max),
+            format!("{:+.4}", own.expectation.c_max),
         ];
         if next_day.is_some() {
-            row.extend([format!("{:+.4}", own.step.quality + step), format!("{:+.2}", own.step.c_max)]);
+            row.extend([format!("{:+.6}", own.step.quality + step), format!("{:+.4}", own.step.c_max)]);
         }
         row
     };

@@ -106,7 +106,7 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     let mut failed = 0;
     for name in names {
         let lesson = Arc::new(lesson_of(name, configuration)?);
-        let check = check_lesson(&lesson, configuration)?;
+        let check = check_lesson(&lesson)?;
         let problems = check.problems();
         failed += usize::from(!problems.is_empty());
         print(&checked(&lesson, &check, &problems))?;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::rules::answers_to_companies;
 use crate::session::{
-    Configuration, Lesson, LessonEvent, MeasuredFigure, PartPlay, ReferencePlay, RunError, play_part,
+    Lesson, MeasuredFigure, PartPlay, ReferencePlay, RunError, Session, play_part, play_part_telling,
 };
 
 /// Seeds of the check.
@@ -93,42 +93,45 @@ impl LessonCheck {
 ///
 /// # Errors
 /// A part cannot begin, or a play is refused.
-pub fn check_lesson(lesson: &Arc<Lesson>, configuration: &Configuration) -> Result<LessonCheck, RunError> {
+pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
+    Ok(LessonCheck { figures: measured(lesson)?, ..check_plays(lesson, &SEEDS.collect::<Vec<u64>>())? })
+}
+
+/// Checks the reference plays of a lesson on some seeds, and no measured figure.
+///
+/// # Errors
+/// The same.
+pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, RunError> {
     let plays = |play: &ReferencePlay| -> Result<Vec<PlayResult>, RunError> {
-        let seeds: Vec<u64> = SEEDS.collect();
-        seeds.into_par_iter().map(|seed| played(lesson, play, seed, configuration)).collect()
+        seeds.par_iter().map(|seed| played(lesson, play, *seed)).collect()
     };
-    let figures: Result<Vec<FigureResult>, RunError> = lesson
-        .plan
-        .measured
-        .par_iter()
-        .map(|stated| Ok(FigureResult { mean: mean_of(lesson, stated, configuration)?, stated: stated.clone() }))
-        .collect();
     Ok(LessonCheck {
         good: plays(&lesson.plan.good)?,
         bad: plays(&lesson.plan.bad)?,
-        figures: figures?,
+        figures: Vec::new(),
         pitfall: lesson.plan.bad.pitfall.clone().unwrap_or_default(),
     })
 }
 
 /// All parts of a lesson as a reference play has them, on a seed.
-fn played(
-    lesson: &Arc<Lesson>,
-    play: &ReferencePlay,
-    seed: u64,
-    configuration: &Configuration,
-) -> Result<PlayResult, RunError> {
+fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
     for (part, own) in lesson.plan.parts.iter().enumerate() {
-        let of_part =
-            PartPlay { lesson, part, seed: Some(seed), plays: &play.plays, weeks: None, is_judged: true };
-        let session = play_part(&of_part, configuration, &answers_to_companies)?;
+        let of_part = PartPlay {
+            lesson,
+            part,
+            seed: Some(seed),
+            plays: &play.plays,
+            weeks: None,
+            is_judged: true,
+            asks_database: lesson.asks_database(),
+        };
+        let session = play_part(&of_part, &answers_to_companies)?;
         let Some(standing) = session.lesson() else { continue };
         for (step, own) in own.steps.iter().enumerate() {
             let judged = standing.goals(step);
             result.goals.extend(own.goals.iter().enumerate().map(|(at, goal)| {
-                let note = judged.get(at).filter(|note| note.event == LessonEvent::Goal);
+                let note = judged.get(at);
                 GoalResult {
                     text: goal.text.clone(),
                     value: note.and_then(|note| note.value),
@@ -142,27 +145,63 @@ fn played(
     Ok(result)
 }
 
-/// Mean of a measured figure over the seeds.
-fn mean_of(
-    lesson: &Arc<Lesson>,
-    stated: &MeasuredFigure,
-    configuration: &Configuration,
-) -> Result<f64, RunError> {
-    let (mut sum, mut count) = (0.0, 0_u32);
-    for seed in SEEDS {
-        let play = PartPlay {
-            lesson,
-            part: stated.part,
-            seed: Some(seed),
-            plays: &stated.plays,
-            weeks: stated.week,
-            is_judged: false,
+/// The measured figures of a lesson; those of one play are measured in the same runs.
+fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
+    let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
+    for figure in &lesson.plan.measured {
+        let is_same = |of: &&mut Vec<&MeasuredFigure>| {
+            of.first().is_some_and(|first| first.part == figure.part && first.plays == figure.plays)
         };
-        let mut session = play_part(&play, configuration, &answers_to_companies)?;
-        let problem = |problem| RunError::NotPossible(format!("measured figure {}: {problem}", stated.name));
-        if let Some(value) = stated.measurement.over_part(&mut session).map_err(problem)? {
-            (sum, count) = (sum + value, count + 1);
+        match plays.iter_mut().find(is_same) {
+            Some(of) => of.push(figure),
+            None => plays.push(vec![figure]),
         }
     }
-    Ok(sum / f64::from(count))
+    let runs: Vec<(usize, u64)> = (0..plays.len()).flat_map(|play| SEEDS.map(move |seed| (play, seed))).collect();
+    let of_runs: Result<Vec<Vec<Option<f64>>>, RunError> =
+        runs.par_iter().map(|(play, seed)| values_of(lesson, &plays[*play], *seed)).collect();
+    let of_runs = of_runs?;
+    let mean = |figure: &MeasuredFigure| {
+        let of_play = runs.iter().zip(&of_runs).filter_map(|((play, _), values)| {
+            let at = plays[*play].iter().position(|own| std::ptr::eq(*own, figure))?;
+            values[at]
+        });
+        let values: Vec<f64> = of_play.collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    Ok(lesson.plan.measured.iter().map(|own| FigureResult { stated: own.clone(), mean: mean(own) }).collect())
+}
+
+/// Figures that are measured in one play, on a seed.
+fn values_of(
+    lesson: &Arc<Lesson>,
+    figures: &[&MeasuredFigure],
+    seed: u64,
+) -> Result<Vec<Option<f64>>, RunError> {
+    let Some(first) = figures.first() else { return Ok(Vec::new()) };
+    let last = lesson.plan.parts[first.part].weeks();
+    let play = PartPlay {
+        lesson,
+        part: first.part,
+        seed: Some(seed),
+        plays: &first.plays,
+        weeks: figures.iter().map(|own| own.week.unwrap_or(last)).max(),
+        is_judged: false,
+        asks_database: figures.iter().any(|own| own.measurement.needs_database()),
+    };
+    let mut values = vec![None; figures.len()];
+    let mut measure = |session: &mut Session, week: u32| {
+        // A company that is bankrupt stays as it is.
+        let stays = session.ended().is_some();
+        for (value, own) in values.iter_mut().zip(figures) {
+            let wanted = own.week.unwrap_or(last);
+            if wanted == week || (stays && wanted > week) {
+                let problem = |problem| RunError::NotPossible(format!("measured figure {}: {problem}", own.name));
+                *value = own.measurement.over_part(session).map_err(problem)?;
+            }
+        }
+        Ok(())
+    };
+    play_part_telling(&play, &answers_to_companies, &mut measure)?;
+    Ok(values)
 }

@@ -75,7 +75,7 @@ pub use lesson::lesson_call::LessonCall;
 pub use lesson::lesson_file::Lesson;
 pub use lesson::measurement::{Measurement, NumberSource, Over};
 pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
-pub use lesson::reference::{AnswersCompanies, PartPlay, play_part};
+pub use lesson::reference::{AnswersCompanies, PartPlay, play_part, play_part_telling};
 pub use lesson::stamp::LessonStamp;
 pub use lesson::standing::LessonStanding;
 pub use play::act::Preview;

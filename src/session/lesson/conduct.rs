@@ -25,7 +25,7 @@ pub struct LessonEntry {
     pub lesson: Arc<Lesson>,
     /// The part, counted from 0.
     pub part: usize,
-    /// Whether goals that are relative to the good play are judged.
+    /// Whether goals and pitfalls are looked at; not in plays that others are held against.
     pub is_judged: bool,
 }
 
@@ -218,12 +218,16 @@ impl Session {
         let Some(step) = part.step_after(weeks.saturating_sub(1)).filter(|step| standing.has_begun(*step)) else {
             return;
         };
-        self.note_pitfalls(&standing, step);
+        if standing.is_judged {
+            self.note_pitfalls(&standing, step);
+        }
         let (begin, end) = part.weeks_of(step);
-        if (weeks < end && !ended) || !standing.goals(step).is_empty() || standing.outcome(step).is_some() {
+        if (weeks < end && !ended) || standing.has_begun(step + 1) || !standing.goals(step).is_empty() || standing.outcome(step).is_some() {
             return;
         }
-        self.judge(&standing, step, begin);
+        if standing.is_judged {
+            self.judge(&standing, step, begin);
+        }
         if self.history.ended.is_some() {
             return;
         }
@@ -288,7 +292,6 @@ impl Session {
             let (bound, most) = match goal.bound {
                 GoalBound::AtLeast(bound) => (Some(bound), false),
                 GoalBound::AtMost(bound) => (Some(bound), true),
-                GoalBound::OfGoodPlay(_) if !standing.is_judged => (None, false),
                 GoalBound::OfGoodPlay(share) => {
                     let good = self.good_play_value(standing, step, number);
                     (good.map(|good| share * good), false)

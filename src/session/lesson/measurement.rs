@@ -78,7 +78,7 @@ impl TryFrom<MeasurementFile> for Measurement {
 
 impl Measurement {
     /// Whether it asks the database.
-    pub(super) fn needs_database(&self) -> bool {
+    pub fn needs_database(&self) -> bool {
         matches!(self.source, NumberSource::Sql(_))
     }
 

@@ -33,18 +33,28 @@ pub struct PartPlay<'a> {
     pub plays: &'a [ScheduledCalls],
     /// It stops after so many weeks of the company; at the end of the part if none are named.
     pub weeks: Option<u32>,
-    /// Whether goals that are relative to the good play are judged.
+    /// Whether goals and pitfalls are looked at.
     pub is_judged: bool,
+    /// Whether it needs a database.
+    pub asks_database: bool,
 }
 
 /// Plays a part in memory.
 ///
 /// # Errors
 /// The part cannot begin, or a call is refused.
-pub fn play_part(
+pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies<'_>) -> Result<Session, RunError> {
+    play_part_telling(play, answers, &mut |_, _| Ok(()))
+}
+
+/// The same, and tells after each week how many weeks of the company have passed.
+///
+/// # Errors
+/// The same, and those of the one who is told.
+pub fn play_part_telling(
     play: &PartPlay<'_>,
-    configuration: &Configuration,
     answers: AnswersCompanies<'_>,
+    tell: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
     let part = &play.lesson.plan.parts[play.part];
     let entry = LessonEntry { lesson: play.lesson.clone(), part: play.part, is_judged: play.is_judged };
@@ -52,10 +62,10 @@ pub fn play_part(
         mode: Mode::Lesson,
         seed: play.seed,
         lesson: Some(entry),
-        projection: play.lesson.asks_database(),
+        projection: play.asks_database,
         ..NewRun::default()
     };
-    let mut session = Session::create(new, configuration)?;
+    let mut session = Session::create(new, &Configuration::shipped())?;
     let last = play.weeks.unwrap_or(part.weeks()).min(part.weeks());
     for week in part.start_weeks..last {
         if session.ended().is_some() {
@@ -66,6 +76,7 @@ pub fn play_part(
             let name = &play.lesson.name;
             RunError::NotPossible(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
         })?;
+        tell(&mut session, week + 1)?;
     }
     Ok(session)
 }
@@ -98,8 +109,8 @@ fn play_week(
 }
 
 impl Lesson {
-    /// Whether anything of it is measured by a statement.
-    fn asks_database(&self) -> bool {
+    /// Whether a goal, a guess or a pitfall is measured by a statement.
+    pub fn asks_database(&self) -> bool {
         let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
         let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
         let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
@@ -107,8 +118,7 @@ impl Lesson {
             super::definition::GuessForm::Choice { .. } => None,
         });
         let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
-        let measured = self.plan.measured.iter().map(|own| &own.measurement);
-        goals.chain(guesses).chain(pitfalls).chain(measured).any(|own| own.needs_database())
+        goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
     }
 }
 
@@ -126,10 +136,11 @@ impl Session {
             weeks: Some(end),
             // Its own goals would ask for the good play again.
             is_judged: false,
+            asks_database: part.steps.get(step)?.goals.get(goal)?.measurement.needs_database(),
         };
         let measurement = &part.steps.get(step)?.goals.get(goal)?.measurement;
         let refuses = |_: &str, _: &mut Session| Err(Refusal::new("not_possible", "no rules"));
-        let mut played = play_part(&play, &Configuration::shipped(), &refuses).ok()?;
+        let mut played = play_part(&play, &refuses).ok()?;
         measurement.of(&mut played, begin * self.simulation.params.run.days_per_week).ok().flatten()
     }
 }

@@ -14,7 +14,7 @@ pub struct LessonStanding {
     pub lesson: Arc<Lesson>,
     /// The part that this run is, counted from 0.
     pub part: usize,
-    /// Whether goals that are relative to the good play are judged.
+    /// Whether goals and pitfalls are looked at.
     pub(in crate::session) is_judged: bool,
     /// What happened, in order, each with its day.
     pub notes: Vec<(u32, LessonNote)>,

@@ -10,7 +10,8 @@ use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
     Access, Cell, Library, Line, Record, Refusal, Rows, RunError, SealKey, Session, Trajectory,
-    connection_to_file, find_run_to_read, rebuild_database, rows_as_json,
+    connection_to_file, find_run_to_read, manifest_of, may_look_inside, rebuild_database, rows_as_json,
+    with_the_way_to_hidden_tables,
 };
 
 /// Options of `query`.
@@ -137,7 +138,17 @@ fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Fai
         let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
         let answer = connection.ask(sql, limits);
         if !connection.found_damage() {
-            return answer.map(Some).map_err(|error| Refusal::from(error).into());
+            let may_look = || {
+                let ended = trajectory.end().and_then(|line| match &line.record {
+                    Record::End(end) => Some(end.reason),
+                    _ => None,
+                });
+                manifest_of(folder).is_ok_and(|manifest| may_look_inside(&manifest, ended))
+            };
+            return answer.map(Some).map_err(|error| match Refusal::from(error) {
+                refusal if may_look() => with_the_way_to_hidden_tables(refusal).into(),
+                refusal => refusal.into(),
+            });
         }
     }
     Ok(None)

@@ -89,6 +89,8 @@ pub struct Outcome {
     pub ended: RunEnd,
     /// Hash of the last state.
     pub state_hash: String,
+    /// Whether demand surges can come.
+    pub surges: bool,
     /// Name of the kept run.
     pub run: Option<String>,
     /// Time it took, seconds.
@@ -109,6 +111,13 @@ impl fmt::Display for Outcome {
         match self.ended {
             RunEnd::Bankruptcy => write!(formatter, "bankrupt on day {}", self.day),
             RunEnd::Horizon | RunEnd::Until => formatter.write_str("alive"),
+        }?;
+        if !self.surges {
+            formatter.write_str("  no demand surges")?;
+        }
+        match &self.run {
+            Some(run) => write!(formatter, "  kept as run {run}"),
+            None => Ok(()),
         }
     }
 }
@@ -291,6 +300,7 @@ fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Out
             None => RunEnd::Until,
         },
         state_hash: session.state_hash().0,
+        surges: session.params().demand_surge.probability > 0.0,
         run: session.folder().map(|_| session.manifest().id.clone()),
         seconds: took.as_secs_f64(),
     }

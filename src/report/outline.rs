@@ -6,7 +6,7 @@ use super::measures::{ENOUGH_LEADS, Measures, PLANNING_WORDS};
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
-use super::words::{count, money, whole};
+use super::words::{cash_change_in_words, count, money, whole};
 use crate::notation::{capital, grouped, percent, signed_dollars};
 use crate::session::Ended;
 
@@ -59,7 +59,7 @@ fn result(story: &Story) -> Vec<Fact> {
         (_, None) => Fact::new(
             "Cash",
             money(seen.cash),
-            format!("{} over the last week", signed_dollars(seen.cash_change)),
+            cash_change_in_words(seen),
         ),
     };
     let lived = story.measures.survival_days;

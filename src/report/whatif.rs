@@ -4,7 +4,8 @@ use super::why::{signed, written};
 use super::words::count;
 use crate::notation::printable;
 use crate::session::{
-    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin, ToolId,
+    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin,
+    ParameterDifference, ToolId,
 };
 
 /// The name of the run as it was.
@@ -44,9 +45,11 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
 pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
     let differing = alike(&branch.differences).into_iter().map(|calls| difference(&calls, week));
-    let refused = branch.refused.iter().map(|(day, tool, refusal)| {
-        format!("week {}: {} is refused: {}", week(*day), tool.name(), refusal.message)
-    });
+    let parameters = branch.parameters.iter().map(|own| parameter(own, week(own.day)));
+    let refused = branch
+        .refused
+        .iter()
+        .map(|(day, what, refusal)| format!("week {}: {what} is refused: {}", week(*day), refusal.message));
     let possible = branch.possible.iter().map(|(line, day, tool)| {
         format!(
             "week {}: {} of line {line} was refused and would be accepted; it is not made",
@@ -54,7 +57,22 @@ pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
             tool.name()
         )
     });
-    differing.chain(refused).chain(possible).map(|line| printable(&line).into_owned()).collect()
+    parameters
+        .chain(differing)
+        .chain(refused)
+        .chain(possible)
+        .map(|line| printable(&line).into_owned())
+        .collect()
+}
+
+/// A parameter that is set otherwise.
+fn parameter(own: &ParameterDifference, week: u32) -> String {
+    let ParameterDifference { key, was, is, .. } = own;
+    match (was, is) {
+        (_, Some(is)) => format!("week {week}: {key} is set to {is}"),
+        (Some(was), None) => format!("week {week}: {key} is not set to {was}"),
+        (None, None) => format!("week {week}: {key}"),
+    }
 }
 
 /// Calls that differ in the same way, together.

@@ -1,12 +1,22 @@
 //! How reports write figures and name what they are.
 
-use crate::notation::{compact, grouped};
-use crate::session::Category;
+use crate::notation::{compact, grouped, signed_dollars};
+use crate::session::{Category, Observation};
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {
     let sign = if value < -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped(value.abs(), 0))
+}
+
+/// How cash moved last, and over which days: `+$1,234 over the last week`.
+pub fn cash_change_in_words(seen: &Observation) -> String {
+    let span = match seen.cash_change_days {
+        0 | 7 => "week".to_owned(),
+        1 => "day".to_owned(),
+        days => count(days, "day"),
+    };
+    format!("{} over the last {span}", signed_dollars(seen.cash_change))
 }
 
 /// Name of a category of the ledger, as every screen and report writes it.

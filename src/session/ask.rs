@@ -49,7 +49,8 @@ impl Session {
         let limits = limits(self);
         let answer = self
             .connection()
-            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from));
+            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
+            .map_err(|refusal| if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal });
         self.note_query(sql, answer.as_ref(), started.elapsed(), via);
         answer
     }
@@ -228,6 +229,18 @@ pub fn cell_as_json(cell: &Cell) -> Value {
         Cell::Real(number) => json_number(*number),
         Cell::Text(text) => text.clone().into(),
     }
+}
+
+/// What is said of a hidden table where the run may be looked into: it is there, and asked otherwise. Elsewhere nobody learns
+/// that there is such a table.
+pub fn with_the_way_to_hidden_tables(refusal: Refusal) -> Refusal {
+    let named = refusal.message.strip_prefix("there is no table hidden.");
+    let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };
+    let message = format!(
+        "hidden.{name} is not among the visible tables; hidden tables are asked with novamind query --xray, and with \
+         xray sql in plain mode"
+    );
+    Refusal { message, ..refusal }
 }
 
 #[cfg(test)]

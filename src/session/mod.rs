@@ -24,7 +24,7 @@ mod witness;
 mod xray;
 
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
-pub use ask::{connection_to_file, rows_as_json};
+pub use ask::{connection_to_file, rows_as_json, with_the_way_to_hidden_tables};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use counterfactual::last_read::{LastRead, OfRecord};
 pub use counterfactual::one_each::unless_stopped;
@@ -123,8 +123,8 @@ pub use trajectory::{
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FORMS,
-    FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference, WhatIf, branches_of,
-    sets_amounts,
+    FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference, ParameterDifference,
+    WhatIf, branches_of, sets_amounts,
 };
 pub use why::{
     Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,
@@ -139,7 +139,7 @@ pub use xray::breakpoint::grammar::ConditionProblem;
 pub use xray::breakpoint::list::Breakpoint;
 pub use xray::breakpoint::look_back::LookBack;
 pub use xray::breakpoint::measure::{Measure, MeasureKind, Quantity};
-pub use xray::breakpoint::run::{Hit, RunUntil};
+pub use xray::breakpoint::run::{Hit, RunUntil, TrueBefore};
 pub use xray::company_day::{CompanyDay, JudgedPlan};
 pub use xray::company_lens::CompanyLens;
 pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
@@ -150,7 +150,7 @@ pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
 pub use xray::lens::Lens;
 pub use xray::next_draws::{Draw, DrawnPart, Follows, KeyedDraws, MOST_DRAWS, NextDraws};
-pub use xray::permission::REFUSED_LOOK;
+pub use xray::permission::{REFUSED_LOOK, may_look_inside};
 pub use xray::quality_equation::{PlanDelivered, QualityEquation, SharedGains};
 pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, ReputationEquation, Spillover};
 pub use xray::rival_state::{NextRivalMove, RivalState};

@@ -1,5 +1,6 @@
 //! A day, as a list: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
+pub mod room;
 pub mod watch;
 
 use watch::{DayWatch, Unwatched};
@@ -289,6 +290,8 @@ pub fn closing_figures(world: &World) -> DayFigures {
     }
 }
 
+#[cfg(test)]
+mod extreme_tests;
 #[cfg(test)]
 mod wiring_tests;
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use novamind::session::{
-    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Storage, Trajectory,
+    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Storage, Trajectory, Via,
     list_runs, rescue, verify,
 };
 use novamind::world::identifiers::Group;
@@ -413,4 +413,36 @@ fn whatever_is_set_the_days_go_on() {
         }
     }
     assert!(accepted > 150 && refused > 50, "{accepted} {refused}");
+}
+
+#[test]
+fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(runs.path(), Mode::Debug);
+    open_shop(&mut session);
+    weeks(&mut session, 3);
+    let today = session.day();
+    let crowded = json!([1e6, 1e6, 1e6, 1e6, 1e6, 1e6, 1e6]);
+    let usual = session.set_parameter("calendar.weekly", &crowded, None).expect("in its range").old;
+    let refused = session.run_until_breakpoint(7, &mut |_| {}).expect_err("no room");
+    assert_eq!((refused.code, session.day()), ("too_many_leads", today));
+    let forecasts = session.naive_forecasts();
+    let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
+    assert_eq!((refused.code, session.day()), ("too_many_leads", today));
+
+    // From a later day on: the days before it run, in days and in weeks.
+    session.set_parameter("calendar.weekly", &usual, None).expect("as it was");
+    session.set_parameter("calendar.weekly", &crowded, Some(today + 3)).expect("it waits");
+    let forecasts = session.naive_forecasts();
+    let week = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("two days");
+    assert_eq!(session.day(), today + 2);
+    assert!(week.remark.is_some_and(|text| text.contains("1,000,000 leads")), "it is told why");
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let mut again = Session::open(&folder, Access::Write, true).expect("it replays");
+    assert_eq!(again.day(), today + 2);
+    again.set_parameter("calendar.weekly", &usual, Some(today + 3)).expect("a later line counts");
+    assert_eq!(again.run_until_breakpoint(7, &mut |_| {}).expect("days").week.figures.day, today + 9);
+    drop(again);
+    verify(&folder).expect("the record holds");
 }

@@ -17,6 +17,7 @@ use crate::report::needs::{Need, Place, needs};
 use crate::report::peak::PeakProjection;
 use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
+use crate::report::words::cash_change_in_words;
 use crate::session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools;
 use crate::tools::describe::{self, ToolDocument, document};
@@ -39,7 +40,7 @@ impl Interpreter {
         let capacity = next
             .map_or(String::new(), |(next, units)| format!("{}\n", next.in_words(u32::from(tier), units)));
         let text = format!(
-            "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({} over the last week) · runway {runway}\n\
+            "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({}) · runway {runway}\n\
              subscribers {} · seats {}\n{capacity}waiting threads {} · running research {} · changes this week {}",
             seen.run,
             seed_in_words(seen.seed),
@@ -48,7 +49,7 @@ impl Interpreter {
             seen.last_day,
             seen.week,
             dollars(seen.cash),
-            signed_dollars(seen.cash_change),
+            cash_change_in_words(&seen),
             grouped(f64::from(seen.subscribers), 0),
             grouped(f64::from(seen.seats), 0),
             seen.waiting.len(),

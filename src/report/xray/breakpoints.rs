@@ -2,7 +2,7 @@
 
 use crate::notation::point_number;
 use crate::report::words::count;
-use crate::session::{Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil};
+use crate::session::{Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore};
 
 /// Decimals that a figure is written with at least.
 const DECIMALS: usize = 4;
@@ -28,14 +28,28 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
         )
     };
     let from = run.from + 1;
-    match (run.hits.is_empty(), breakpoints) {
-        (false, _) => run.hits.iter().map(hit).collect(),
-        (true, 0) => vec![format!("ran day {from} to {day}; no breakpoint is set")],
-        (true, 1) => vec![format!("ran day {from} to {day}; the breakpoint did not become true")],
-        (true, count) => {
-            vec![format!("ran day {from} to {day}; none of the {count} breakpoints became true")]
+    let ran = format!("ran day {from} to {day}");
+    let mut lines = match (run.hits.is_empty(), breakpoints) {
+        (false, _) => return run.hits.iter().map(hit).collect(),
+        (true, 0) => vec![format!("{ran}; no breakpoint is set")],
+        (true, 1) if run.true_before.is_empty() => vec![format!("{ran}; the breakpoint was true on none of them")],
+        (true, count) if run.true_before.is_empty() => {
+            vec![format!("{ran}; none of the {count} breakpoints was true on any of them")]
         }
-    }
+        (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
+        (true, count) => vec![format!("{ran}; none of the {count} breakpoints became true")],
+    };
+    lines.extend(run.true_before.iter().map(|own| true_before(own, day)));
+    lines
+}
+
+fn true_before(own: &TrueBefore, day: u32) -> String {
+    let Hit { breakpoint, judged } = &own.hit;
+    let until = match own.until == day {
+        true => "true on all these days and the day before them".to_owned(),
+        false => format!("true until day {}", own.until),
+    };
+    format!("breakpoint {} was {until}: {}", breakpoint.number, sides(&breakpoint.condition, judged))
 }
 
 /// Since when a condition is what it is today, with both sides of the change.

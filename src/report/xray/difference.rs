@@ -8,13 +8,20 @@ use crate::session::{CustomerDifference, Difference, RunDifference};
 
 /// Figures that are told; a state has some hundred.
 const FIGURES_TOLD: usize = 40;
+/// Parameters that are told.
+const PARAMETERS_TOLD: usize = 20;
 
 /// What differs between two ends of days that are called so.
 pub fn difference_in_words(found: &Difference, names: (&str, &str)) -> Vec<String> {
     if found.is_none() {
         return vec!["nothing differs".to_owned()];
     }
-    let mut lines = vec![format!("differs: {}", found.parts.join(", "))];
+    let mut lines = parameters(found, names);
+    if found.parts.is_empty() {
+        lines.push("parts of the state are alike".to_owned());
+        return lines;
+    }
+    lines.push(format!("differs: {}", found.parts.join(", ")));
     if !found.alike.is_empty() {
         lines.push(format!("alike: {}", found.alike.join(", ")));
     }
@@ -49,7 +56,10 @@ pub fn difference_as_data(found: &Difference) -> Value {
             "columns": columns.collect::<Vec<Value>>(),
         })
     };
+    let parameter =
+        |(key, own, other): &(String, Value, Value)| json!({ "parameter": key, "values": [own, other] });
     json!({
+        "parameters": found.parameters.iter().map(parameter).collect::<Vec<Value>>(),
         "differs": found.parts,
         "alike": found.alike,
         "figures": found.figures.iter().map(figure).collect::<Vec<Value>>(),
@@ -57,6 +67,19 @@ pub fn difference_as_data(found: &Difference) -> Value {
         "only": [found.only.0, found.only.1],
         "first_customers": found.first_customers.iter().map(customer).collect::<Vec<Value>>(),
     })
+}
+
+/// Parameters that differ.
+fn parameters(found: &Difference, names: (&str, &str)) -> Vec<String> {
+    let row = |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];
+    let rows: Vec<Vec<String>> = found.parameters.iter().take(PARAMETERS_TOLD).map(row).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = table(&["parameter", names.0, names.1], &rows);
+    let more = found.parameters.len().saturating_sub(PARAMETERS_TOLD);
+    lines.extend((more > 0).then(|| format!("  and {more} more parameters")));
+    lines
 }
 
 fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
@@ -114,6 +137,7 @@ mod tests {
             |customer, subscribes, columns| CustomerDifference { customer, group, subscribes, columns };
         let found = Difference {
             days: (3, 3),
+            parameters: vec![("operations.base_outage_prob".to_owned(), json!(0.01), json!(0.5))],
             parts: vec!["money", "customers"],
             alike: vec!["market"],
             figures: vec![("cash".to_owned(), 1_000.0, 999.5)],
@@ -127,6 +151,8 @@ mod tests {
         assert_eq!(
             difference_in_words(&found, ("one", "other")),
             [
+                "  parameter                    one   other",
+                "  operations.base_outage_prob  0.01  0.5",
                 "differs: money, customers",
                 "alike: market",
                 "  figure  one    other",

@@ -5,13 +5,14 @@ use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
-use super::edits::{AddedCall, Edits, Redrawn};
+use super::edits::{AddedCall, AddedSetting, Edits, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
 use crate::session::figures::groups::{self, GroupWeek};
 use crate::session::figures::week::WeekFigures;
 use crate::session::play::facts_chain::StateHash;
-use crate::session::play::overrides::{ParameterChange, Taken};
+use crate::session::play::overrides::{ParameterChange, Taken, value_of_json};
+use crate::session::play::parameters::not_allowed;
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
 use crate::session::xray::measured_group::MeasuredGroup;
@@ -39,8 +40,12 @@ pub(in crate::session) struct BranchOutcome {
     pub states: Vec<(u32, StateHash)>,
     /// Calls that are refused now.
     pub refused: Vec<RefusedCall>,
+    /// Parameters that do not fit the others: day, key, why. They are not set.
+    pub unfit: Vec<(u32, String, Refusal)>,
     /// Calls that the run refused and that would be accepted now; they are not made.
     pub possible: Vec<PastCall>,
+    /// Why its days ended before their last one, if a day had no room for its leads.
+    pub crowded: Option<Refusal>,
     /// Where it ended.
     pub end: KeptState,
 }
@@ -132,7 +137,10 @@ struct OpenBranch<'a> {
     groups: Vec<ByGroup<MeasuredGroup>>,
     states: Vec<(u32, StateHash)>,
     refused: Vec<RefusedCall>,
+    unfit: Vec<(u32, String, Refusal)>,
     possible: Vec<PastCall>,
+    /// Why no further day is simulated.
+    crowded: Option<Refusal>,
 }
 
 impl<'a> OpenBranch<'a> {
@@ -161,7 +169,9 @@ impl<'a> OpenBranch<'a> {
             groups: Vec::new(),
             states: Vec::new(),
             refused: Vec::new(),
+            unfit: Vec::new(),
             possible: Vec::new(),
+            crowded: None,
         };
         branch.open();
         branch
@@ -185,7 +195,7 @@ impl<'a> OpenBranch<'a> {
                 Move::Parameter(setting) if setting.day >= until => break,
                 Move::Call(call) => self.make(call),
                 Move::Parameter(setting) if self.edits.dropped.contains(&setting.change.seq) => {}
-                Move::Parameter(setting) => self.set(&setting.change),
+                Move::Parameter(setting) => self.set(setting.change.clone()),
                 Move::Days(days) => {
                     self.run_days(days.until.min(until), progress)?;
                     if days.until > until {
@@ -253,17 +263,33 @@ impl<'a> OpenBranch<'a> {
     }
 
     /// Sets a parameter. A value that does not fit the parameters of the branch is left out, as one that waits is.
-    fn set(&mut self, change: &ParameterChange) {
-        let taken = self.simulation.overrides.take(&self.simulation.params, change.clone());
-        if let Ok(Taken { now, .. }) = taken {
-            self.simulation.use_params(now, self.projection.entries());
-            self.numbers = OnceLock::new();
+    fn set(&mut self, change: ParameterChange) {
+        let (day, key) = (self.simulation.world.day, change.key.clone());
+        match self.simulation.overrides.take(&self.simulation.params, change) {
+            Ok(Taken { now, .. }) => {
+                self.simulation.use_params(now, self.projection.entries());
+                self.numbers = OnceLock::new();
+            }
+            Err(unfit) => self.unfit.push((day, key, not_allowed(unfit))),
         }
+    }
+
+    /// Sets a parameter that the run did not set.
+    fn set_anew(&mut self, setting: &AddedSetting) {
+        let value = value_of_json(&setting.value);
+        // No line sets it, so its number is none of a line.
+        let change =
+            |value| ParameterChange { seq: u64::MAX, key: setting.key.clone(), value, from_day: None };
+        value.map(change).into_iter().for_each(|change| self.set(change));
     }
 
     fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
         while self.simulation.world.day < until && !self.is_over() {
             self.follow_edits();
+            self.crowded = self.simulation.refuse_crowded_day().err();
+            if self.crowded.is_some() {
+                break;
+            }
             self.run_day();
             if progress(self.simulation.world.day).is_break() {
                 return None;
@@ -273,12 +299,13 @@ impl<'a> OpenBranch<'a> {
     }
 
     fn is_over(&self) -> bool {
-        self.simulation.world.is_over(&self.simulation.params)
+        self.crowded.is_some() || self.simulation.world.is_over(&self.simulation.params)
     }
 
-    /// Does what the edits say of this day: calls are made, capacity follows usage, luck is redrawn.
+    /// Does what the edits say of this day: parameters are set, calls are made, capacity follows usage, luck is redrawn.
     fn follow_edits(&mut self) {
         let (day, edits) = (self.simulation.world.day, self.edits);
+        edits.set.iter().filter(|setting| setting.day == day).for_each(|setting| self.set_anew(setting));
         for AddedCall { tool, args, .. } in edits.added.iter().filter(|added| added.day == day) {
             self.try_new(*tool, args);
         }
@@ -340,10 +367,21 @@ impl<'a> OpenBranch<'a> {
     }
 
     fn outcome(self) -> BranchOutcome {
-        let OpenBranch { simulation, weeks, days, satisfaction, groups, states, refused, possible, .. } =
-            self;
+        let OpenBranch {
+            simulation,
+            weeks,
+            days,
+            satisfaction,
+            groups,
+            states,
+            refused,
+            unfit,
+            possible,
+            crowded,
+            ..
+        } = self;
         let end = KeptState::of(simulation);
-        BranchOutcome { weeks, days, satisfaction, groups, states, refused, possible, end }
+        BranchOutcome { weeks, days, satisfaction, groups, states, refused, unfit, possible, crowded, end }
     }
 }
 
@@ -354,7 +392,7 @@ pub(in crate::session) fn covering_tier(units: u64, params: &Params) -> u8 {
     covering.or(tiers.last()).map_or(0, |tier| tier.tier)
 }
 
-/// Mean satisfaction of the individual subscribers, from 0 to 1; not a number without any.
+/// Mean satisfaction of the individual subscribers, on its scale; not a number without any.
 fn mean_satisfaction(world: &World) -> f64 {
     let individuals = || world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
     let count: usize = individuals().map(|(_, block)| block.len()).sum();

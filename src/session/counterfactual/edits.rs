@@ -20,6 +20,8 @@ pub(in crate::session) struct Edits {
     pub changed: BTreeMap<u64, Value>,
     /// Calls that are made besides.
     pub added: Vec<AddedCall>,
+    /// Parameters that are set besides, before those calls.
+    pub set: Vec<AddedSetting>,
     /// At the start of every week the smallest capacity tier is set that covers the busiest day of the week before.
     pub capacity_follows_usage: bool,
     /// Inputs of the world that are held.
@@ -48,4 +50,15 @@ pub(in crate::session) struct AddedCall {
     pub tool: ToolId,
     /// Arguments.
     pub args: Value,
+}
+
+/// A parameter that was not set in the run.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::session) struct AddedSetting {
+    /// Decision day; it is set after the calls of the run on that day.
+    pub day: u32,
+    /// Full key.
+    pub key: String,
+    /// Its value from then on.
+    pub value: Value,
 }

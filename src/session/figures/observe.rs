@@ -41,8 +41,11 @@ pub struct Observation {
     pub cash: f64,
     /// Cash on day 0, before anything was bought, dollars.
     pub starting_cash: f64,
-    /// Change of cash over the last week, from the end of the week before to its own, dollars; 0 before the first.
+    /// Change of cash over the last week, from the end of the week before to its own, or over the days of a week that was begun,
+    /// dollars; 0 before the first.
     pub cash_change: f64,
+    /// Days of that change: fewer than a week where days were run one by one, or the run ended within one.
+    pub cash_change_days: u32,
     /// What was booked since the end of the last week: purchases, and days of a week that was begun.
     pub booked_since: Booked,
     /// How money goes on.
@@ -129,7 +132,8 @@ impl Session {
             week: week_of(self.simulation.world.day),
             cash: self.simulation.world.finance.cash,
             starting_cash: self.manifest.cash,
-            cash_change: self.cash_change(),
+            cash_change: self.latest_days().map_or(0.0, |week| week.cash_change),
+            cash_change_days: self.latest_days().map_or(0, |week| week.days_run),
             booked_since: self.booked_since(),
             pace,
             committed_before: self.daily_cost(&self.history.this_week.settings),
@@ -245,13 +249,10 @@ impl Session {
             .count() as u32
     }
 
-    fn cash_change(&self) -> f64 {
-        let week = if self.history.running_week.days_run > 0 {
-            Some(&self.history.running_week)
-        } else {
-            self.history.weeks.last()
-        };
-        week.map_or(0.0, |week| week.cash_change)
+    /// The days of a week that was begun, or else the last week.
+    fn latest_days(&self) -> Option<&WeekFigures> {
+        let running = &self.history.running_week;
+        if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }
     }
 
     fn runway_weeks(&self, pace: &Pace) -> Option<f64> {

@@ -20,6 +20,7 @@ use crate::session::play::recorder::Recorder;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::RunSurroundings;
 use crate::session::resume::sealing::SealKey;
+use crate::session::resume::unnamed::remove_leftovers;
 use crate::session::state::Session;
 use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
@@ -122,6 +123,7 @@ impl Session {
         match &new.storage {
             Storage::Memory => Session::begin(manifest, params, None, &new),
             Storage::Runs(runs) => {
+                remove_leftovers(runs);
                 let folder = runs.join(&manifest.id);
                 std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
                 let begun = Session::begin(manifest, params, Some(folder.clone()), &new);

@@ -72,6 +72,14 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     Ok(runs.join(PARTICIPANTS).join(label))
 }
 
+/// What the folder of a branch begins with that is not whole yet.
+pub(in crate::session) const UNNAMED: &str = ".branch-";
+
+/// Whether a folder holds a branch that is not whole yet, or what is left of one: it is no run.
+pub(in crate::session) fn is_unnamed(folder: &Path) -> bool {
+    folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNNAMED))
+}
+
 /// Whose runs a folder holds, if it is a participant's own.
 pub(in crate::session) fn label_of(runs: &Path) -> Option<String> {
     let own = runs.parent()?.file_name()? == PARTICIPANTS;
@@ -102,6 +110,7 @@ pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
     let mut list: Vec<RunSummary> = entries
         .flatten()
         .map(|entry| entry.path())
+        .filter(|folder| !is_unnamed(folder))
         .filter(|folder| folder.join("run.toml").exists() || folder.join("trajectory.jsonl").exists())
         .map(|folder| summarise(&folder))
         .collect();
@@ -276,7 +285,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
 pub(in crate::session) fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let manifests = entries.filter_map(|entry| Derived::of(&entry.path()).ok());
+    let whole = entries.map(|entry| entry.path()).filter(|folder| !is_unnamed(folder));
+    let manifests = whole.filter_map(|folder| Derived::of(&folder).ok());
     let manifests = manifests.map(|derived| derived.manifest);
     let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
     let mut earlier: Vec<EarlierRun> = own

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::act::not_saved;
 use super::facts_chain::StateHash;
+use super::simulation::Simulation;
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
 use crate::session::figures::journal::JournalEntry;
@@ -41,7 +42,7 @@ pub struct Week {
     pub notices: Vec<(u32, String)>,
     /// How the run ended with it, if it did.
     pub ended: Option<Ended>,
-    /// What the person should know: the disk did not take the closing line.
+    /// What the person should know: the disk did not take the closing line, or the next day has no room for its leads.
     pub remark: Option<String>,
 }
 
@@ -71,7 +72,7 @@ impl Session {
     /// bankruptcy.
     ///
     /// # Errors
-    /// `run_over`, the refusals of next_week, `not_saved`. Nothing has happened then.
+    /// `run_over`, `too_many_leads`, the refusals of next_week, `not_saved`. Nothing has happened then.
     pub fn advance(
         &mut self,
         rationale: &str,
@@ -96,7 +97,8 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
-        let checked = allowed.and_then(|()| {
+        let possible = allowed.and_then(|()| self.simulation.refuse_crowded_day());
+        let checked = possible.and_then(|()| {
             let text = tools::rationale(rationale)?;
             let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;
             Ok((text, Forecasts { all, filled_naively }))
@@ -128,7 +130,7 @@ impl Session {
     /// Simulates single days of a debug run, at most to the end of the week.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `not_saved`.
+    /// `not_in_this_mode`, `run_over`, `too_many_leads`, `not_saved`.
     pub fn step(&mut self, days: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
         self.step_while(&|_| true, days, progress)
     }
@@ -144,9 +146,11 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
         self.refuse_to_step()?;
+        self.simulation.refuse_crowded_day()?;
         let from = self.simulation.world.day;
         let until = self.next_decision_day().min(from.saturating_add(days.max(1)));
-        let state = self.run_days_while(goes_on, until, progress);
+        let goes_on = |day: &Simulation| (day.world.day == from || goes_on(day.world.day)) && has_room(day);
+        let state = self.run_days_while(&goes_on, until, progress);
         Ok(self.close_days(Record::Step, from, state))
     }
 
@@ -177,11 +181,14 @@ impl Session {
         week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
     }
 
-    /// Runs the week of an `advance` line and closes it.
+    /// Runs the week of an `advance` line and closes it. A week in which a day has no room for its leads ends before that day, as
+    /// single days do.
     pub(in crate::session) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
-        let from = self.simulation.world.day;
-        let state = self.run_days(self.next_decision_day(), progress);
-        self.close_days(Record::Week, from, state)
+        let (from, until) = (self.simulation.world.day, self.next_decision_day());
+        let state = self.run_days_while(&has_room, until, progress);
+        let Simulation { world, params, .. } = &self.simulation;
+        let is_whole = world.day == until || world.is_over(params);
+        self.close_days(if is_whole { Record::Week } else { Record::Step }, from, state)
     }
 
     /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
@@ -193,21 +200,19 @@ impl Session {
         self.run_days_while(&|_| true, until, progress)
     }
 
-    /// As [`Session::run_days`], as long as it is to go on after a day.
+    /// As [`Session::run_days`], as long as it is to go on.
     fn run_days_while(
         &mut self,
-        goes_on: &dyn Fn(u32) -> bool,
+        goes_on: &dyn Fn(&Simulation) -> bool,
         until: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> StateHash {
-        let from = self.simulation.world.day;
         let week_end = self.next_decision_day();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
         let params = self.simulation.params.clone();
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
-            let day = self.simulation.world.day;
-            if day > from && !goes_on(day) {
+            if !goes_on(&self.simulation) {
                 break;
             }
             let figures =
@@ -246,9 +251,11 @@ impl Session {
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
-        let week = self.report(problem.map(|problem| {
+        let unsaved = problem.map(|problem| {
             format!("{problem}; the days are simulated again when the run is opened, with the same result")
-        }));
+        });
+        let crowded = self.simulation.refuse_crowded_day().err().filter(|_| self.history.ended.is_none());
+        let week = self.report(unsaved.or(crowded.map(|refusal| refusal.message)));
         // The database is written once everything is told: until then the processors are needed here.
         if snapshot {
             self.keep_snapshot(|| state.0, false);
@@ -329,4 +336,9 @@ impl Session {
         let rows = || forecasts.all.iter().map(row).collect();
         self.projection.entries().write(|| Entry { forecasts: rows(), ..Entry::default() });
     }
+}
+
+/// Whether the next day has room for those who come.
+fn has_room(simulation: &Simulation) -> bool {
+    simulation.refuse_crowded_day().is_ok()
 }

@@ -108,7 +108,13 @@ impl Overrides {
         Ok(taken)
     }
 
-    /// The parameters with which a day is simulated, if they change with it.
+    /// The parameters with which a day will be simulated, if they change with it.
+    pub(in crate::session) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
+        let count = self.waiting.partition_point(|own| own.day <= day);
+        self.waiting[..count].last().map(|own| &own.params)
+    }
+
+    /// The parameters with which a day is simulated, if they change with it: they wait no longer.
     pub(in crate::session) fn due(&mut self, day: u32) -> Option<Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting.drain(..count).next_back().map(|own| own.params)

@@ -181,11 +181,11 @@ fn in_words(error: &ParameterError) -> String {
     format!("{}: {}", error.key, error.problem)
 }
 
-fn unknown(error: ParameterError) -> Refusal {
+pub(in crate::session) fn unknown(error: ParameterError) -> Refusal {
     Refusal::at(error.key, "parameter_unknown", error.problem)
 }
 
-fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
+pub(in crate::session) fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
     let message = match day {
         None => error.problem,
         Some(day) => format!("{}, from day {day} on, for which it was set before", error.problem),

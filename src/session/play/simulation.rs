@@ -14,9 +14,12 @@ use super::feed::Feed;
 use super::overrides::Overrides;
 use super::projection::Entries;
 use crate::database::Entry;
+use crate::notation::grouped;
 use crate::session::folder::manifest::Manifest;
+use crate::tools::Refusal;
 use crate::voice::CompanyNames;
 use crate::world::command::{Command, ResolvedCommand};
+use crate::world::day::room::{MOST_CUSTOMERS, MOST_LEADS_A_DAY, NoRoom, room_for_next_day};
 use crate::world::day::watch::{DayWatch, Unwatched};
 use crate::world::day::{DayTrace, step_day_watched};
 use crate::world::events::{DayFigures, Facts};
@@ -134,6 +137,30 @@ impl Simulation {
             entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
             self.params = params;
         }
+    }
+
+    /// Refuses the next day where more people would come than memory holds.
+    ///
+    /// # Errors
+    /// `too_many_leads`.
+    pub(in crate::session) fn refuse_crowded_day(&self) -> Result<(), Refusal> {
+        let (world, day) = (&self.world, self.world.day + 1);
+        let due = self.overrides.due_on(day).unwrap_or(&self.params);
+        let told = match room_for_next_day(world, due, &self.streams) {
+            None => return Ok(()),
+            Some(NoRoom::Leads) => format!("more than {} leads", grouped(f64::from(MOST_LEADS_A_DAY), 0)),
+            Some(NoRoom::Customers) => {
+                let most = grouped(f64::from(MOST_CUSTOMERS), 0);
+                format!("so many leads that there could be more than {most} customers")
+            }
+            Some(NoRoom::Numbers) => "more leads than there are numbers for customers".to_owned(),
+        };
+        let message = format!(
+            "day {day} would bring {told}, and memory does not hold them; nothing after day {} is simulated. Spend less on \
+             advertising, or take back the parameter that multiplies leads",
+            world.day
+        );
+        Err(Refusal::new("too_many_leads", message))
     }
 
     /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,

@@ -1,18 +1,16 @@
 //! Branches: a new run that shares the past of another up to a decision day.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::open::Access;
+use super::unnamed::UnnamedBranch;
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
-use crate::session::folder::first_line::start_of;
-use crate::session::folder::manifest::{FORMAT, Manifest, sync_folder};
+use crate::session::folder::manifest::{FORMAT, Manifest};
 use crate::session::folder::mode::Mode;
-use crate::session::lesson::lesson_file::Lesson;
 use crate::session::state::Session;
 use crate::session::study::rules::SessionRules;
-use crate::session::trajectory::record::{Activity, Branch, Ended, Parent};
-use crate::session::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter, now};
+use crate::session::trajectory::record::{Activity, Ended, Parent};
+use crate::session::trajectory::{Line, Record, Trajectory, now};
 use crate::tools::Refusal;
 
 impl Session {
@@ -22,6 +20,14 @@ impl Session {
     /// `not_in_this_mode` for an unfinished baseline run, a baseline branch, and one that is no debug run though parameters
     /// were set in its past or a fault was planted; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
+        self.begin_branch(week, mode)?.name().map_err(not_saved)
+    }
+
+    /// Begins a branch that has no name yet.
+    ///
+    /// # Errors
+    /// As for [`Session::branch`].
+    pub(in crate::session) fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
@@ -39,7 +45,7 @@ impl Session {
             ));
         }
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
-        branch_of(folder, &self.manifest, before(&trajectory, day), mode)
+        unnamed_branch(folder, &self.manifest, before(&trajectory, day), mode)
     }
 
     /// Whether the run was given up.
@@ -48,7 +54,7 @@ impl Session {
     }
 }
 
-fn not_saved(error: RunError) -> Refusal {
+pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }
 
@@ -64,6 +70,15 @@ pub(in crate::session) fn branch_of(
     lines: &[Line],
     mode: Mode,
 ) -> Result<Session, Refusal> {
+    unnamed_branch(folder, parent, lines, mode)?.name().map_err(not_saved)
+}
+
+fn unnamed_branch(
+    folder: &Path,
+    parent: &Manifest,
+    lines: &[Line],
+    mode: Mode,
+) -> Result<UnnamedBranch, Refusal> {
     if mode == Mode::Baseline {
         return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
     }
@@ -88,7 +103,7 @@ pub(in crate::session) fn branch_of(
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    open_branch(folder, &manifest, &shared)
+    UnnamedBranch::write(folder, &manifest, &shared).map_err(not_saved)
 }
 
 /// Starts a run that is another try of a lesson from a day on, and opens it.
@@ -102,7 +117,8 @@ pub(in crate::session) fn branch_of_lesson(
     day: u32,
 ) -> Result<Session, Refusal> {
     let lines = before(trajectory, day);
-    let is_of_lesson = |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
+    let is_of_lesson =
+        |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
     let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).collect();
     let manifest = Manifest {
         id: new_id(),
@@ -112,23 +128,7 @@ pub(in crate::session) fn branch_of_lesson(
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    open_branch(folder, &manifest, &shared)
-}
-
-fn open_branch(folder: &Path, manifest: &Manifest, shared: &[&Line]) -> Result<Session, Refusal> {
-    let own = folder.with_file_name(&manifest.id);
-    let opened =
-        write_branch(&own, manifest, shared)
-            .and_then(|()| keep_lesson_of(folder, &own, manifest))
-            .and_then(|()| Session::open(&own, Access::Write, true));
-    if let Ok(session) = &opened {
-        session.list_as("branch");
-    }
-    opened.map_err(|error| {
-        // A branch that cannot be opened is nobody's run.
-        let _ = std::fs::remove_dir_all(&own);
-        not_saved(error)
-    })
+    UnnamedBranch::write(folder, &manifest, &shared).and_then(UnnamedBranch::name).map_err(not_saved)
 }
 
 /// The lines before a decision day: those of the days before it and the week that ends on it, without what was
@@ -150,26 +150,4 @@ fn makes_company(line: &Line) -> bool {
     let record = &line.record;
     record.accepted_call().is_some()
         || matches!(record, Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_))
-}
-
-/// A try of a lesson has the lesson beside it.
-fn keep_lesson_of(folder: &Path, own: &Path, manifest: &Manifest) -> Result<(), RunError> {
-    match &manifest.lesson {
-        Some(stamp) => Lesson::of_run(folder, &stamp.name)?.keep_with(own),
-        None => Ok(()),
-    }
-}
-
-fn write_branch(folder: &PathBuf, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
-    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    manifest.write(folder)?;
-    let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
-    writer.append(0, &start_of(manifest), Durability::Written)?;
-    for line in shared {
-        writer.copy(line)?;
-    }
-    let day = shared.last().map_or(0, |line| line.day);
-    let branch = Branch { from: manifest.parent.clone() };
-    writer.append(day, &Record::Branch(branch), Durability::Synced)?;
-    sync_folder(folder)
 }

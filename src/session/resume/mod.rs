@@ -9,6 +9,7 @@ pub(in crate::session) mod rebuild;
 pub(in crate::session) mod rescue;
 pub(in crate::session) mod sealing;
 pub(in crate::session) mod snapshot;
+pub(in crate::session) mod unnamed;
 pub(in crate::session) mod verify;
 
 #[cfg(test)]

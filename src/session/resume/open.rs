@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::integrity::Integrity;
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
+use super::unnamed::remove_leftovers;
 use crate::database::{Entry, Location, Position, Projector};
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
@@ -62,7 +63,11 @@ impl Session {
         let manifest = derived.manifest.clone();
         let params = Arc::new(manifest.params()?);
         let (lock, restored) = match access {
-            Access::Write => (Some(lock_run(folder, &manifest.id)?), derived.restore(folder)?),
+            Access::Write => {
+                let lock = lock_run(folder, &manifest.id)?;
+                folder.parent().into_iter().for_each(remove_leftovers);
+                (Some(lock), derived.restore(folder)?)
+            }
             Access::Read => (
                 None,
                 derived.problem.map(|problem| format!("{problem}: the first line of the trajectory counts.")),

@@ -9,6 +9,7 @@ use crate::session::counterfactual::branch::covering_tier;
 use crate::session::counterfactual::edits::Edits;
 use crate::session::counterfactual::script::{Move, PastCall, moves};
 use crate::session::folder::mode::Mode;
+use crate::session::resume::branch::not_saved;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
 use crate::session::trajectory::{Line, Record, Trajectory};
@@ -28,7 +29,8 @@ impl Session {
     /// and can end it early, at the end of a week.
     ///
     /// # Errors
-    /// As for [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. Then there is no branch.
+    /// As for [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. Then there is no branch, as there is none
+    /// when the program ends on the way.
     pub fn branch_with_decisions(
         &self,
         week: u32,
@@ -45,14 +47,24 @@ impl Session {
         let later: Vec<Line> = trajectory.lines.iter().filter(follows).cloned().collect();
         // What is wrong with an edit is said before there is a branch.
         let known = moves(&later);
-        let check = Opening { day: from, settings: self.settings(), days_per_week: days };
+        let (settings, params) = (self.settings(), self.params());
+        let check = Opening { day: from, settings, params, mode };
         edits(decided, &check, &known, until.max(from + 1))?;
-        let session = self.branch(week, mode)?;
-        let opening = Opening { day: from, settings: session.settings(), days_per_week: days };
+        let branch = self.begin_branch(week, mode)?;
+        let session = branch.open().map_err(not_saved)?;
+        let (settings, params) = (session.settings(), session.params());
+        let opening = Opening { day: from, settings, params, mode };
         let edits = edits(decided, &opening, &known, until.max(from + 1))?;
         let mut adopted = Adopted { session, refused: Vec::new() };
         adopted.play(&later, &edits, progress);
-        Ok(adopted)
+        let Adopted { mut session, refused } = adopted;
+        // What the disk did not take is no decision of the branch: without it there is no branch.
+        if let Some((_, _, refusal)) = refused.iter().find(|(_, _, refusal)| refusal.code == "not_saved") {
+            return Err(refusal.clone());
+        }
+        session.save().map_err(not_saved)?;
+        drop(session);
+        Ok(Adopted { session: branch.name().map_err(not_saved)?, refused })
     }
 }
 
@@ -61,6 +73,8 @@ impl Adopted {
         for (tool, args) in &edits.opening {
             self.call(*tool, args);
         }
+        // The days of a week that was begun by its own line are told by the line that closes it.
+        let mut is_begun = false;
         for line in later {
             if self.session.ended().is_some() {
                 return;
@@ -69,6 +83,7 @@ impl Adopted {
             match (&line.record, moves(std::slice::from_ref(line)).first()) {
                 (_, Some(Move::Call(call))) => self.make(call, edits),
                 (Record::Advance(filed), _) => {
+                    is_begun = true;
                     self.decide_besides(edits);
                     let forecasts = self.session.naive_forecasts();
                     if let Err(refusal) =
@@ -80,6 +95,16 @@ impl Adopted {
                         return;
                     }
                 }
+                (Record::Step(days), _) if !std::mem::take(&mut is_begun) && days.days_run > 0 => {
+                    self.decide_besides(edits);
+                    if let Err(refusal) = self.session.step(days.days_run, &mut |_| {}) {
+                        return self.refuse("step", refusal);
+                    }
+                    if progress(self.session.day()).is_break() {
+                        return;
+                    }
+                }
+                (Record::Week(_), _) => is_begun = false,
                 (Record::Override(line), _) if !edits.dropped.contains(&seq) => {
                     if let Err(refusal) = self.session.set_parameter(&line.key, &line.new, line.from_day) {
                         self.refuse(&line.key, refusal);
@@ -99,13 +124,21 @@ impl Adopted {
         }
     }
 
-    /// Calls that are added on this day, and the capacity that follows usage.
+    /// Parameters that are set and calls that are added on this day, and the capacity that follows usage.
     fn decide_besides(&mut self, edits: &Edits) {
         let day = self.session.day();
+        for setting in edits.set.iter().filter(|setting| setting.day == day) {
+            if let Err(refusal) = self.session.set_parameter(&setting.key, &setting.value, None) {
+                self.refuse(&setting.key, refusal);
+            }
+        }
         for added in edits.added.iter().filter(|added| added.day == day) {
             self.call(added.tool, &added.args);
         }
-        if let Some(week) = self.session.weeks().last().filter(|_| edits.capacity_follows_usage) {
+        let is_decision_day = day.is_multiple_of(self.session.params().run.days_per_week);
+        if let Some(week) =
+            self.session.weeks().last().filter(|_| is_decision_day && edits.capacity_follows_usage)
+        {
             let tier = covering_tier(week.busiest_day, self.session.params());
             if tier != self.session.settings().core.capacity_tier {
                 self.call(ToolId::SetCapacityTier, &json!({ "tier": tier }));

@@ -6,7 +6,8 @@ use super::decision_edit::DecisionEdit;
 use super::figure::{BranchFigure, Values, values};
 use crate::session::counterfactual::branch::BranchOutcome;
 use crate::session::counterfactual::edits::{AddedCall, Edits};
-use crate::session::counterfactual::script::{Move, PastCall};
+use crate::session::counterfactual::script::{Move, PastCall, PastSetting};
+use crate::session::play::overrides::json_of_value;
 use crate::tools::{Kind, Refusal, ToolId};
 use crate::world::events::DayFigures;
 
@@ -36,8 +37,10 @@ pub struct BranchFigures {
     weeks: Vec<Values>,
     /// Calls that differ from those of the run, by day.
     pub differences: Vec<DecisionDifference>,
-    /// Calls that are refused here: day, tool, why.
-    pub refused: Vec<(u32, ToolId, Refusal)>,
+    /// Parameters that are set otherwise, by day.
+    pub parameters: Vec<ParameterDifference>,
+    /// Calls that are refused here, and parameters that do not fit: day, tool or key, why.
+    pub refused: Vec<(u32, String, Refusal)>,
     /// Calls that were refused in the run and would be accepted here: line, day, tool. They are not made.
     pub possible: Vec<(u64, u32, ToolId)>,
     /// First day at whose end the company is another than in the run as it was; none if there is none.
@@ -61,6 +64,19 @@ pub struct DecisionDifference {
     pub again: Option<(u32, u64)>,
 }
 
+/// A parameter that is set otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParameterDifference {
+    /// Day from which on it acts.
+    pub day: u32,
+    /// Full key.
+    pub key: String,
+    /// What the run sets there; none where it does not.
+    pub was: Option<Value>,
+    /// What is set here; none where it is not.
+    pub is: Option<Value>,
+}
+
 impl BranchFigures {
     pub(super) fn of(
         edits: &[DecisionEdit],
@@ -69,14 +85,18 @@ impl BranchFigures {
         outcome: &BranchOutcome,
         differs_on: Option<u32>,
     ) -> BranchFigures {
-        let refused = outcome.refused.iter().map(|call| (call.day, call.tool, call.refusal.clone()));
+        let calls =
+            outcome.refused.iter().map(|call| (call.day, call.tool.name().to_owned(), call.refusal.clone()));
+        let mut refused: Vec<_> = calls.chain(outcome.unfit.iter().cloned()).collect();
+        refused.sort_by_key(|(day, ..)| *day);
         let possible = outcome.possible.iter().map(|call| (call.seq, call.day, call.tool));
         BranchFigures {
             edits: edits.to_vec(),
             days: outcome.weeks.iter().map(|week| week.day).collect(),
             weeks: values(earlier, outcome),
             differences: differences(made, moves, from),
-            refused: refused.collect(),
+            parameters: parameters(made, moves),
+            refused,
             possible: possible.collect(),
             differs_on,
         }
@@ -143,6 +163,30 @@ fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifferen
     });
     let mut all: Vec<DecisionDifference> = opening.chain(of_run).chain(added).collect();
     all.sort_by_key(|call| call.day);
+    all
+}
+
+/// The parameters that are set otherwise, by day.
+fn parameters(edits: &Edits, moves: &[Move]) -> Vec<ParameterDifference> {
+    let dropped = moves.iter().filter_map(|step| match step {
+        Move::Parameter(PastSetting { day, change }) if edits.dropped.contains(&change.seq) => {
+            Some(ParameterDifference {
+                day: change.from_day.map_or(*day, |from| from - 1),
+                key: change.key.clone(),
+                was: Some(json_of_value(&change.value)),
+                is: None,
+            })
+        }
+        _ => None,
+    });
+    let added = edits.set.iter().map(|setting| ParameterDifference {
+        day: setting.day,
+        key: setting.key.clone(),
+        was: None,
+        is: Some(setting.value.clone()),
+    });
+    let mut all: Vec<ParameterDifference> = dropped.chain(added).collect();
+    all.sort_by_key(|own| own.day);
     all
 }
 

@@ -6,10 +6,14 @@ use std::str::FromStr;
 use serde_json::{Map, Value, json};
 
 use crate::notation::json_number;
-use crate::session::counterfactual::edits::{AddedCall, Edits};
+use crate::session::counterfactual::edits::{AddedCall, AddedSetting, Edits};
 use crate::session::counterfactual::kept_state::KeptState;
 use crate::session::counterfactual::script::{Move, PastCall};
+use crate::session::folder::mode::Mode;
+use crate::session::play::overrides::value_of_json;
+use crate::session::play::parameters::unknown;
 use crate::tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
+use crate::world::params::Params;
 use crate::world::settings::Settings;
 
 /// Largest factor of settings.
@@ -27,7 +31,7 @@ pub enum DecisionEdit {
     },
     /// No call of a tool is made: what it set stays as it is.
     Keep(ToolId),
-    /// A single call is not made.
+    /// A single call is not made, or a parameter is not set.
     Drop(u64),
     /// A single call is made with other arguments.
     Change {
@@ -45,6 +49,15 @@ pub enum DecisionEdit {
         /// The arguments.
         args: Value,
     },
+    /// A parameter has another value from then on, after the calls of the day; in debug runs.
+    Set {
+        /// Week from whose start on, counted from 1; the first of the what-if if none is named.
+        week: Option<u32>,
+        /// Full key.
+        key: String,
+        /// The value.
+        value: Value,
+    },
     /// No call sets the capacity; at the start of every week it is the smallest tier that covers the busiest day of the week
     /// before.
     CapacityFollowsUsage,
@@ -53,7 +66,8 @@ pub enum DecisionEdit {
 /// What a what-if changes in days of a run that follow a moment.
 ///
 /// # Errors
-/// `line_unknown`, `week_unknown`: it names what is not there.
+/// `line_unknown`, `week_unknown`, `parameter_unknown`: it names what is not there; `parameter_not_allowed`; and
+/// `not_in_this_mode` where a parameter is set and the run is no debug run.
 pub(super) fn edits(
     decided: &[DecisionEdit],
     opening: &Opening<'_>,
@@ -71,13 +85,40 @@ pub(super) fn edits(
 pub(super) struct Opening<'a> {
     pub day: u32,
     pub settings: &'a Settings,
-    pub days_per_week: u32,
+    /// Parameters in force.
+    pub params: &'a Params,
+    /// What the run is.
+    pub mode: Mode,
 }
 
 impl Opening<'_> {
-    pub(super) fn of(start: &KeptState) -> Opening<'_> {
-        let (world, run) = (&start.world, &start.params.run);
-        Opening { day: world.day, settings: &world.settings, days_per_week: run.days_per_week }
+    pub(super) fn of(start: &KeptState, mode: Mode) -> Opening<'_> {
+        let KeptState { world, params, .. } = start;
+        Opening { day: world.day, settings: &world.settings, params, mode }
+    }
+
+    /// The day on which a week begins, in which something is decided besides.
+    fn day_of(&self, week: Option<u32>, until: u32) -> Result<u32, Refusal> {
+        let (from, days) = (self.day, self.params.run.days_per_week);
+        let day = week.map_or(from, |week| week.saturating_sub(1).saturating_mul(days));
+        if (from..until).contains(&day) {
+            return Ok(day);
+        }
+        let (first, last) = (from / days + 1, until.div_ceil(days));
+        let message = format!("a decision can be added in weeks {first} to {last} of this what-if");
+        Err(Refusal::at("week", "week_unknown", message))
+    }
+
+    /// Refuses a parameter that cannot be set.
+    fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Refusal> {
+        if self.mode != Mode::Debug {
+            return Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only"));
+        }
+        self.params.value(key).map_err(unknown)?;
+        let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
+        let value =
+            value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be null, nor hold it")))?;
+        self.params.with(key, value).map(drop).map_err(|error| not_allowed(error.problem))
     }
 }
 
@@ -93,7 +134,7 @@ impl DecisionEdit {
             DecisionEdit::Scale { tool, factor } => scale(*tool, *factor, edits, opening, moves),
             DecisionEdit::Keep(tool) => drop_all(*tool, edits, moves),
             DecisionEdit::Drop(seq) => {
-                call_of(*seq, moves)?;
+                move_of(*seq, moves)?;
                 edits.dropped.insert(*seq);
             }
             DecisionEdit::Change { seq, args } => {
@@ -101,14 +142,13 @@ impl DecisionEdit {
                 edits.changed.insert(*seq, args.clone());
             }
             DecisionEdit::Add { week, tool, args } => {
-                let (from, week_days) = (opening.day, opening.days_per_week);
-                let day = week.map_or(from, |week| week.saturating_sub(1) * week_days);
-                if !(from..until).contains(&day) {
-                    let (first, last) = (from / week_days + 1, until.div_ceil(week_days));
-                    let message = format!("a call can be added in weeks {first} to {last} of this what-if");
-                    return Err(Refusal::at("week", "week_unknown", message));
-                }
+                let day = opening.day_of(*week, until)?;
                 edits.added.push(AddedCall { day, tool: *tool, args: args.clone() });
+            }
+            DecisionEdit::Set { week, key, value } => {
+                opening.check_parameter(key, value)?;
+                let day = opening.day_of(*week, until)?;
+                edits.set.push(AddedSetting { day, key: key.clone(), value: value.clone() });
             }
             DecisionEdit::CapacityFollowsUsage => {
                 drop_all(ToolId::SetCapacityTier, edits, moves);
@@ -132,8 +172,18 @@ fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
 
 fn call_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
     let is_there = calls(moves).any(|call| call.seq == seq);
-    let message = || format!("line {seq} is no call of the weeks of this what-if; whatif WEEK lists them");
-    is_there.then_some(()).ok_or_else(|| Refusal::at("line", "line_unknown", message()))
+    is_there.then_some(()).ok_or_else(|| no_line(seq))
+}
+
+/// A call, or a parameter that was set.
+fn move_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
+    let is_it = |step: &Move| matches!(step, Move::Parameter(setting) if setting.change.seq == seq);
+    if moves.iter().any(is_it) { Ok(()) } else { call_of(seq, moves) }
+}
+
+fn no_line(seq: u64) -> Refusal {
+    let message = format!("line {seq} is no call of the weeks of this what-if; whatif WEEK lists them");
+    Refusal::at("line", "line_unknown", message)
 }
 
 /// Values in force are set anew before anything else; calls that set some are made with other numbers.
@@ -196,19 +246,24 @@ impl Display for DecisionEdit {
             DecisionEdit::Add { week: Some(week), tool, args } => {
                 write!(formatter, "in {week} {} {args}", tool.name())
             }
+            DecisionEdit::Set { week: None, key, value } => write!(formatter, "set {key} {value}"),
+            DecisionEdit::Set { week: Some(week), key, value } => {
+                write!(formatter, "in {week} set {key} {value}")
+            }
             DecisionEdit::CapacityFollowsUsage => formatter.write_str("capacity follows usage"),
         }
     }
 }
 
 /// Forms of an edit, as help shows them.
-pub const FORMS: [&str; 6] = [
+pub const FORMS: [&str; 7] = [
     "set_prices * 0.9",
     "keep set_daily_spend",
     "drop 57",
     "change 57 {\"B\": 30}",
     "[in 24] set_prices B=30",
     "capacity follows usage",
+    "[in 24] set group.S1.c_max_mean 60",
 ];
 
 impl FromStr for DecisionEdit {
@@ -229,11 +284,12 @@ impl FromStr for DecisionEdit {
             "in" => {
                 let (week, call) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 let number = week.parse().map_err(|_| format!("{week} is not the number of a week"))?;
-                added(Some(number), call)
+                decided_besides(Some(number), call.trim())
             }
             "capacity" if rest == "follows usage" || rest == "follows use" => {
                 Ok(DecisionEdit::CapacityFollowsUsage)
             }
+            "set" => decided_besides(None, text),
             _ => scale_or_call(text),
         }
     }
@@ -253,6 +309,21 @@ fn scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     number.map(|factor| DecisionEdit::Scale { tool, factor }).ok_or_else(|| {
         format!("{factor} is not a factor; write a number from 0 to {MOST_FACTOR}, for instance 0.9")
     })
+}
+
+/// `set KEY VALUE`, or a call.
+fn decided_besides(week: Option<u32>, text: &str) -> Result<DecisionEdit, String> {
+    let Some(rest) = text.strip_prefix("set").filter(|rest| rest.starts_with(char::is_whitespace)) else {
+        return added(week, text);
+    };
+    let (key, value) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
+    match value.trim() {
+        "" => Err("set needs a parameter and its value, for instance set group.S1.c_max_mean 60".to_owned()),
+        value => {
+            let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
+            Ok(DecisionEdit::Set { week, key: key.to_owned(), value })
+        }
+    }
 }
 
 fn added(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
@@ -317,6 +388,8 @@ mod tests {
             "set_prices {\"B\":30}",
             "in 24 set_prices {\"B\":30}",
             "capacity follows usage",
+            "set quality.base_product_quality 0.2",
+            "in 24 set calendar.weekly [1,1,1,1,1,1,1]",
         ] {
             let edit: DecisionEdit = text.parse().expect(text);
             assert_eq!(edit.to_string(), text);
@@ -350,6 +423,8 @@ mod tests {
         assert_eq!(said("next_week"), "next_week changes nothing in the company");
         assert!(said("drop it").starts_with("it is not the number of a line"));
         assert_eq!(said("in x set_prices B=3"), "x is not the number of a week");
+        assert!(said("set group.S1.c_max_mean").starts_with("set needs a parameter and its value"));
+        assert!(said("in 3 set").starts_with("there is no tool set"));
         assert_eq!(said("set_prices B"), "B is no argument; write NAME=VALUE");
         assert!(said("set_prices {B}").starts_with("the arguments are not JSON"));
     }

@@ -27,7 +27,7 @@ pub enum BranchFigure {
     NewSubscribers,
     /// Individuals who cancelled in the week.
     Cancellations,
-    /// Mean satisfaction of individuals, from 0 to 1; hidden from a player whose run goes on.
+    /// Mean satisfaction of individuals, on its scale; hidden from a player whose run goes on.
     Satisfaction,
 }
 
@@ -73,7 +73,7 @@ impl BranchFigure {
         match self {
             BranchFigure::Cash | BranchFigure::RecurringRevenue => FigureUnit::Dollars,
             BranchFigure::Churn => FigureUnit::Share,
-            BranchFigure::Satisfaction => FigureUnit::FineShare,
+            BranchFigure::Satisfaction => FigureUnit::Level,
             _ => FigureUnit::Count,
         }
     }

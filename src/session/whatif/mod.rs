@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub use adopt::Adopted;
-pub use comparison::{BranchComparison, BranchFigures, DecisionDifference};
+pub use comparison::{BranchComparison, BranchFigures, DecisionDifference, ParameterDifference};
 pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
 pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures, PairedDifference};
@@ -32,6 +32,7 @@ use super::counterfactual::one_each::one_each;
 use super::counterfactual::past::Past;
 use super::counterfactual::script::{Move, PastCall};
 use super::why::{Sight, not_readable, sight};
+use crate::session::folder::mode::Mode;
 use crate::tools::Refusal;
 use crate::world::events::DayFigures;
 
@@ -104,17 +105,18 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<(BranchComparison, Option<Futures>)>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let all = all_edits(alternatives, &parting)?;
-        let Some(compared) = self.compared(&parting, &all, progress) else { return Ok(None) };
+        let all = all_edits(alternatives, &parting, self.past.manifest.mode)?;
+        let Some(compared) = self.compared(&parting, &all, progress)? else { return Ok(None) };
         let Some(count) = futures else { return Ok(Some((compared, None))) };
-        Ok(self.drawn(&parting, &all.1, count, progress).map(|drawn| (compared, Some(drawn))))
+        let drawn = self.drawn(&parting, &all.1, count, progress)?;
+        Ok(drawn.map(|drawn| (compared, Some(drawn))))
     }
 
     /// The run as it was and up to three alternatives, from the start of a week to the end of another, or, if none is named,
     /// of the last one recorded, for twelve weeks at least. None if it was stopped.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `not_readable`.
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`.
     pub fn compare(
         &mut self,
         week: u32,
@@ -130,8 +132,8 @@ impl WhatIf {
         parting: &Parting,
         (all, edits): &AllEdits,
         progress: OnWhatIfProgress<'_>,
-    ) -> Option<BranchComparison> {
-        let outcomes = parting.simulate(edits, progress)?;
+    ) -> Result<Option<BranchComparison>, Refusal> {
+        let Some(outcomes) = parting.simulate(edits, progress)? else { return Ok(None) };
         let Parting { start, earlier, moves, until } = parting;
         let from = start.world.day;
         let branches = all.iter().zip(edits).zip(&outcomes).map(|((decided, made), outcome)| {
@@ -140,13 +142,13 @@ impl WhatIf {
             BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on)
         });
         let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
-        Some(BranchComparison {
+        Ok(Some(BranchComparison {
             from,
             until: *until,
             recorded_until: self.past.last_day(),
             branches: branches.collect(),
             figures: BranchFigure::ALL.into_iter().filter(shown).collect(),
-        })
+        }))
     }
 
     /// The same under futures of which the luck is drawn anew: from the last recorded day on if the branches go beyond it, else
@@ -163,8 +165,8 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<Futures>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let (_, edits) = all_edits(alternatives, &parting)?;
-        Ok(self.drawn(&parting, &edits, count, progress))
+        let (_, edits) = all_edits(alternatives, &parting, self.past.manifest.mode)?;
+        self.drawn(&parting, &edits, count, progress)
     }
 
     fn drawn(
@@ -173,7 +175,7 @@ impl WhatIf {
         edits: &[Edits],
         count: u32,
         progress: OnWhatIfProgress<'_>,
-    ) -> Option<Futures> {
+    ) -> Result<Option<Futures>, Refusal> {
         let last = self.past.last_day();
         let after =
             if last < parting.until { last.max(parting.start.world.day) } else { parting.start.world.day };
@@ -184,13 +186,13 @@ impl WhatIf {
         let salts = || 0..u64::from(count);
         let drawn: Vec<Edits> =
             edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
-        let outcomes = parting.simulate(&drawn, progress)?;
+        let Some(outcomes) = parting.simulate(&drawn, progress)? else { return Ok(None) };
         let longest = outcomes.iter().max_by_key(|outcome| outcome.weeks.len());
         let days = longest.map_or(Vec::new(), |one| one.weeks.iter().map(|week| week.day).collect());
         let valued: Vec<_> =
             outcomes.iter().map(|outcome| figure::values(&parting.earlier, outcome)).collect();
         let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
-        Some(Futures::of(after, days, branches))
+        Ok(Some(Futures::of(after, days, branches)))
     }
 
     /// Days of a week of the run.
@@ -246,10 +248,17 @@ impl WhatIf {
 
 impl Parting {
     /// Simulates the days under each of some edits. None if it was stopped.
-    fn simulate(&self, edits: &[Edits], progress: OnWhatIfProgress<'_>) -> Option<Vec<BranchOutcome>> {
+    ///
+    /// # Errors
+    /// `too_many_leads`: one of them leads to a day that no memory holds.
+    fn simulate(
+        &self,
+        edits: &[Edits],
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<Vec<BranchOutcome>>, Refusal> {
         let days = (self.until - self.start.world.day) as usize * edits.len();
         let done = AtomicUsize::new(0);
-        one_each(edits, |own, stopped| {
+        let outcomes = one_each(edits, |own, stopped| {
             let mut go_on = |_| {
                 let day = done.fetch_add(1, Ordering::Relaxed) + 1;
                 match progress(day, days).is_break() || stopped.is_set() {
@@ -258,7 +267,13 @@ impl Parting {
                 }
             };
             counterfactual(&self.start, &self.moves, own, self.until, &mut go_on)
-        })
+        });
+        match outcomes.iter().flatten().find_map(|outcome| outcome.crowded.clone()) {
+            Some(Refusal { code, message, .. }) => {
+                Err(Refusal::new(code, format!("in one of the branches {message}")))
+            }
+            None => Ok(outcomes),
+        }
     }
 }
 
@@ -276,7 +291,7 @@ fn differs_by(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
 /// What each branch decides, the run as it was first, and how its days are edited for it.
 type AllEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
 
-fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting) -> Result<AllEdits, Refusal> {
+fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting, mode: Mode) -> Result<AllEdits, Refusal> {
     if alternatives.len() > MOST_ALTERNATIVES {
         let message = format!("at most {MOST_ALTERNATIVES} alternatives stand side by side");
         return Err(Refusal::new("too_many_alternatives", message));
@@ -284,7 +299,7 @@ fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting) -> Result<Al
     let Parting { start, moves, until, .. } = parting;
     let all: Vec<Vec<DecisionEdit>> =
         std::iter::once(Vec::new()).chain(alternatives.iter().cloned()).collect();
-    let opening = decision_edit::Opening::of(start);
+    let opening = decision_edit::Opening::of(start, mode);
     let edits = all.iter().map(|decided| decision_edit::edits(decided, &opening, moves, *until));
     let edits = edits.collect::<Result<_, _>>()?;
     Ok((all, edits))

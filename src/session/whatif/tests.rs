@@ -11,6 +11,7 @@ use crate::session::counterfactual::test_kit::played;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
+use crate::session::trajectory::{Record, Trajectory};
 use crate::tools::ToolId;
 
 fn on(_: usize, _: usize) -> ControlFlow<()> {
@@ -122,7 +123,8 @@ fn what_is_refused_now_and_what_is_not_any_more_is_told() {
     let [_, dropped, twice] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
     assert_eq!(dropped.possible, [(second.seq, second.day, second.tool)]);
     assert_eq!(dropped.differences.len(), 1);
-    let [(56, ToolId::StartResearchProject, refusal)] = &twice.refused[..] else { panic!("{twice:?}") };
+    let [(56, what, refusal)] = &twice.refused[..] else { panic!("{twice:?}") };
+    assert_eq!(what, "start_research_project");
     assert!(refusal.message.contains("running"), "{refusal}");
 }
 
@@ -242,4 +244,95 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
             ]
         );
     }
+}
+
+fn adopted(session: &Session, week: u32, alternative: &[&str]) -> Session {
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let adopted = session.branch_with_decisions(week, &edits(alternative), Mode::Debug, go_on);
+    let Adopted { session, refused } = adopted.expect("a branch");
+    assert_eq!(refused, []);
+    session
+}
+
+#[test]
+fn a_parameter_is_set_as_a_run_sets_it() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let alternative = &["set group.S1.c_max_mean 200", "in 7 set satisfaction.satisfaction_ema_alpha 0.9"];
+    // What a run becomes in which the same is set by hand.
+    let mut by_hand = session.branch(5, Mode::Debug).expect("a branch");
+    let recorded: Vec<_> = of(&session).decisions(5).expect("decisions");
+    for week in 5..=session.day() / 7 {
+        let today = by_hand.day();
+        for call in recorded.iter().filter(|call| call.day == today && call.accepted) {
+            by_hand.call(call.tool.name(), &call.args, Via::Plain).expect("as in the run");
+        }
+        match week {
+            5 => drop(by_hand.set_parameter("group.S1.c_max_mean", &json!(200), None).expect("set")),
+            7 => {
+                let key = "satisfaction.satisfaction_ema_alpha";
+                by_hand.set_parameter(key, &json!(0.9), None).expect("set");
+            }
+            _ => {}
+        }
+        let forecasts = by_hand.naive_forecasts();
+        by_hand.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    }
+    let compared = compared(&session, 5, &[alternative]);
+    let cash = |session: &Session| session.weeks().iter().skip(4).map(|week| week.cash).collect::<Vec<_>>();
+    let own = &compared.branches[1];
+    let curve: Vec<f64> = own.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+    assert_eq!(curve, cash(&by_hand));
+    assert_ne!(curve, cash(&session));
+    let told: Vec<_> = own.parameters.iter().map(|set| (set.day, set.key.as_str(), set.is.clone())).collect();
+    assert_eq!(
+        told,
+        [
+            (28, "group.S1.c_max_mean", Some(json!(200))),
+            (42, "satisfaction.satisfaction_ema_alpha", Some(json!(0.9))),
+        ]
+    );
+    let adopted = adopted(&session, 5, alternative);
+    assert_eq!(adopted.state_hash(), by_hand.state_hash());
+    // What a branch has set can be left out of its own branches.
+    let lines =
+        Trajectory::read(&adopted.folder().expect("a folder").join("trajectory.jsonl")).expect("lines").lines;
+    let set: Vec<String> = lines
+        .iter()
+        .filter(|line| matches!(line.record, Record::Override(_)))
+        .map(|line| format!("drop {}", line.seq))
+        .collect();
+    let [first, second] = &set[..] else { panic!("{set:?}") };
+    let undone = self::compared(&adopted, 5, &[&[first, second]]);
+    let undone: Vec<f64> = undone.branches[1].curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+    assert_eq!(undone, cash(&session));
+}
+
+#[test]
+fn parameters_that_cannot_be_set_are_refused() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let code = |session: &Session, edit: &str| {
+        of(session).compare(3, None, &[edits(&[edit])], &on).expect_err("a refusal").code
+    };
+    let debug = played(runs.path(), Mode::Debug, 3, None);
+    assert_eq!(code(&debug, "set group.S1.c_max_men 20"), "parameter_unknown");
+    assert_eq!(code(&debug, "set group.S1.c_max_mean much"), "parameter_not_allowed");
+    assert_eq!(code(&debug, "set operations.base_outage_prob 2"), "parameter_not_allowed");
+    assert_eq!(code(&debug, "set run.seed 2"), "parameter_not_allowed");
+    assert_eq!(code(&debug, "in 2 set operations.base_outage_prob 0.5"), "week_unknown");
+    assert_eq!(code(&debug, "set leads.ad_spend_unit 1e-9"), "too_many_leads");
+    let sandbox = played(runs.path(), Mode::Sandbox, 3, None);
+    assert_eq!(code(&sandbox, "set operations.base_outage_prob 0.5"), "not_in_this_mode");
+    assert_eq!(code(&sandbox, "set no.such 1"), "not_in_this_mode");
+}
+
+#[test]
+fn days_that_were_run_one_by_one_are_adopted_too() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = played(runs.path(), Mode::Debug, 3, None);
+    session.step(2, &mut |_| {}).expect("days");
+    session.call("set_prices", &json!({"B": 31}), Via::Plain).expect("a price");
+    session.run_until_breakpoint(9, &mut |_| {}).expect("days");
+    let same = adopted(&session, 2, &[]);
+    assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
 }

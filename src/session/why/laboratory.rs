@@ -178,7 +178,9 @@ impl Laboratory {
             }
         };
         let edits = Edits { dropped, held, ..Edits::default() };
-        counterfactual(&self.between, &self.moves, &edits, self.after.end.world.day, go_on)
+        let outcome = counterfactual(&self.between, &self.moves, &edits, self.after.end.world.day, go_on)?;
+        // A week that ends early has no figures that could be held against those of the whole one.
+        outcome.crowded.is_none().then_some(outcome)
     }
 }
 

@@ -17,6 +17,8 @@ use crate::world::state::{PartHash, World};
 pub(in crate::session) struct DayEnd {
     /// Hashes of the parts of the state, and of the facts of the day.
     pub(in crate::session) parts: Vec<PartHash>,
+    /// Parameters with which the day was simulated.
+    pub(in crate::session) params: Params,
     /// Figures by name, hidden ones included, in one order.
     pub(in crate::session) figures: Vec<(String, f64)>,
     /// Active subscribers by customer number.
@@ -24,11 +26,12 @@ pub(in crate::session) struct DayEnd {
 }
 
 impl DayEnd {
-    fn of(world: &World, facts: &Facts) -> DayEnd {
+    fn of(world: &World, params: &Params, facts: &Facts) -> DayEnd {
         let rows = world.customers.blocks();
         let rows = rows.flat_map(|(group, block)| (0..block.len()).map(move |at| (group, block.row(at))));
         DayEnd {
             parts: parts_of(world, facts),
+            params: params.clone(),
             figures: figures_of(world, facts),
             customers: rows.map(|(group, row)| (row.customer, (group, row))).collect(),
         }
@@ -46,12 +49,16 @@ fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     let closing = closing_figures(world);
     let issues: u32 = world.customers.blocks().map(|(_, block)| block.open_issues()).sum();
     let market = &world.market;
+    let companies = |wanted: bool| {
+        facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise() == wanted).count() as f64
+    };
     let mut figures: Vec<(String, f64)> = [
         ("cash", closing.cash),
         ("recurring revenue", closing.mrr),
         ("individual subscribers", f64::from(closing.individual_subscribers)),
         ("enterprise seats", f64::from(closing.enterprise_seats)),
-        ("leads of the day", facts.arrivals.len() as f64),
+        ("individual leads of the day", companies(false)),
+        ("enterprise leads of the day", companies(true)),
         ("departures of the day", facts.endings.len() as f64),
         ("customers so far", f64::from(world.customers.next_customer)),
         ("open issues", f64::from(issues)),
@@ -94,9 +101,9 @@ impl Album {
 }
 
 impl DayWatch for Album {
-    fn day_over(&self, world: &World, _: &Params, facts: &Facts) {
+    fn day_over(&self, world: &World, params: &Params, facts: &Facts) {
         if self.wanted.contains(&world.day) {
-            let moment = DayEnd::of(world, facts);
+            let moment = DayEnd::of(world, params, facts);
             self.moments.lock().unwrap_or_else(PoisonError::into_inner).insert(world.day, moment);
         }
     }

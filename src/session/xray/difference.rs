@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
+use serde_json::Value as Json;
+
 use super::day_end::{Album, DayEnd, Fingerprints};
+use crate::session::play::overrides::json_of_value;
 use crate::session::state::Session;
 use crate::tools::Refusal;
 use crate::world::identifiers::Group;
@@ -15,6 +18,9 @@ const CUSTOMERS_TOLD: usize = 10;
 pub struct Difference {
     /// The day of the first, and that of the second.
     pub days: (u32, u32),
+    /// Parameters with which the days were simulated and that differ: key, value in the first, value in the second; null where
+    /// one has none.
+    pub parameters: Vec<(String, Json, Json)>,
     /// Names of the parts of the state whose hash differs, in the order of the state; at the end `facts`, what happened on the
     /// day.
     pub parts: Vec<&'static str>,
@@ -68,8 +74,11 @@ impl Difference {
         let figures = figures.filter(|((_, own), (_, other))| own.to_bits() != other.to_bits());
         let all = customers_that_differ(one, other);
         let count = |subscribes| all.iter().filter(|own| own.subscribes == subscribes).count();
+        let value = |value: Option<toml::Value>| value.as_ref().map_or(Json::Null, json_of_value);
+        let parameters = one.params.differences(&other.params).into_iter();
         Difference {
             days,
+            parameters: parameters.map(|own| (own.key, value(own.old), value(own.new))).collect(),
             parts: names(false),
             alike: names(true),
             figures: figures.map(|((name, own), (_, other))| (name.clone(), *own, *other)).collect(),
@@ -81,7 +90,7 @@ impl Difference {
 
     /// Whether nothing differs.
     pub fn is_none(&self) -> bool {
-        self.parts.is_empty()
+        self.parts.is_empty() && self.parameters.is_empty()
     }
 }
 

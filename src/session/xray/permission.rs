@@ -1,20 +1,26 @@
 //! Who may look, and what a look leaves behind.
 
+use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, XrayLook};
+use crate::session::trajectory::record::{Activity, Ended, XrayLook};
 use crate::session::trajectory::{Durability, Record};
 use crate::tools::Refusal;
 
 /// Said where hidden state is not shown.
 pub const REFUSED_LOOK: &str = "the x-ray works in debug runs and in runs that are over";
 
+/// Whether hidden state of a run may be shown: of debug runs, and of runs that are over. Not where a study shows no results, as
+/// none does of its practice: its session is still to come.
+pub fn may_look_inside(manifest: &Manifest, ended: Option<Ended>) -> bool {
+    let is_open = manifest.mode == Mode::Debug || ended.is_some();
+    is_open && !manifest.session_rules().hide_result(ended)
+}
+
 impl Session {
-    /// Whether hidden state may be shown: in debug runs, and in runs that are over. Not where a study shows no results, as
-    /// none does of its practice: its session is still to come.
+    /// Whether its hidden state may be shown, as [`may_look_inside`] says.
     pub fn may_look_inside(&self) -> bool {
-        let is_open = self.manifest.mode == Mode::Debug || self.history.ended.is_some();
-        is_open && !self.rules().hide_result(self.history.ended)
+        may_look_inside(&self.manifest, self.history.ended)
     }
 
     /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study
@@ -38,7 +44,7 @@ impl Session {
     /// it shows.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
     pub(in crate::session) fn begin_look(
         &mut self,
         what: &str,
@@ -54,13 +60,17 @@ impl Session {
     /// Records a look, before anything is shown.
     ///
     /// # Errors
-    /// `not_saved`.
+    /// `read_only` where the run has nothing that writes it, `not_saved`.
     pub(in crate::session) fn record_look_inside(
         &mut self,
         what: &str,
         which: &str,
         shown_day: u32,
     ) -> Result<(), Refusal> {
+        if !self.records_looks() {
+            let message = "a look is recorded, and this run is open read-only; open it as for play";
+            return Err(Refusal::new("read_only", message));
+        }
         let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
         let line = Record::Activity(Activity::Xray(look));
         let appended = self.append(&line, Durability::Synced);

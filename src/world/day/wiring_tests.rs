@@ -11,7 +11,7 @@ use crate::quota::Quota;
 use crate::test_kit::subscriber;
 
 /// Lopsided settings under which several groups come, stay, complain and leave.
-fn busy_settings(world: &mut World) {
+pub(super) fn busy_settings(world: &mut World) {
     let core = &mut world.settings.core;
     core.prices = ByPlan([9.0, 16.0, 31.0]);
     core.tiers = ByPlan([2, 3, 4]);

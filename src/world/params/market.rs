@@ -12,6 +12,13 @@ pub struct Calendar {
     pub monthly: [f64; 30],
 }
 
+impl Calendar {
+    /// Factor of the leads of a day.
+    pub fn of_leads(&self, day: u32) -> f64 {
+        self.weekly[(day % 7) as usize] * self.monthly[(day % 30) as usize]
+    }
+}
+
 /// Silent rushes of demand (docs/mechanics/market/surges.md).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -27,6 +27,8 @@ pub use discovery::*;
 pub use enterprise::*;
 pub use load::{ParameterError, ParameterSource, line_of_key, override_table, shipped_sources};
 pub use market::*;
+#[cfg(test)]
+pub(crate) use names::keys;
 pub use nearest::nearest;
 pub use product::*;
 pub use retention::*;

@@ -59,7 +59,7 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
 }
 
 /// Names of all single parameters.
-pub(super) fn keys(tables: &Table) -> Vec<String> {
+pub(crate) fn keys(tables: &Table) -> Vec<String> {
     let mut all = Vec::new();
     tables.iter().for_each(|(key, value)| collect(key.clone(), value, &mut all));
     all

@@ -4,6 +4,7 @@
 //! nothing that was confirmed is lost.
 
 #[cfg(unix)]
+mod adoption;
 mod full_disk;
 mod lost_file;
 

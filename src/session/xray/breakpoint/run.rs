@@ -1,5 +1,6 @@
 //! Breakpoints of a debug run, and running to the first of them.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::condition::{Condition, Judged};
@@ -28,6 +29,17 @@ pub struct RunUntil {
     pub week: Week,
     /// The breakpoints that became true on the last day; none if it stopped for another reason.
     pub hits: Vec<Hit>,
+    /// The breakpoints that were true on some of the days and became true on none of them: how they stand on the last one.
+    pub true_before: Vec<TrueBefore>,
+}
+
+/// A breakpoint that was true when days began to run, and did not become true on any of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueBefore {
+    /// The breakpoint, as it stands on the last day.
+    pub hit: Hit,
+    /// The last of the days on which it was true.
+    pub until: u32,
 }
 
 impl Session {
@@ -87,7 +99,7 @@ impl Session {
         let set = self.breakpoints.all().to_vec();
         if set.is_empty() {
             let week = self.step_on(from.saturating_add(days.max(1)), &|_| true, progress)?;
-            return Ok(RunUntil { from, week, hits: Vec::new() });
+            return Ok(RunUntil { from, week, hits: Vec::new(), true_before: Vec::new() });
         }
         let series = self.measured_up_to(from)?;
         self.simulation.watch = series.clone();
@@ -99,7 +111,8 @@ impl Session {
         for breakpoint in &set {
             self.record_look_inside("breakpoint", &breakpoint.condition.to_string(), self.day())?;
         }
-        Ok(RunUntil { from, week, hits })
+        let true_before = true_before(from + 1..=self.day(), &set, &series);
+        Ok(RunUntil { from, week, hits, true_before })
     }
 
     /// Steps over as many weeks as it takes to a day, as long as it is to go on.
@@ -138,5 +151,19 @@ fn hits_on(day: u32, set: &[Breakpoint], series: &Series) -> Vec<Hit> {
     series.read(|days| {
         let judged = set.iter().map(|own| Hit { breakpoint: *own, judged: own.condition.judged(days, day) });
         judged.filter(|hit| hit.judged.becomes_true()).collect()
+    })
+}
+
+/// The breakpoints that were true on some days and became true on none of them.
+fn true_before(days: RangeInclusive<u32>, set: &[Breakpoint], series: &Series) -> Vec<TrueBefore> {
+    series.read(|measured| {
+        let of = |own: &Breakpoint| {
+            let judged: Vec<Judged> = days.clone().map(|day| own.condition.judged(measured, day)).collect();
+            let until = judged.iter().rfind(|judged| judged.is_true)?.day;
+            let hit = Hit { breakpoint: *own, judged: *judged.last()? };
+            let becomes_true = judged.iter().any(Judged::becomes_true);
+            (!becomes_true).then_some(TrueBefore { hit, until })
+        };
+        set.iter().filter_map(of).collect()
     })
 }

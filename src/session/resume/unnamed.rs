@@ -1,0 +1,103 @@
+//! Branches that are being made: they lie in a folder that no list shows, and get the name of a run once they are whole. A
+//! program that ends before that leaves nothing that looks like a run.
+
+use std::path::{Path, PathBuf};
+
+use super::open::Access;
+use crate::session::error::RunError;
+use crate::session::folder::first_line::start_of;
+use crate::session::folder::lock::lock_run;
+use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::runs::{UNNAMED, is_unnamed};
+use crate::session::lesson::lesson_file::Lesson;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Branch;
+use crate::session::trajectory::{Durability, Line, Record, TrajectoryWriter};
+
+/// The folder of a branch without a name; it goes with this, unless the branch was named.
+pub(in crate::session) struct UnnamedBranch {
+    folder: PathBuf,
+    /// Where it will lie.
+    named: PathBuf,
+}
+
+impl UnnamedBranch {
+    /// Writes a branch beside its parent: what it is, the lines it shares, and that it is a branch.
+    ///
+    /// # Errors
+    /// The disk refuses; then there is nothing.
+    pub(in crate::session) fn write(
+        parent: &Path,
+        manifest: &Manifest,
+        shared: &[&Line],
+    ) -> Result<UnnamedBranch, RunError> {
+        parent.parent().into_iter().for_each(remove_leftovers);
+        let named = parent.with_file_name(&manifest.id);
+        let folder = parent.with_file_name(format!("{UNNAMED}{}", manifest.id));
+        let branch = UnnamedBranch { folder, named };
+        branch.fill(manifest, shared)?;
+        if let Some(stamp) = &manifest.lesson {
+            Lesson::of_run(parent, &stamp.name)?.keep_with(&branch.folder)?;
+        }
+        Ok(branch)
+    }
+
+    fn fill(&self, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
+        let folder = &self.folder;
+        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        let _lock = lock_run(folder, &manifest.id)?;
+        manifest.write(folder)?;
+        let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+        writer.append(0, &start_of(manifest), Durability::Written)?;
+        for line in shared {
+            writer.copy(line)?;
+        }
+        let day = shared.last().map_or(0, |line| line.day);
+        let branch = Branch { from: manifest.parent.clone() };
+        writer.append(day, &Record::Branch(branch), Durability::Synced)?;
+        sync_folder(folder)
+    }
+
+    /// Opens it where it lies.
+    ///
+    /// # Errors
+    /// It cannot be opened.
+    pub(in crate::session) fn open(&self) -> Result<Session, RunError> {
+        Session::open(&self.folder, Access::Write, true)
+    }
+
+    /// Makes it a run: it gets its name, and is opened. Nothing else may have it open.
+    ///
+    /// # Errors
+    /// The disk refuses, or it cannot be opened; then there is no branch.
+    pub(in crate::session) fn name(self) -> Result<Session, RunError> {
+        let UnnamedBranch { folder, named } = &self;
+        std::fs::rename(folder, named).map_err(RunError::io(named))?;
+        let opened = named
+            .parent()
+            .map_or(Ok(()), sync_folder)
+            .and_then(|()| Session::open(named, Access::Write, true));
+        match &opened {
+            Ok(session) => session.list_as("branch"),
+            // A branch that cannot be opened is nobody's run.
+            Err(_) => drop(std::fs::remove_dir_all(named)),
+        }
+        opened
+    }
+}
+
+impl Drop for UnnamedBranch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Removes what programs have left that ended while they made a branch. What somebody makes at this moment is locked.
+pub(in crate::session) fn remove_leftovers(runs: &Path) {
+    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
+    for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {
+        if lock_run(&folder, "").is_ok() {
+            let _ = std::fs::remove_dir_all(&folder);
+        }
+    }
+}

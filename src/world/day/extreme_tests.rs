@@ -1,0 +1,83 @@
+//! Every parameter at the ends of what is allowed: a day is simulated, or there is no room for it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use toml::{Table, Value};
+
+use super::room::{NoRoom, room_for_next_day};
+use super::wiring_tests::busy_settings;
+use super::*;
+use crate::params::keys;
+
+/// Values that are tried; those out of range are refused.
+const TRIED: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
+
+/// A company with customers, companies and threads.
+fn company(params: &Params, streams: &Streams) -> World {
+    let mut facts = Facts::default();
+    let mut world = World::open(500, 1e8, params, &mut facts);
+    busy_settings(&mut world);
+    for _ in 0..27 {
+        step_day(&mut world, params, streams, &mut facts);
+    }
+    world
+}
+
+/// Whether another key of its kind is tried: those of the other groups, tiers and levels.
+fn is_one_of_many_alike(key: &str) -> bool {
+    let of_group = |part: &str| Group::parse(part).is_some_and(|group| !["S1", "E1"].contains(&group.id()));
+    let of_step = |part: &str| part.parse::<u32>().is_ok_and(|number| number > 1);
+    key.split('.').any(|part| of_group(part) || of_step(part)) || key.starts_with("personas.")
+}
+
+#[test]
+fn every_allowed_value_of_a_parameter_lets_days_pass_or_has_no_room_for_them() {
+    let (shipped, streams) = (Params::shipped(), Streams::new(3));
+    let opening = company(&shipped, &streams);
+    assert!(opening.customers.active().iter().sum::<u32>() > 20);
+    let mut failed = Vec::new();
+    let mut tried = 0;
+    for key in keys(&Table::try_from(&shipped).expect("tables")) {
+        if is_one_of_many_alike(&key) {
+            continue;
+        }
+        let Ok(own) = shipped.value(&key) else { continue };
+        for number in TRIED {
+            let value = match own {
+                Value::Float(_) => Value::Float(number),
+                Value::Integer(_) => Value::Integer(number as i64),
+                _ => continue,
+            };
+            let Ok(params) = shipped.with(&key, value) else { continue };
+            tried += 1;
+            let mut world = opening.clone();
+            let passed = catch_unwind(AssertUnwindSafe(|| {
+                let mut facts = Facts::default();
+                for _ in 0..3 {
+                    if world.is_over(&params) || room_for_next_day(&world, &params, &streams).is_some() {
+                        break;
+                    }
+                    step_day(&mut world, &params, &streams, &mut facts);
+                }
+            }));
+            if passed.is_err() {
+                failed.push(format!("{key} = {number}"));
+            }
+        }
+    }
+    assert!(tried > 400, "{tried}");
+    assert_eq!(failed, Vec::<String>::new());
+}
+
+#[test]
+fn a_day_that_would_bring_millions_has_no_room() {
+    let (shipped, streams) = (Params::shipped(), Streams::new(3));
+    let world = company(&shipped, &streams);
+    assert_eq!(room_for_next_day(&world, &shipped, &streams), None);
+    let crowded =
+        shipped.with("calendar.weekly", Value::Array(vec![Value::Float(1e6); 7])).expect("in range");
+    assert_eq!(room_for_next_day(&world, &crowded, &streams), Some(NoRoom::Leads));
+    let mut full = world.clone();
+    full.customers.next_customer = u32::MAX - 1;
+    assert_eq!(room_for_next_day(&full, &shipped, &streams), Some(NoRoom::Numbers));
+}

@@ -1,0 +1,88 @@
+//! A branch that is adopted is whole, or it is not there: programs that are killed on the way, and disks that are full.
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::support::company::opening;
+use crate::support::home::{Home, Said, bytes_of, id, said};
+
+/// A debug run of some weeks, each with so many more calls, left behind; its folder.
+fn company(home: &Home, weeks: usize, calls: usize) -> PathBuf {
+    let mut lines: String = opening().iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
+    lines += &("set_prices A=13\nset_prices A=12\n".repeat(calls / 2) + "next naive\n").repeat(weeks);
+    assert_eq!(home.play(&["--mode", "debug", "--seed", "3"], &lines).code, 0);
+    home.only_run()
+}
+
+/// Folders below that of runs whose branch is not whole.
+fn unnamed(home: &Home) -> Vec<PathBuf> {
+    let entries = fs::read_dir(home.runs()).expect("a folder").flatten().map(|entry| entry.path());
+    entries
+        .filter(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.')))
+        .collect()
+}
+
+fn listed(home: &Home) -> Vec<Value> {
+    let said = home.run(&["runs", "list", "--json"]);
+    let list: Value = serde_json::from_str(&said.out).unwrap_or_else(|error| panic!("{error}: {}", said.out));
+    list.as_array().or(list["runs"].as_array()).expect("a list").clone()
+}
+
+#[test]
+fn a_program_that_is_killed_while_it_adopts_leaves_no_run() {
+    let home = Home::new();
+    let run = company(&home, 15, 0);
+    let mut child =
+        home.program().args(["play", "--plain", "--json", "--run", &id(&run)]).spawn().expect("it starts");
+    let mut pipe = child.stdin.take().expect("a pipe");
+    pipe.write_all(b"whatif adopt from 2: set_prices * 0.9\n").expect("written");
+    let begun = Instant::now();
+    // The first weeks of the branch are on the disk, and it is not whole.
+    let is_under_way = || {
+        let trajectory = unnamed(&home).first().map(|folder| folder.join("trajectory.jsonl"));
+        trajectory
+            .and_then(|path| fs::read_to_string(path).ok())
+            .is_some_and(|text| text.matches("\"kind\":\"week\"").count() > 2)
+    };
+    while !is_under_way() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the branch never began");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("it ends");
+    assert_eq!(unnamed(&home).len(), 1, "it was killed on the way");
+    assert_eq!(listed(&home).len(), 1, "what is not whole is no run");
+    let again = home.play(&["--run", &id(&run), "--json"], "whatif adopt from 2: set_prices * 0.9\nstatus\n");
+    assert_eq!(again.code, 0, "{}", again.err);
+    assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 2));
+    assert_eq!(again.objects().last().expect("an answer")["day"], 105);
+    let branch = listed(&home).iter().find(|own| own["id"] != id(&run)).expect("the branch")["id"].clone();
+    assert_eq!(home.run(&["replay", branch.as_str().expect("an id"), "--verify"]).code, 0);
+}
+
+#[test]
+fn a_disk_without_room_for_a_branch_keeps_the_run_and_makes_none() {
+    let home = Home::new();
+    let run = company(&home, 12, 400);
+    let blocks = bytes_of(&run, "trajectory.jsonl").len() * 3 / 4 / 512;
+    let program = env!("CARGO_BIN_EXE_novamind");
+    let script =
+        format!("trap '' XFSZ; ulimit -f {blocks}; exec '{program}' play --plain --json --run {}", id(&run));
+    let Said { out, err, code } =
+        said(home.command("sh").args(["-c", &script]), "whatif adopt from 2: set_prices * 0.9\nstatus\n");
+    assert_eq!(code, 0, "{err}{out}");
+    let answers: Vec<Value> = out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let adopted = answers.iter().find(|answer| answer["command"] == "branch").expect("an answer");
+    assert_eq!(
+        (&adopted["ok"], &adopted["code"]),
+        (&Value::Bool(false), &Value::from("not_saved")),
+        "{adopted}"
+    );
+    assert_eq!(answers.last().expect("an answer")["day"], 84, "the run goes on");
+    assert_eq!((unnamed(&home), listed(&home).len()), (Vec::new(), 1));
+    assert_eq!(home.run(&["replay", &id(&run), "--verify"]).code, 0);
+}

@@ -49,7 +49,7 @@ pub(crate) mod xray;
 pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
-pub use words::{category_name, count};
+pub use words::{cash_change_in_words, category_name, count, origin_in_words};
 
 /// The report of a run as Markdown.
 pub fn as_markdown(story: &Story) -> String {

@@ -6,7 +6,7 @@ use super::measures::{ENOUGH_LEADS, Measures, PLANNING_WORDS};
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
-use super::words::{cash_change_in_words, count, money, whole};
+use super::words::{cash_change_in_words, count, money, origin_in_words, whole};
 use crate::notation::{capital, grouped, percent, signed_dollars};
 use crate::session::Ended;
 
@@ -37,6 +37,7 @@ pub fn page_of(story: &Story) -> Page {
         format!("{} mode", seen.mode),
     ];
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
+    tags.extend(story.origin.iter().map(origin_in_words));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {
         title: format!("NovaMind · run {}", seen.run),
@@ -56,11 +57,7 @@ fn result(story: &Story) -> Vec<Fact> {
     let score = match (seen.ended, seen.score) {
         (_, Some(score)) => Fact::new("Score", money(score), rank_in_words(story)),
         (Some(Ended::Abandoned), None) => Fact::new("Score", "none", "given up"),
-        (_, None) => Fact::new(
-            "Cash",
-            money(seen.cash),
-            cash_change_in_words(seen),
-        ),
+        (_, None) => Fact::new("Cash", money(seen.cash), cash_change_in_words(seen)),
     };
     let lived = story.measures.survival_days;
     let last_day = whole(f64::from(seen.last_day));

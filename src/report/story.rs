@@ -7,7 +7,8 @@ use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
 use crate::session::{
-    Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures, filed_forecasts,
+    BranchOrigin, Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures,
+    filed_forecasts, origin_of,
 };
 
 /// How a company went under.
@@ -50,6 +51,8 @@ pub struct Story {
     pub ruin: Option<Ruin>,
     /// By which rules it is played.
     pub rules: SessionRules,
+    /// Where it came from, if it is a branch.
+    pub origin: Option<BranchOrigin>,
 }
 
 impl Story {
@@ -77,6 +80,7 @@ impl Story {
             measures,
             ruin,
             rules: session.rules(),
+            origin: session.folder().and_then(origin_of),
             books,
             seen,
         }

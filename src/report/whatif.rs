@@ -2,10 +2,10 @@
 
 use super::why::{signed, written};
 use super::words::count;
-use crate::notation::printable;
+use crate::notation::{compact, printable, short_dollars};
 use crate::session::{
-    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin,
-    ParameterDifference, ToolId,
+    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FigureUnit, Futures,
+    Kin, ParameterDifference, ToolId,
 };
 
 /// The name of the run as it was.
@@ -191,6 +191,17 @@ pub fn futures_cell(futures: &Futures, branch: usize, figure: BranchFigure, day:
     let Some(band) = futures.band(branch, figure, day) else { return "—".to_owned() };
     let value = |value| written(figure.unit(), value);
     format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
+}
+
+/// The same in two lines, where there is little room: the median, and from where to where.
+pub fn futures_cell_in_two(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> [String; 2] {
+    let Some(band) = futures.band(branch, figure, day) else { return ["—".to_owned(), String::new()] };
+    let short = |value: f64| match figure.unit() {
+        FigureUnit::Dollars => short_dollars(value),
+        FigureUnit::Count => compact(value),
+        unit => written(unit, value),
+    };
+    [written(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
 }
 
 /// What a branch has more of a figure at the end, and how sure that is; none where no future has a value.

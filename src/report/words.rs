@@ -1,7 +1,7 @@
 //! How reports write figures and name what they are.
 
 use crate::notation::{compact, grouped, signed_dollars};
-use crate::session::{Category, Observation};
+use crate::session::{BranchOrigin, Category, Observation};
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {
@@ -17,6 +17,15 @@ pub fn cash_change_in_words(seen: &Observation) -> String {
         days => count(days, "day"),
     };
     format!("{} over the last {span}", signed_dollars(seen.cash_change))
+}
+
+/// Where a branch came from: `branch of 1a2b3c4d from week 5, first change set_prices on day 28`.
+pub fn origin_in_words(origin: &BranchOrigin) -> String {
+    let BranchOrigin { run, week, first_change } = origin;
+    let change = first_change
+        .as_ref()
+        .map_or(String::new(), |(day, what)| format!(", first change {what} on day {day}"));
+    format!("branch of {run} from week {week}{change}")
 }
 
 /// Name of a category of the ledger, as every screen and report writes it.

@@ -47,10 +47,12 @@ impl Session {
     pub fn query_as(&mut self, ticket: Ticket, sql: &str, via: QuerySource) -> Result<Rows, Refusal> {
         let started = Instant::now();
         let limits = limits(self);
-        let answer = self
-            .connection()
-            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
-            .map_err(|refusal| if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal });
+        let answer =
+            self.connection()
+                .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
+                .map_err(|refusal| {
+                    if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal }
+                });
         self.note_query(sql, answer.as_ref(), started.elapsed(), via);
         answer
     }

@@ -122,9 +122,9 @@ pub use trajectory::{
     written_moment,
 };
 pub use whatif::{
-    Adopted, BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FORMS,
-    FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference, ParameterDifference,
-    WhatIf, branches_of, sets_amounts,
+    Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
+    FORMS, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference,
+    ParameterDifference, WhatIf, branches_of, origin_of, sets_amounts,
 };
 pub use why::{
     Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,

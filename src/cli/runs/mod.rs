@@ -7,12 +7,14 @@ pub use transfer::{as_csv, tidy_up_on_signals, write_tables};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use serde_json::Value;
 
 use super::{Context, Failure, print};
 use crate::notation::{dollars, printable};
+use crate::report::origin_in_words;
 use crate::session::{
-    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs, manifest_text,
-    rescue,
+    BranchOrigin, RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
+    manifest_text, origin_of, rescue,
 };
 
 /// Options of `runs`.
@@ -99,7 +101,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             if options.json {
                 return print(&(serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n"));
             }
-            print(&format!("{}\n{}", summary.as_ref().map(line).unwrap_or_default(), printable(&text)))
+            let origin = origin_of(&folder);
+            print(&format!(
+                "{}\n{}",
+                summary.as_ref().map(|run| line(run, origin.as_ref())).unwrap_or_default(),
+                printable(&text)
+            ))
         }
         Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
         Some(RunsCommand::End { run }) => {
@@ -157,10 +164,19 @@ pub(super) fn find_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure
 }
 
 fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool) -> Result<(), Failure> {
-    let mut list: Vec<RunSummary> = list_all(folders)?.into_iter().map(|(_, run)| run).collect();
-    list.retain(|run| participant.is_none_or(|label| run.participant.as_deref() == Some(label)));
+    let mut list: Vec<(RunSummary, Option<BranchOrigin>)> =
+        list_all(folders)?.into_iter().map(|(folder, run)| (run, origin_of(&folder))).collect();
+    list.retain(|(run, _)| participant.is_none_or(|label| run.participant.as_deref() == Some(label)));
     if json {
-        return print(&(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"));
+        let listed: Vec<Value> = list
+            .iter()
+            .map(|(run, origin)| {
+                let mut listed = serde_json::to_value(run).unwrap_or_default();
+                listed["branch_of"] = serde_json::to_value(origin).unwrap_or_default();
+                listed
+            })
+            .collect();
+        return print(&(serde_json::to_string_pretty(&listed).unwrap_or_default() + "\n"));
     }
     match participant {
         Some(label) if list.is_empty() => {
@@ -169,18 +185,20 @@ fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool)
         None if list.is_empty() => {
             print(&format!("There are no runs in {} yet; `novamind` starts one.\n", runs.display()))
         }
-        _ => print(&list.iter().map(line).collect::<String>()),
+        _ => print(&list.iter().map(|(run, origin)| line(run, origin.as_ref())).collect::<String>()),
     }
 }
 
-fn line(run: &RunSummary) -> String {
+fn line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
     if let Some(problem) = &run.problem {
         return format!("{}  cannot be read: {}\n", printable(&run.id), printable(problem));
     }
     let state = run.ended.map_or("open", |ended| ended.id());
     let who = run.participant.as_deref().map(|who| format!("  {}", printable(who))).unwrap_or_default();
+    let origin =
+        origin.map(|origin| format!("  {}", printable(&origin_in_words(origin)))).unwrap_or_default();
     format!(
-        "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}\n",
+        "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}{origin}\n",
         run.id,
         run.played.get(..16).unwrap_or(&run.played).replace('T', " "),
         run.mode.map_or("", |mode| mode.id()),

@@ -2,7 +2,9 @@
 
 use crate::notation::point_number;
 use crate::report::words::count;
-use crate::session::{Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore};
+use crate::session::{
+    Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore,
+};
 
 /// Decimals that a figure is written with at least.
 const DECIMALS: usize = 4;
@@ -32,7 +34,9 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
     let mut lines = match (run.hits.is_empty(), breakpoints) {
         (false, _) => return run.hits.iter().map(hit).collect(),
         (true, 0) => vec![format!("{ran}; no breakpoint is set")],
-        (true, 1) if run.true_before.is_empty() => vec![format!("{ran}; the breakpoint was true on none of them")],
+        (true, 1) if run.true_before.is_empty() => {
+            vec![format!("{ran}; the breakpoint was true on none of them")]
+        }
         (true, count) if run.true_before.is_empty() => {
             vec![format!("{ran}; none of the {count} breakpoints was true on any of them")]
         }

@@ -71,7 +71,8 @@ pub fn difference_as_data(found: &Difference) -> Value {
 
 /// Parameters that differ.
 fn parameters(found: &Difference, names: (&str, &str)) -> Vec<String> {
-    let row = |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];
+    let row =
+        |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];
     let rows: Vec<Vec<String>> = found.parameters.iter().take(PARAMETERS_TOLD).map(row).collect();
     if rows.is_empty() {
         return Vec::new();

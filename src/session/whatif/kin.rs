@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
+use serde::Serialize;
+use serde_json::Value;
+
 use crate::session::figures::week::week_of;
 use crate::session::folder::derived::manifest_of;
 use crate::session::folder::runs::{RunSummary, list_runs, run_folder};
 use crate::session::trajectory::record::{Call, Parent};
-use crate::session::trajectory::{Record, Trajectory};
+use crate::session::trajectory::{Line, Record, Trajectory};
 use crate::tools::ToolId;
 
 /// A run in the tree.
@@ -20,6 +23,46 @@ pub struct Kin {
     pub left_in_week: Option<u32>,
     /// The first call that was made in it and not in its parent at that place; none if there is none.
     pub first_change: Option<(u32, ToolId)>,
+}
+
+/// Where a branch came from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BranchOrigin {
+    /// The run that it left.
+    pub run: String,
+    /// Week at whose start it left.
+    pub week: u32,
+    /// Day, and tool or parameter, of the first call or setting that its parent did not make there; none if there is none, or
+    /// if the parent cannot be read.
+    pub first_change: Option<(u32, String)>,
+}
+
+/// Where the run in a folder came from; none if it is no branch, or cannot be read.
+pub fn origin_of(folder: &Path) -> Option<BranchOrigin> {
+    let parent = manifest_of(folder).ok()?.parent?;
+    let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
+    let own = lines(folder)?;
+    let at = own.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
+    let first_change = lines(&folder.with_file_name(&parent.run)).and_then(|parents| {
+        let made = |line: &Line| {
+            let decided = decision(line)?;
+            let is_parents = |other: &&Line| other.day == line.day && other.seq > parent.seq;
+            let is_known =
+                parents.iter().filter(is_parents).any(|other| decision(other).as_ref() == Some(&decided));
+            (!is_known).then(|| (line.day, decided.0.to_owned()))
+        };
+        own[at..].iter().find_map(made)
+    });
+    Some(BranchOrigin { run: parent.run, week: week_of(own[at].day) + 1, first_change })
+}
+
+/// What a line decides: tool or parameter, with arguments or value.
+fn decision(line: &Line) -> Option<(&str, Value)> {
+    if let Record::Override(setting) = &line.record {
+        return Some((&setting.key, setting.new.clone()));
+    }
+    let (call, _) = line.record.accepted_call()?;
+    call.tool.spec().kind.acts().then(|| (call.tool.name(), call.args.clone()))
 }
 
 /// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read

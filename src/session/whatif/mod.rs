@@ -22,7 +22,7 @@ pub use comparison::{BranchComparison, BranchFigures, DecisionDifference, Parame
 pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
 pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures, PairedDifference};
-pub use kin::{Kin, branches_of};
+pub use kin::{BranchOrigin, Kin, branches_of, origin_of};
 
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
 use super::counterfactual::edits::{Edits, Redrawn};

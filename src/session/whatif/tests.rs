@@ -229,6 +229,12 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
     branch.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
     let other = branch.branch_with_decisions(2, &[], Mode::Debug, &mut |_| ControlFlow::Continue(()));
     let other = other.expect("a branch").session;
+    let origin = origin_of(branch.folder().expect("a folder")).expect("it is a branch");
+    let first_change = Some((28, "set_prices".to_owned()));
+    assert_eq!(origin, BranchOrigin { run: session.manifest().id.clone(), week: 5, first_change });
+    let origin = origin_of(other.folder().expect("a folder")).expect("it is a branch");
+    assert_eq!((origin.week, origin.first_change), (2, None));
+    assert_eq!(origin_of(session.folder().expect("a folder")), None);
     for id in [&session.manifest().id, &branch.manifest().id, &other.manifest().id] {
         let tree = branches_of(runs.path(), id);
         let told: Vec<_> = tree

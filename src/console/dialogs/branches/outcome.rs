@@ -8,7 +8,8 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::chart;
 use crate::console::widgets::{Axis, Line, Side, Unit};
 use crate::report::whatif::{
-    branch_line, cell, decisions, difference_line, ended_early, futures_cell, futures_heading, heading,
+    branch_line, cell, decisions, difference_line, ended_early, futures_cell, futures_cell_in_two,
+    futures_heading, heading,
 };
 use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
@@ -16,6 +17,9 @@ use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, F
 const LEAST_CHART: u16 = 6;
 /// Most of them.
 const MOST_CHART: u16 = 16;
+
+/// Width of the column of weeks.
+const FIRST_COLUMN: u16 = 10;
 
 /// What came of the branches.
 pub(super) struct Figures {
@@ -91,7 +95,9 @@ impl Figures {
 
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let mut rest = area;
-        let table = self.comparison.milestones(self.days_per_week).len() as u16 + 1;
+        let milestones =
+            self.comparison.milestones(self.days_per_week).len() * self.lines_of_a_row(area.width);
+        let table = milestones as u16 + 1;
         // In a small window figures go before what is known from the title.
         if area.height > table + self.comparison.branches.len() as u16 {
             let row = take(&mut rest, 1);
@@ -157,7 +163,7 @@ impl Figures {
     fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let figure = self.shown();
         let days = self.comparison.milestones(self.days_per_week);
-        let first = 10.min(area.width);
+        let first = FIRST_COLUMN.min(area.width);
         let width = (area.width - first) / self.comparison.branches.len().max(1) as u16;
         let place =
             |row: Rect, number: usize| Rect { x: row.x + first + number as u16 * width, width, ..row };
@@ -167,17 +173,39 @@ impl Figures {
         for number in 0..self.comparison.branches.len() {
             canvas.text(place(header, number), &format!(" {number}"), Role::Header);
         }
-        for (row, day) in rows.zip(days) {
-            canvas.text(row, &day.div_ceil(self.days_per_week).to_string(), Role::Dim);
-            for (number, branch) in self.comparison.branches.iter().enumerate() {
-                let text = match &self.futures {
-                    Some(futures) => futures_cell(futures, number, figure, day),
-                    None => cell(&self.comparison, branch, figure, day),
-                };
-                let text = format!(" {}", fit(&text, usize::from(width).saturating_sub(1)));
-                canvas.text(place(row, number), &text, Role::Text);
+        let lines = self.lines_of_a_row(area.width);
+        for day in days {
+            let rows: Vec<Rect> = rows.by_ref().take(lines).collect();
+            let Some(first_row) = rows.first() else { return };
+            canvas.text(*first_row, &day.div_ceil(self.days_per_week).to_string(), Role::Dim);
+            for number in 0..self.comparison.branches.len() {
+                for (row, text) in rows.iter().zip(self.cell(number, figure, day, lines)) {
+                    let text = format!(" {}", fit(&text, usize::from(width).saturating_sub(1)));
+                    canvas.text(place(*row, number), &text, Role::Text);
+                }
             }
         }
+    }
+
+    /// A figure of a branch at a milestone, in one line or in two.
+    fn cell(&self, number: usize, figure: BranchFigure, day: u32, lines: usize) -> Vec<String> {
+        match &self.futures {
+            Some(futures) if lines > 1 => futures_cell_in_two(futures, number, figure, day).into(),
+            Some(futures) => vec![futures_cell(futures, number, figure, day)],
+            None => vec![cell(&self.comparison, &self.comparison.branches[number], figure, day)],
+        }
+    }
+
+    /// Lines that a milestone takes: two where a figure over futures does not fit into one.
+    fn lines_of_a_row(&self, table_width: u16) -> usize {
+        let Some(futures) = &self.futures else { return 1 };
+        let width = table_width.saturating_sub(FIRST_COLUMN) / self.comparison.branches.len().max(1) as u16;
+        let days = self.comparison.milestones(self.days_per_week);
+        let cells = (0..self.comparison.branches.len())
+            .flat_map(|number| days.iter().map(move |day| (number, *day)))
+            .map(|(number, day)| futures_cell(futures, number, self.shown(), day).chars().count());
+        let is_cut = cells.max().is_some_and(|longest| longest >= usize::from(width));
+        if is_cut { 2 } else { 1 }
     }
 
     /// How sure a difference is, and what the selected branch decides otherwise.

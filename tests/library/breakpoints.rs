@@ -539,3 +539,18 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 56);
+    weeks(&mut session, 2);
+    for text in ["cash > 1", "cash < 1"] {
+        session.set_breakpoint(condition(text)).expect("it is set");
+    }
+    let run = session.run_until_breakpoint(5, &mut |_| {}).expect("days");
+    assert_eq!(run.hits, []);
+    let told: Vec<_> = run.true_before.iter().map(|own| (own.hit.breakpoint.number, own.until)).collect();
+    assert_eq!(told, [(1, 19)]);
+    assert_eq!(session.observe().cash_change_days, 5);
+}

@@ -143,3 +143,25 @@ fn nobody_looks_into_an_unfinished_run_and_once_it_is_over_the_look_is_recorded(
         assert_eq!(after.iter().filter(|line| line.record.kind() == "xray").count(), 2);
     }
 }
+
+#[test]
+fn a_parameter_that_differs_leads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    weeks(&mut session, 2);
+    let key = "operations.base_outage_prob";
+    let old = session.set_parameter(key, &json!(0.5), Some(17)).expect("it waits").old;
+    weeks(&mut session, 1);
+    let parameters = |session: &mut Session, one, other| {
+        session.difference_of_days(one, other).expect("a look").parameters
+    };
+    assert_eq!(parameters(&mut session, 14, 16), []);
+    assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
+    // Leads of a day are those of individuals and those of companies.
+    let found = session.difference_of_days(3, 20).expect("a look");
+    let sum: f64 =
+        found.figures.iter().filter(|(name, ..)| name.ends_with("leads of the day")).map(|own| own.2).sum();
+    let recorded =
+        session.xray_query("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None).expect("a look");
+    assert_eq!(novamind::session::number_at(&recorded.rows[0], 0), sum);
+}

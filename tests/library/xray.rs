@@ -353,3 +353,30 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
         assert!(extreme <= 22, "{id}: {extreme} of 1,000 days are beyond 1 %");
     }
 }
+
+#[test]
+fn a_run_that_is_only_read_is_not_looked_into() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 28);
+    open_shop(&mut session);
+    weeks(&mut session, 2);
+    session.save().expect("saved");
+    let own = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let before = std::fs::read(own.join("trajectory.jsonl")).expect("bytes");
+    let mut read = Session::open(&own, Access::Read, true).expect("it opens");
+    assert_eq!(read.lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.xray_query("SELECT 1", None).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.difference_of_days(3, 4).expect_err("a refusal").code, "read_only");
+    // What is hidden is asked in another way, and that is said where it may be asked.
+    let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
+    assert!(refused.message.contains("query --xray"), "{refused}");
+    drop(read);
+    assert_eq!(std::fs::read(own.join("trajectory.jsonl")).expect("bytes"), before);
+    let mut sandbox = run_in(folder.path(), Mode::Sandbox, 28);
+    let refused = sandbox.query("SELECT * FROM hidden.customers").expect_err("no such table");
+    assert!(
+        refused.message.contains("write customers alone") && !refused.message.contains("xray"),
+        "{refused}"
+    );
+}

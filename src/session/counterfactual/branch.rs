@@ -90,24 +90,26 @@ pub(in crate::session) fn counterfactual_with_hashes(
     Some(branch.outcome())
 }
 
-/// The first day at whose end two edits of the same moves have led to different companies; none if they do not up to a day.
+/// The first day at whose end two edits of the same moves have led to different companies, or that there is none up to a day.
+/// None if it was stopped: `progress` is told each day.
 pub(in crate::session) fn first_difference(
     start: &KeptState,
     moves: &[Move],
     (one, other): (&Edits, &Edits),
     until: u32,
-) -> Option<u32> {
+    progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> Option<Option<u32>> {
     let mut both = [one, other].map(|edits| OpenBranch::of(start, moves, edits, false));
     for day in start.world.day + 1..=until {
         for branch in &mut both {
-            branch.advance(day, &mut |_| ControlFlow::Continue(()))?;
+            branch.advance(day, progress)?;
         }
         let [left, right] = both.each_ref().map(|branch| branch.simulation.world.part_hashes());
         if left != right {
-            return Some(day);
+            return Some(Some(day));
         }
     }
-    None
+    Some(None)
 }
 
 /// Days on the way.

@@ -136,17 +136,27 @@ impl WhatIf {
         let Some(outcomes) = parting.simulate(edits, progress)? else { return Ok(None) };
         let Parting { start, earlier, moves, until } = parting;
         let from = start.world.day;
-        let branches = all.iter().zip(edits).zip(&outcomes).map(|((decided, made), outcome)| {
-            let differs_on = differs_by(&outcomes[0], outcome)
-                .and_then(|day| first_difference(start, moves, (&edits[0], made), day));
-            BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on)
-        });
+        let mut branches = Vec::new();
+        for ((decided, made), outcome) in all.iter().zip(edits).zip(&outcomes) {
+            let differs_on = match differs_by(&outcomes[0], outcome) {
+                None => None,
+                Some(last) => {
+                    let mut go_on = |day: u32| progress(day as usize, last as usize);
+                    let pair = (&edits[0], made);
+                    let Some(day) = first_difference(start, moves, pair, last, &mut go_on) else {
+                        return Ok(None);
+                    };
+                    day
+                }
+            };
+            branches.push(BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on));
+        }
         let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
         Ok(Some(BranchComparison {
             from,
             until: *until,
             recorded_until: self.past.last_day(),
-            branches: branches.collect(),
+            branches,
             figures: BranchFigure::ALL.into_iter().filter(shown).collect(),
         }))
     }

@@ -172,7 +172,7 @@ fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
     assert!(!console.screen().contains("cash < 0"), "{}", console.screen());
     console.press("r '28' enter");
     console.shows("day 42");
-    console.shows("the breakpoint was true on none of them");
+    console.shows("breakpoint 1 was true on all these days and the day before them");
     console.press("e 'leads(S2)>=1' enter delete e 'cash<850000' enter r '20' enter");
     console.shows("stopped on day");
     drop(console);

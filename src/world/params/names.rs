@@ -94,8 +94,13 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     near.into_iter().map(str::to_owned).collect()
 }
 
+/// Longest key, in bytes, whose distance from others is measured.
+const LONGEST_KEY: usize = 200;
+
 fn by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {
-    alike.sort_by_key(|one| strsim::damerau_levenshtein(key, one));
+    if key.len() <= LONGEST_KEY {
+        alike.sort_by_key(|one| strsim::damerau_levenshtein(key, one));
+    }
     alike.truncate(3);
     alike
 }

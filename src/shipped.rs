@@ -42,7 +42,7 @@ pub fn lesson_texts(name: &str) -> Option<&'static str> {
 }
 
 /// The lessons in the order in which a course takes them.
-const COURSE: [&str; 11] = [
+const COURSE: [&str; 12] = [
     "price-follows-quality",
     "price-of-the-quarter",
     "ladder",
@@ -53,6 +53,7 @@ const COURSE: [&str; 11] = [
     "launch-now",
     "copied",
     "first-number",
+    "ads-in-the-product",
     "capstone",
 ];
 

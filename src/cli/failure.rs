@@ -61,7 +61,9 @@ impl std::error::Error for Failure {}
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Failure {
         match error {
-            RunError::NotPossible(_) | RunError::NoScenario { .. } | RunError::NoLesson { .. } => Failure::usage(error.to_string()),
+            RunError::NotPossible(_) | RunError::NoScenario { .. } | RunError::NoLesson { .. } => {
+                Failure::usage(error.to_string())
+            }
             RunError::InUse { .. } | RunError::Exists(_) => Failure::failed(error.to_string()),
             _ => Failure::unreadable(error.to_string()),
         }

@@ -113,7 +113,9 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     }
     match failed {
         0 => Ok(()),
-        failed => Err(Failure::failed(format!("{failed} of {} lessons do not hold what they promise", names.len()))),
+        failed => {
+            Err(Failure::failed(format!("{failed} of {} lessons do not hold what they promise", names.len())))
+        }
     }
 }
 

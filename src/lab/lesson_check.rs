@@ -79,8 +79,8 @@ impl LessonCheck {
         let reached = self.bad.iter().filter(|play| play.goals.iter().all(|goal| goal.met));
         let reached = reached.map(|play| format!("seed {}: the bad play reaches every goal", play.seed));
         let unmet = self.bad.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
-        let unmet =
-            unmet.map(|play| format!("seed {}: the bad play does not meet pitfall {}", play.seed, self.pitfall));
+        let unmet = unmet
+            .map(|play| format!("seed {}: the bad play does not meet pitfall {}", play.seed, self.pitfall));
         let wrong = self.figures.iter().filter(|figure| !figure.holds()).map(|figure| {
             let FigureResult { stated, mean } = figure;
             format!("{} is stated as {} and is {}", stated.name, stated.written(), stated.write(*mean))
@@ -157,7 +157,8 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
             None => plays.push(vec![figure]),
         }
     }
-    let runs: Vec<(usize, u64)> = (0..plays.len()).flat_map(|play| SEEDS.map(move |seed| (play, seed))).collect();
+    let runs: Vec<(usize, u64)> =
+        (0..plays.len()).flat_map(|play| SEEDS.map(move |seed| (play, seed))).collect();
     let of_runs: Result<Vec<Vec<Option<f64>>>, RunError> =
         runs.par_iter().map(|(play, seed)| values_of(lesson, &plays[*play], *seed)).collect();
     let of_runs = of_runs?;
@@ -196,7 +197,8 @@ fn values_of(
         for (value, own) in values.iter_mut().zip(figures) {
             let wanted = own.week.unwrap_or(last);
             if wanted == week || (stays && wanted > week) {
-                let problem = |problem| RunError::NotPossible(format!("measured figure {}: {problem}", own.name));
+                let problem =
+                    |problem| RunError::NotPossible(format!("measured figure {}: {problem}", own.name));
                 *value = own.measurement.over_part(session).map_err(problem)?;
             }
         }

@@ -124,7 +124,10 @@ const COMMANDS: &[(&str, &str)] = &[
         "who FIGURE [DAY]         the same: who wrote a figure on a day, with amounts: who reputation(S3) 84, who cash",
     ),
     ("diff", "diff DAY DAY             the same: what differs between the ends of two days"),
-    ("lesson", "lesson [next]            lessons: the task, its goals and what they stand at; next: the next part"),
+    (
+        "lesson",
+        "lesson [next]            lessons: the task, its goals and what they stand at; next: the next part",
+    ),
     ("guess", "guess ANSWER             lessons: answer the question of the step"),
     ("hint", "hint                     lessons: the next hint of the step"),
     ("again", "again [STEP]             lessons: try a step again from its beginning"),

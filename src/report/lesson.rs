@@ -115,9 +115,15 @@ pub fn goal_in_words(goal: &GoalPage) -> String {
 fn next_in_words(page: &LessonPage) -> String {
     let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
     match page.next_part {
-        Some(part) => format!("This part is over. lesson next begins part {part}; again {} tries the step again.", page.step + 1),
+        Some(part) => format!(
+            "This part is over. lesson next begins part {part}; again {} tries the step again.",
+            page.step + 1
+        ),
         None if page.is_over => {
-            format!("The lesson is over: debrief shows what came of it; again {} tries the step again.", page.step + 1)
+            format!(
+                "The lesson is over: debrief shows what came of it; again {} tries the step again.",
+                page.step + 1
+            )
         }
         None if open => "Answer with guess ANSWER; then next runs a week.".to_owned(),
         None if page.hints.len() < page.hints_in_all => "next runs a week; hint gives a hint.".to_owned(),

@@ -109,7 +109,8 @@ pub struct Batch {
 /// # Errors
 /// `rules_not_readable`; the database cannot be asked.
 pub fn answers_to_companies(text: &str, session: &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal> {
-    let rules = super::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
+    let rules =
+        super::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
     let (threads, market) = AskingThread::all(session)?;
     Ok(Batch::of(rules, threads, &market).calls())
 }

@@ -68,8 +68,9 @@ pub use folder::world_log::{
 };
 pub use lesson::conduct::LessonEntry;
 pub use lesson::definition::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart, LessonPlan, LessonStep,
-    MeasuredFigure, Pitfall, PitfallBound, RationaleAsked, ReferencePlay, ScheduledCalls,
+    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
+    LessonPlan, LessonStep, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked, ReferencePlay,
+    ScheduledCalls,
 };
 pub use lesson::lesson_call::LessonCall;
 pub use lesson::lesson_file::Lesson;

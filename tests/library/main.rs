@@ -7,6 +7,7 @@ mod durability;
 mod enterprise;
 mod faults;
 mod hidden;
+mod lessons;
 mod notebook;
 mod overrides;
 mod queries;

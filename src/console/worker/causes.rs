@@ -17,7 +17,8 @@ impl SessionThread {
         let mut folder = folder_of(open);
         if question.quantity.is_hidden() {
             // A look, which is recorded before anything is shown.
-            let looked = self.session_to_look_into(false).and_then(|session| session.look_at_figure(&question));
+            let looked =
+                self.session_to_look_into(false).and_then(|session| session.look_at_figure(&question));
             folder = looked.and(folder);
         }
         let (news, kept) = (self.news.clone(), self.causes.clone());

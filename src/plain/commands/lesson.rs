@@ -43,9 +43,8 @@ impl Interpreter {
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
         let bare = written.trim_start_matches('$').trim_end_matches('%').replace(',', "");
-        let value: f64 = bare
-            .parse()
-            .map_err(|_| problem(arguments, "a guess is a number, or the number of a choice"))?;
+        let value: f64 =
+            bare.parse().map_err(|_| problem(arguments, "a guess is a number, or the number of a choice"))?;
         Ok(match self.session.guess_in_lesson(value) {
             Ok(()) => self.lesson_page("guess"),
             Err(refusal) => Answer::refused("guess", refusal),
@@ -64,11 +63,11 @@ impl Interpreter {
     pub(super) fn again(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
         let step = match arguments {
             [] => self.session.lesson().map_or(0, |standing| standing.last_begun()),
-            [only] if only.key.is_none() => only
-                .value
-                .as_u64()
-                .and_then(|number| (number as usize).checked_sub(1))
-                .ok_or_else(|| problem(arguments, "again takes the number of a step, for instance again 2"))?,
+            [only] if only.key.is_none() => {
+                only.value.as_u64().and_then(|number| (number as usize).checked_sub(1)).ok_or_else(|| {
+                    problem(arguments, "again takes the number of a step, for instance again 2")
+                })?
+            }
             _ => return Err(problem(arguments, "again takes the number of a step, or nothing")),
         };
         let again = self.session.try_step_again(step);

@@ -188,7 +188,8 @@ impl Event {
                 event.detail.extend(answer.as_expected.map(|expected| ("as_expected", flag(expected))));
             }
             Activity::Lesson(note) => {
-                (event.what, event.which) = (crate::report::lesson::word(note.event).to_owned(), note.step.to_string());
+                (event.what, event.which) =
+                    (crate::report::lesson::word(note.event).to_owned(), note.step.to_string());
                 event.value = note.value.map(|value| json_number(value).to_string()).unwrap_or_default();
                 event.text = crate::report::lesson::in_words(note);
             }

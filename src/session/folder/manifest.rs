@@ -317,6 +317,7 @@ mod tests {
             parameters_digest: params.digest(),
             parent: None,
             study: None,
+            lesson: None,
             rules: None,
             earlier: Vec::new(),
             fault: None,

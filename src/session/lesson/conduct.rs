@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::definition::{CapacityMover, GoalBound, GuessForm, PitfallBound};
+use super::definition::{CapacityMover, GoalBound, GuessForm, Pitfall, PitfallBound, RationaleAsked};
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
@@ -83,7 +83,11 @@ impl Session {
     ///
     /// # Errors
     /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
-    pub(in crate::session) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
+    pub(in crate::session) fn resume_lesson(
+        &mut self,
+        folder: &Path,
+        lines: &[Line],
+    ) -> Result<(), RunError> {
         let Some(stamp) = self.manifest.lesson.clone() else { return Ok(()) };
         let lesson = Lesson::of_run(folder, &stamp.name)?;
         let part = stamp.part as usize;
@@ -110,19 +114,28 @@ impl Session {
     pub(in crate::session) fn begin_lesson(&mut self, entry: &LessonEntry) -> Result<(), RunError> {
         let LessonEntry { lesson, part, is_judged } = entry;
         let (lesson, is_judged) = (lesson.clone(), *is_judged);
-        self.lesson = Some(Box::new(LessonStanding { lesson: lesson.clone(), part: *part, is_judged, notes: Vec::new() }));
+        self.lesson = Some(Box::new(LessonStanding {
+            lesson: lesson.clone(),
+            part: *part,
+            is_judged,
+            notes: Vec::new(),
+        }));
         let start = &lesson.plan.parts[*part];
         for week in 0..=start.start_weeks {
             let due = start.start.iter().filter(|own| own.week == week);
             for call in due.flat_map(|own| &own.calls) {
                 self.call_of_start(call).map_err(|refusal| {
-                    RunError::NotPossible(format!("the start of lesson {} is refused: {refusal}", lesson.name))
+                    RunError::NotPossible(format!(
+                        "the start of lesson {} is refused: {refusal}",
+                        lesson.name
+                    ))
                 })?;
             }
             if week < start.start_weeks {
                 let forecasts = self.naive_forecasts();
                 let refused = |refusal: Refusal| RunError::NotPossible(refusal.to_string());
-                self.advance("the start of the lesson", &forecasts, Via::Lesson, &mut |_| {}).map_err(refused)?;
+                self.advance("the start of the lesson", &forecasts, Via::Lesson, &mut |_| {})
+                    .map_err(refused)?;
             }
         }
         self.begin_step(0, 1).map_err(|refusal| RunError::NotPossible(refusal.to_string()))
@@ -146,7 +159,8 @@ impl Session {
             let value = serde_json::to_value(value).unwrap_or_default();
             self.set_parameter_of_lesson(key, &value)?;
         }
-        let note = LessonNote { number: Some(number), ..LessonNote::about(LessonEvent::Begun, step as u32 + 1) };
+        let note =
+            LessonNote { number: Some(number), ..LessonNote::about(LessonEvent::Begun, step as u32 + 1) };
         self.note_lesson(note).map_err(not_saved)
     }
 
@@ -156,7 +170,10 @@ impl Session {
         let plan = &standing.lesson.plan;
         let own_capacity = standing.own_part().capacity == CapacityMover::FollowsUsage;
         if own_capacity && tool == ToolId::SetCapacityTier {
-            return Err(Refusal::new("not_in_this_lesson", "capacity follows usage by itself in this lesson"));
+            return Err(Refusal::new(
+                "not_in_this_lesson",
+                "capacity follows usage by itself in this lesson",
+            ));
         }
         match &plan.access.tools {
             Some(tools) if !tools.contains(&tool) => {
@@ -168,13 +185,20 @@ impl Session {
         }
     }
 
+    /// Whether the lesson asks for no rationale of a week.
+    pub(in crate::session) fn lesson_asks_no_rationale(&self) -> bool {
+        let access = self.lesson.as_deref().map(|standing| &standing.lesson.plan.access);
+        access.is_some_and(|access| access.rationale == RationaleAsked::Off)
+    }
+
     /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
     pub(in crate::session) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
         let Some(step) = self.lesson_step() else {
             return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
         };
-        let question = standing.step(step).and_then(|own| own.guess.as_ref()).map(|guess| guess.question.clone());
+        let question =
+            standing.step(step).and_then(|own| own.guess.as_ref()).map(|guess| guess.question.clone());
         match question.filter(|_| standing.awaits_guess(step)) {
             Some(question) => Err(Refusal::new("guess_first", format!("first your guess: {question}"))),
             None => Ok(()),
@@ -183,7 +207,8 @@ impl Session {
 
     /// What the lesson does by itself before a week.
     pub(in crate::session) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
-        let follows = self.lesson.as_deref().is_some_and(|own| own.own_part().capacity == CapacityMover::FollowsUsage);
+        let follows =
+            self.lesson.as_deref().is_some_and(|own| own.own_part().capacity == CapacityMover::FollowsUsage);
         if !follows {
             return Ok(());
         }
@@ -197,9 +222,11 @@ impl Session {
     /// The capacity tier one step towards the smallest that holds the mean use of the last week.
     pub fn capacity_towards_usage(&self) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
-        let mean = self.history.weeks.last().map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
+        let mean =
+            self.history.weeks.last().map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
         let tiers = &self.simulation.params.capacity_tier;
-        let holds = |tier: &&crate::world::params::CapacityTier| f64::from(tier.capacity_units) >= mean / UTILISATION;
+        let holds =
+            |tier: &&crate::world::params::CapacityTier| f64::from(tier.capacity_units) >= mean / UTILISATION;
         let target = tiers.iter().find(holds).or(tiers.last()).map_or(now, |tier| tier.tier);
         match now.cmp(&target) {
             std::cmp::Ordering::Less => now + 1,
@@ -215,14 +242,19 @@ impl Session {
         let weeks = self.weeks_passed();
         let ended = self.history.ended.is_some();
         let part = standing.own_part();
-        let Some(step) = part.step_after(weeks.saturating_sub(1)).filter(|step| standing.has_begun(*step)) else {
+        let Some(step) = part.step_after(weeks.saturating_sub(1)).filter(|step| standing.has_begun(*step))
+        else {
             return;
         };
         if standing.is_judged {
             self.note_pitfalls(&standing, step);
         }
         let (begin, end) = part.weeks_of(step);
-        if (weeks < end && !ended) || standing.has_begun(step + 1) || !standing.goals(step).is_empty() || standing.outcome(step).is_some() {
+        if (weeks < end && !ended)
+            || standing.has_begun(step + 1)
+            || !standing.goals(step).is_empty()
+            || standing.outcome(step).is_some()
+        {
             return;
         }
         if standing.is_judged {
@@ -244,9 +276,7 @@ impl Session {
 
     fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize) {
         let met = standing.pitfalls();
-        let own = |pitfall: &&super::definition::Pitfall| {
-            pitfall.part == standing.part && !met.contains(&pitfall.name.as_str())
-        };
+        let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
         let looked: Vec<_> = standing.lesson.plan.pitfalls.iter().filter(own).cloned().collect();
         let days = self.simulation.params.run.days_per_week;
         let from = self.weeks_passed().saturating_sub(1) * days;
@@ -258,12 +288,8 @@ impl Session {
             };
             if is_met {
                 let about = LessonNote::about(LessonEvent::Pitfall, step as u32 + 1);
-                let note = LessonNote {
-                    name: Some(pitfall.name),
-                    value: Some(value),
-                    bound: Some(bound),
-                    ..about
-                };
+                let note =
+                    LessonNote { name: Some(pitfall.name), value: Some(value), bound: Some(bound), ..about };
                 let _ = self.note_lesson(note);
             }
         }

@@ -346,6 +346,8 @@ pub struct MeasuredFigure {
     pub week: Option<u32>,
     /// Its value.
     pub value: f64,
+    /// What a statement counts: `$`, `%` of a share, or nothing.
+    pub unit: String,
     /// What is played after the start of the part.
     pub plays: Vec<ScheduledCalls>,
 }
@@ -361,6 +363,7 @@ struct MeasuredFile {
     over: Option<String>,
     week: Option<u32>,
     value: f64,
+    unit: Option<String>,
     #[serde(default)]
     play: Vec<ScheduledCalls>,
 }
@@ -369,9 +372,13 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
     type Error = String;
 
     fn try_from(file: MeasuredFile) -> Result<MeasuredFigure, String> {
-        let MeasuredFile { name, part, text, figure, sql, over, week, value, play } = file;
+        let MeasuredFile { name, part, text, figure, sql, over, week, value, unit, play } = file;
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
-        Ok(MeasuredFigure { name, part: from_one(part)?, text, measurement, week, value, plays: play })
+        let (part, unit) = (from_one(part)?, unit.unwrap_or_default());
+        if !matches!(unit.as_str(), "" | "$" | "%") {
+            return Err(format!("a unit is $ or %, not {unit}"));
+        }
+        Ok(MeasuredFigure { name, part, text, measurement, week, value, unit, plays: play })
     }
 }
 

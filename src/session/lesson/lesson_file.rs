@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::definition::LessonPlan;
 use super::soundness::unsound;
-use crate::notation::{grouped, percent, short_dollars};
+use crate::notation::{cents, grouped, percent, short_dollars};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::write_whole;
 use crate::session::lesson::definition::MeasuredFigure;
@@ -96,7 +96,8 @@ impl Lesson {
             let path = folder.join(file);
             std::fs::read_to_string(&path).map_err(RunError::io(&path))
         };
-        let source = ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
+        let source =
+            ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
         Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
     }
 
@@ -111,7 +112,8 @@ impl Lesson {
 
     /// A text with the measured figures that it names.
     pub fn filled(&self, text: &str) -> String {
-        let written = |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
+        let written =
+            |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
         self.plan.measured.iter().fold(text.to_owned(), written)
     }
 }
@@ -131,14 +133,18 @@ impl MeasuredFigure {
                 FigureUnit::Share | FigureUnit::FineShare => percent(value, 0),
                 FigureUnit::Count | FigureUnit::Level => grouped(value, 0),
             },
-            NumberSource::Sql(_) => grouped(value, if value.abs() < 100.0 { 2 } else { 0 }),
+            NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => cents(value),
+            NumberSource::Sql(_) if self.unit == "$" => short_dollars(value),
+            NumberSource::Sql(_) if self.unit == "%" => percent(value, 0),
+            NumberSource::Sql(_) => grouped(value, if value.fract() == 0.0 { 0 } else { 2 }),
         }
     }
 }
 
 /// The text below a heading of the second level.
 fn section(texts: &str, heading: &str) -> String {
-    let mut lines = texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
+    let mut lines =
+        texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
     let mut own = Vec::new();
     while let Some(line) = lines.next_if(|line| !line.starts_with("## ")) {
         own.push(line);

@@ -105,7 +105,13 @@ impl Session {
         })
     }
 
-    fn goal_pages(&mut self, standing: &LessonStanding, step: usize, begin: u32, passed: u32) -> Vec<GoalPage> {
+    fn goal_pages(
+        &mut self,
+        standing: &LessonStanding,
+        step: usize,
+        begin: u32,
+        passed: u32,
+    ) -> Vec<GoalPage> {
         let from = begin * self.params().run.days_per_week;
         let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
         let judged: Vec<LessonNote> = standing.goals(step).into_iter().cloned().collect();

@@ -100,7 +100,8 @@ fn play_week(
             }
         }
     }
-    let asked = session.lesson_step().is_some_and(|step| session.lesson().is_some_and(|own| own.awaits_guess(step)));
+    let asked =
+        session.lesson_step().is_some_and(|step| session.lesson().is_some_and(|own| own.awaits_guess(step)));
     if asked {
         session.guess_in_lesson(1.0)?;
     }

@@ -9,9 +9,9 @@ use crate::world::params::ParameterSource;
 impl Configuration {
     /// Names of all lessons: the shipped ones in the order of the course, then this person's.
     pub fn lessons(&self) -> Vec<String> {
-        let mut names: Vec<String> = shipped::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
-        let own: Vec<String> =
-            self.names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
+        let mut names: Vec<String> =
+            shipped::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
+        let own: Vec<String> = self.names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
         names.extend(own);
         names
     }

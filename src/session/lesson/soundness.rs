@@ -29,15 +29,25 @@ pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
             let named = plan.bad.pitfall.as_deref();
             match named.is_some_and(|name| known.contains(name)) {
                 true => None,
-                false => Some(wrong("[bad]", "bad.pitfall", "the bad play names the pitfall that it meets".to_owned())),
+                false => Some(wrong(
+                    "[bad]",
+                    "bad.pitfall",
+                    "the bad play names the pitfall that it meets".to_owned(),
+                )),
             }
         })
         .or_else(|| {
             let parts = plan.parts.len();
             let far = plan.pitfalls.iter().find(|own| own.part >= parts)?;
-            Some(wrong(&format!("name = \"{}\"", far.name), "pitfall.part", format!("there are {parts} parts")))
+            Some(wrong(
+                &format!("name = \"{}\"", far.name),
+                "pitfall.part",
+                format!("there are {parts} parts"),
+            ))
         })
-        .or_else(|| unsound_plays(lesson, "good", &plan.good).or_else(|| unsound_plays(lesson, "bad", &plan.bad)))
+        .or_else(|| {
+            unsound_plays(lesson, "good", &plan.good).or_else(|| unsound_plays(lesson, "bad", &plan.bad))
+        })
         .or_else(|| unsound_relative(lesson))
         .or_else(|| unsound_measured(lesson))
         .or_else(|| unknown_name(lesson))
@@ -65,7 +75,11 @@ fn unsound_part(part: &LessonPart) -> Option<Unsound> {
 
 fn unsound_plays(lesson: &Lesson, name: &'static str, play: &ReferencePlay) -> Option<Unsound> {
     let fits = |calls: &&ScheduledCalls| {
-        lesson.plan.parts.get(calls.part).is_some_and(|part| (part.start_weeks..part.weeks()).contains(&calls.week))
+        lesson
+            .plan
+            .parts
+            .get(calls.part)
+            .is_some_and(|part| (part.start_weeks..part.weeks()).contains(&calls.week))
     };
     let wrong = play.plays.iter().find(|calls| !fits(calls))?;
     Some(Unsound {
@@ -84,8 +98,9 @@ fn unsound_relative(lesson: &Lesson) -> Option<Unsound> {
     ruled.then(|| Unsound {
         place: goal.text.clone(),
         key: "goal.relative",
-        problem: "a goal relative to a good play that answers companies by rules is not possible; give it a number"
-            .to_owned(),
+        problem:
+            "a goal relative to a good play that answers companies by rules is not possible; give it a number"
+                .to_owned(),
     })
 }
 
@@ -114,7 +129,8 @@ fn unknown_name(lesson: &Lesson) -> Option<Unsound> {
     for text in texts.chain(says).chain([&lesson.debrief, &lesson.for_teachers]) {
         let filled = lesson.filled(text);
         let name = filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name);
-        let is_name = |name: &&str| name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        let is_name =
+            |name: &&str| name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if let Some(name) = name.into_iter().find(is_name) {
             return Some(Unsound {
                 place: format!("{{{name}}}"),

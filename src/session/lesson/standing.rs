@@ -107,7 +107,8 @@ impl LessonStanding {
     /// Whether every goal of every step was reached.
     pub fn has_reached_all(&self) -> bool {
         let wanted: usize = self.own_part().steps.iter().map(|step| step.goals.len()).sum();
-        let reached = |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
+        let reached =
+            |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
         self.notes.iter().filter(reached).count() == wanted
     }
 

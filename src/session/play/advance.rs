@@ -21,6 +21,9 @@ use crate::world::events::DayFigures;
 use crate::world::held::Held;
 use crate::world::market::surges::week_end;
 
+/// The rationale of a week in a lesson that asks for none.
+const UNASKED: &str = "(not asked for in this lesson)";
+
 /// A day that was just simulated.
 pub struct DayReport<'a> {
     /// Its figures.
@@ -98,6 +101,8 @@ impl Session {
     ) -> Result<Week, Refusal> {
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
         let possible = allowed.and_then(|()| self.simulation.refuse_crowded_day());
+        let unasked = Value::from(UNASKED);
+        let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
         let checked = possible.and_then(|()| {
             let text = tools::rationale(rationale)?;
             let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;

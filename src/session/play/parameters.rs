@@ -59,7 +59,11 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::set_parameter`].
-    pub(in crate::session) fn set_parameter_of_lesson(&mut self, key: &str, value: &Value) -> Result<(), Refusal> {
+    pub(in crate::session) fn set_parameter_of_lesson(
+        &mut self,
+        key: &str,
+        value: &Value,
+    ) -> Result<(), Refusal> {
         self.set_parameter_anyway(key, value, None).map(|_| ())
     }
 

@@ -87,7 +87,10 @@ fn unnamed_branch(
         return Err(Refusal::new("not_in_this_mode", message));
     }
     let shared = shared_lines(lines);
-    if mode != Mode::Debug && parent.lesson.is_none() && shared.iter().any(|line| matches!(line.record, Record::Override(_))) {
+    if mode != Mode::Debug
+        && parent.lesson.is_none()
+        && shared.iter().any(|line| matches!(line.record, Record::Override(_)))
+    {
         let message = "parameters were set in its past, so a branch of it is a debug run";
         return Err(Refusal::new("not_in_this_mode", message));
     }

@@ -1,0 +1,254 @@
+//! Lessons: what their files may say, how one goes, what its record holds, and that the shipped ones keep their promises.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use novamind::lab::check_plays;
+use novamind::session::{
+    Access, Configuration, Ended, Lesson, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via, verify,
+};
+use serde_json::json;
+
+/// Two steps of two weeks, with a number to guess and a choice.
+const PLAN: &str = r#"
+title = "Two steps"
+minutes = 5
+learning_goal = "You find out how a lesson goes."
+
+[access]
+tools = ["set_prices", "set_daily_spend"]
+
+[[part]]
+scenario = "competitor-off"
+seed = 7
+capacity = "follows usage"
+start_weeks = 1
+
+[[part.start]]
+week = 0
+calls = [
+  'set_prices {"A": 12, "B": 25, "C": 55}',
+  'set_model_tiers {"A": 1, "B": 2, "C": 4}',
+  'set_usage_quotas {"A": 60000, "B": 250000, "C": 1200000}',
+  'set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 750}}}',
+]
+
+[[part.step]]
+title = "First"
+text = "Spend on operations."
+weeks = 2
+hints = ["Try.", "Try more."]
+guess = { question = "How much cash?", figure = "cash", unit = "$" }
+
+[[part.step.goal]]
+text = "Cash of $900,000"
+figure = "cash"
+at_least = 900_000
+
+[[part.step]]
+title = "Second"
+text = "Better quality; {after} of cash with the good play."
+weeks = 2
+hints = ["Wait."]
+parameters = { "quality.base_product_quality" = 0.4 }
+guess = { question = "More leads that buy?", choices = ["no", "yes"], answer = 2 }
+
+[[part.step.goal]]
+text = "As much cash as the reference"
+figure = "cash"
+relative = 0.999
+
+[[part.step.goal]]
+text = "Subscribers by statement"
+sql = "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'"
+at_least = 1
+
+[[pitfall]]
+name = "costly"
+figure = "running costs"
+above = 60_000
+say = "That is a lot."
+
+[good]
+text = "Nothing."
+
+[bad]
+text = "Much too much."
+pitfall = "costly"
+[[bad.play]]
+week = 1
+calls = ['set_daily_spend {"operations": 30000, "development": 0}']
+
+[[measured]]
+name = "after"
+text = "cash after five weeks"
+figure = "cash"
+value = 960_000
+"#;
+
+fn lesson_of(folder: &Path, plan: &str) -> Result<Lesson, String> {
+    let path = folder.join("two.toml");
+    std::fs::write(&path, plan).expect("a file");
+    std::fs::write(folder.join("two.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
+    Lesson::of_file(&path).map_err(|error| error.to_string())
+}
+
+fn begin(folder: &Path) -> Session {
+    let lesson = Arc::new(lesson_of(folder, PLAN).expect("a lesson"));
+    let new = NewRun {
+        mode: Mode::Lesson,
+        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        storage: Storage::Runs(folder.join("runs")),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+}
+
+fn week(session: &mut Session) -> Result<(), Refusal> {
+    let forecasts = session.naive_forecasts();
+    session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
+}
+
+fn code(result: Result<impl Sized, Refusal>) -> &'static str {
+    result.err().map_or("accepted", |refusal| refusal.code)
+}
+
+#[test]
+fn wrong_files_name_line_and_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (old, new, part) in [
+        ("minutes = 5", "minutes = 5\nlevel = 3", "line 4"),
+        ("set_prices {\"A\": 12", "set_price {\"A\": 12", "there is no tool set_price"),
+        ("figure = \"running costs\"", "figure = \"luck\"", "there is no figure luck"),
+        ("figure = \"running costs\"", "figure = \"satisfaction\"", "not measured in lessons"),
+        ("pitfall = \"costly\"", "pitfall = \"cheap\"", "bad.pitfall"),
+        ("{after}", "{before}", "line 38, measured"),
+        ("hints = [\"Wait.\"]", "hints = []", "one to three hints"),
+        ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "a week at least"),
+        ("[[bad.play]]\nweek = 1", "[[bad.play]]\nweek = 0", "no week 0 in which a student decides"),
+        ("answer = 2", "answer = 3", "the number of one of them"),
+        ("at_least = 1\n", "at_least = 1\nat_most = 2\n", "one of at_least, at_most and relative"),
+        ("calls = ['set_daily", "calls = ['rules: reject rest', 'set_daily", "accepted"),
+        (
+            "[good]\ntext = \"Nothing.\"",
+            "[good]\ntext = \"x\"\n[[good.play]]\nweek = 2\ncalls = ['rules: reject rest']",
+            "give it a number",
+        ),
+    ] {
+        assert!(PLAN.contains(old), "{old}");
+        let said = lesson_of(folder.path(), &PLAN.replacen(old, new, 1)).err();
+        let said = said.unwrap_or_else(|| "accepted".to_owned());
+        assert!(said.contains(part), "{new}: {said}");
+    }
+}
+
+#[test]
+fn a_lesson_asks_judges_and_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path());
+    assert_eq!(session.day(), 7);
+    assert_eq!(code(week(&mut session)), "guess_first");
+    let refused = session.call("set_model_tiers", &json!({"A": 2}), Via::Plain);
+    assert_eq!(code(refused), "not_in_this_lesson");
+    let refused = session.call("set_capacity_tier", &json!({"tier": 3}), Via::Plain);
+    assert_eq!(code(refused), "not_in_this_lesson");
+    assert_eq!(code(session.guess_in_lesson(f64::NAN)), "guess_not_possible");
+    session.guess_in_lesson(950_000.0).expect("a guess");
+    assert_eq!(code(session.guess_in_lesson(1.0)), "no_question");
+    assert_eq!(session.hint_in_lesson().expect("a hint"), "Try.");
+    week(&mut session).expect("a week");
+    week(&mut session).expect("a week");
+    let standing = session.lesson().expect("a lesson");
+    let cash = session.weeks().last().expect("a week").cash;
+    assert_eq!(standing.outcome(0).expect("an outcome").value, Some(cash));
+    assert_eq!(standing.goals(0)[0].met, Some(cash >= 900_000.0));
+    assert_eq!(session.lesson_step(), Some(1));
+    assert_eq!(session.params().quality.base_product_quality, 0.4);
+    assert_eq!(code(session.guess_in_lesson(3.0)), "guess_not_possible");
+    session.guess_in_lesson(2.0).expect("a guess");
+    week(&mut session).expect("a week");
+    week(&mut session).expect("a week");
+    assert_eq!(session.ended(), Some(Ended::Lesson));
+    assert!(session.lesson().expect("a lesson").has_reached_all());
+    assert_eq!(session.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(true));
+    assert_eq!(code(week(&mut session)), "lesson_over");
+}
+
+#[test]
+fn the_record_of_a_lesson_is_replayed_and_taken_up_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path());
+    session.guess_in_lesson(1.0).expect("a guess");
+    session.hint_in_lesson().expect("a hint");
+    week(&mut session).expect("a week");
+    let (hash, own) = (session.state_hash(), session.folder().expect("a folder").to_owned());
+    let page = session.lesson_page().expect("a page");
+    drop(session);
+    let mut again = Session::open(&own, Access::Write, true).expect("it opens");
+    assert_eq!(again.state_hash(), hash);
+    assert_eq!(again.lesson_page().expect("a page"), page);
+    week(&mut again).expect("a week");
+    again.guess_in_lesson(1.0).expect("a guess");
+    week(&mut again).expect("a week");
+    week(&mut again).expect("a week");
+    assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
+    drop(again);
+    verify(&own).expect("the record is sound");
+}
+
+#[test]
+fn another_try_begins_where_the_step_began_and_is_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path());
+    session.guess_in_lesson(1.0).expect("a guess");
+    week(&mut session).expect("a week");
+    week(&mut session).expect("a week");
+    session.guess_in_lesson(1.0).expect("a guess");
+    let begun = session.state_hash();
+    week(&mut session).expect("a week");
+    let again = session.try_step_again(1).expect("another try");
+    assert_eq!(again.state_hash(), begun);
+    let standing = again.lesson().expect("a lesson");
+    assert_eq!((standing.tries(0), standing.tries(1)), (1, 2));
+    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), None));
+    assert!(standing.goals(0).len() == 1 && standing.goals(1).is_empty());
+    let third = again.try_step_again(1).expect("a third try");
+    assert_eq!(third.lesson().expect("a lesson").tries(1), 3);
+    assert_eq!(code(third.try_step_again(2)), "step_unknown");
+}
+
+#[test]
+fn a_lesson_that_was_altered_beside_its_run_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = begin(folder.path());
+    let own = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let path = own.join("lesson.toml");
+    let text = std::fs::read_to_string(&path).expect("a plan");
+    std::fs::write(&path, text.replace("at_least = 900_000", "at_least = 1")).expect("a file");
+    let problem = Session::open(&own, Access::Write, true).err().expect("it is refused").to_string();
+    assert!(problem.contains("lesson.toml") && problem.contains("not the one that was played"), "{problem}");
+}
+
+#[test]
+fn pitfalls_are_met_once_and_reference_plays_differ() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lesson = Arc::new(lesson_of(folder.path(), PLAN).expect("a lesson"));
+    let check = check_plays(&lesson, &[7, 8]).expect("plays");
+    assert!(check.problems().is_empty(), "{:?}", check.problems());
+    assert_eq!(check.bad[0].pitfalls, ["costly"]);
+    assert!(check.good[0].pitfalls.is_empty());
+}
+
+#[test]
+fn shipped_lessons_keep_their_promises_on_a_seed() {
+    let configuration = Configuration::shipped();
+    let names = configuration.lessons();
+    assert_eq!(names.len(), 12);
+    for name in names {
+        let lesson = Arc::new(configuration.lesson(&name).unwrap_or_else(|error| panic!("{name}: {error}")));
+        assert!(!lesson.debrief.is_empty() && !lesson.for_teachers.is_empty(), "{name}");
+        let check = check_plays(&lesson, &[2]).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(check.problems().is_empty(), "{name}: {:?}", check.problems());
+    }
+}

@@ -163,7 +163,7 @@ fn may_use(house: &str) -> &'static [&'static str] {
         "session" => &["tools", "database", "voice", "world", "notation"],
         "report" | "rules" => &["session", "world", "notation"],
         "glossary" => &["tools", "database", "notation"],
-        "lab" => &["report", "session", "tools", "database", "world", "notation"],
+        "lab" => &["report", "rules", "session", "tools", "database", "world", "notation"],
         "console" | "plain" => {
             &["report", "rules", "session", "glossary", "tools", "database", "world", "notation"]
         }

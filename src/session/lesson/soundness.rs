@@ -23,7 +23,7 @@ pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
     }
     plan.parts
         .iter()
-        .find_map(|part| unsound_part(part))
+        .find_map(unsound_part)
         .or_else(|| {
             let known: BTreeSet<&str> = plan.pitfalls.iter().map(|own| own.name.as_str()).collect();
             let named = plan.bad.pitfall.as_deref();

@@ -102,7 +102,7 @@ impl Session {
     /// The line does not follow from what is before it.
     pub(in crate::session) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
         if self.manifest.mode != Mode::Debug && self.manifest.lesson.is_none() {
-            return Err("it sets a parameter, which only a debug run and a lesson can".to_owned());
+            return Err("it sets a parameter, which only a debug run can, or a lesson by itself".to_owned());
         }
         let today = self.simulation.world.day;
         if line.from_day.is_some_and(|day| day <= today) {

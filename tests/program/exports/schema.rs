@@ -169,6 +169,7 @@ fn note_every_activity(run: &mut Session) {
     run.note_activity(Activity::Draft(of(example("draft"))));
     run.note_activity(Activity::Question(of(example("question"))));
     run.note_activity(Activity::Answer(of(example("answer"))));
+    run.note_activity(Activity::Lesson(of(example("lesson"))));
     run.note_activity(Activity::Look(of(example("look"))));
     run.note_activity(Activity::Xray(of(example("xray"))));
 }

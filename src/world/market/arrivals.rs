@@ -13,6 +13,7 @@ use crate::enterprise::{Company, Enterprise, Standing};
 use crate::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
 use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::market::Market;
+use crate::market::drift::Expectation;
 use crate::market::economy::Dimension;
 use crate::params::{DriftCounted, Params, ServicePenalty};
 use crate::product::quality::quota_demand;
@@ -175,6 +176,27 @@ pub struct FirstLook {
 }
 
 impl FirstLook {
+    /// A look at offers under a promotion for leads, dollars a month, with a curve and what quotas are compared with.
+    #[inline]
+    pub fn of(
+        offers: &ByPlan<Offer>,
+        promotion: f64,
+        (curve, demand): (Curve, f64),
+        noise: Word,
+        params: &Params,
+    ) -> FirstLook {
+        let quality = &params.quality;
+        let discount = promotion.max(params.promotions.lead_promotion_min);
+        FirstLook {
+            offers: *offers,
+            discount,
+            demand,
+            curve,
+            choice: choose_plan(offers, discount, demand, &curve, params),
+            noise: noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max),
+        }
+    }
+
     /// Whether it signs up.
     pub fn accepts(&self, params: &Params) -> bool {
         accepts(&self.choice, self.noise, &self.curve, params)
@@ -214,23 +236,17 @@ fn look_first(
     noise: Word,
 ) -> FirstLook {
     let &DayContext { settings, params, .. } = arrivals.day;
-    let quality = &params.quality;
-    let discount =
-        settings.lead_promotion.sum(group, source.channel()).max(params.promotions.lead_promotion_min);
-    FirstLook {
-        offers: *offers,
-        discount,
-        demand,
-        curve,
-        choice: choose_plan(offers, discount, demand, &curve, params),
-        noise: noise.between(quality.initial_decision_noise_min, quality.initial_decision_noise_max),
-    }
+    let promotion = settings.lead_promotion.sum(group, source.channel());
+    FirstLook::of(offers, promotion, (curve, demand), noise, params)
 }
 
-/// The curve of a lead with today's expectations, and what quotas are compared with.
 fn curve_and_demand(arrivals: &Arrivals<'_>, group: Group, traits: &Traits) -> (Curve, f64) {
     let &DayContext { morning, params, .. } = arrivals.day;
-    let expectation = morning.expectations[group];
+    curve_and_demand_under(morning.expectations[group], traits, params)
+}
+
+/// The curve of a lead with what the market has added to expectations, and what quotas are compared with.
+pub fn curve_and_demand_under(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
     let rate = traits.usage_demand * traits.seats;

@@ -6,6 +6,7 @@ pub mod discovery;
 pub mod drift;
 pub mod economy;
 pub mod insights;
+pub mod lead_sample;
 pub mod leads;
 pub mod reputation;
 pub mod social;

@@ -1,0 +1,205 @@
+//! A sample of leads of a group, and what they would choose: decided by the functions that decide on arrivals
+//! (docs/mechanics/customers/curve-explorer.md).
+
+use super::arrivals::{FirstLook, curve_and_demand_under};
+use super::drift::Expectation;
+use crate::customers::choice::{Offer, passes_gate};
+use crate::customers::curve::{Curve, required_quality};
+use crate::customers::traits::traits_from;
+use crate::identifiers::{ByPlan, Group};
+use crate::params::Params;
+use crate::random::{Part, Stream, Streams, Word};
+
+/// A lead: its curve, what it compares quotas with, and how it misjudges quality.
+#[derive(Debug, Clone, Copy)]
+struct SampledLead {
+    curve: Curve,
+    demand: f64,
+    misjudgement: Word,
+}
+
+/// Leads of one group, drawn from streams as arriving ones are.
+#[derive(Debug, Clone)]
+pub struct LeadSample {
+    group: Group,
+    leads: Vec<SampledLead>,
+}
+
+/// What the leads of a sample would do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstChoices {
+    /// Leads that were asked, at least 1.
+    pub leads: u32,
+    /// Individuals who take a plan; of companies, those that ask for an offer stand under A.
+    pub takers: ByPlan<u32>,
+    /// Sum of the first bills, dollars; 0 of companies, which negotiate theirs.
+    pub first_bills: f64,
+}
+
+impl FirstChoices {
+    /// Share of the leads that sign up, of companies that ask for an offer, 0..=1.
+    pub fn conversion(&self) -> f64 {
+        f64::from(self.takers.0.iter().sum::<u32>()) / f64::from(self.leads)
+    }
+
+    /// Dollars that a lead brings with its first bill, in the mean of all leads.
+    pub fn revenue_per_lead(&self) -> f64 {
+        self.first_bills / f64::from(self.leads)
+    }
+}
+
+impl LeadSample {
+    /// The first so many customers of a group under these streams, with what the market has added to their curves.
+    pub fn draw(
+        group: Group,
+        count: u32,
+        expectation: Expectation,
+        params: &Params,
+        streams: &Streams,
+    ) -> LeadSample {
+        let keys: Vec<[u64; 2]> =
+            (1..=count.max(1)).map(|n| [group.index() as u64, u64::from(n)]).collect();
+        let traits = streams.keys(Part::Traits, &keys);
+        let noises = streams.first_words(Part::LeadNoise, &keys);
+        let lead = |(key, misjudgement)| {
+            // The speed of deals moves no trait that a first choice reads.
+            let traits = traits_from(Stream::of(key), group, 1.0, params);
+            let (curve, demand) = curve_and_demand_under(expectation, &traits, params);
+            SampledLead { curve, demand, misjudgement }
+        };
+        LeadSample { group, leads: traits.into_iter().zip(noises).map(lead).collect() }
+    }
+
+    /// What the leads would do with these offers: `promotion` is that for leads, `ongoing` that for subscribers of a plan,
+    /// which makes the first bill cheaper and wins nobody; dollars a month.
+    pub fn choose(
+        &self,
+        offers: &ByPlan<Offer>,
+        promotion: f64,
+        ongoing: &ByPlan<f64>,
+        params: &Params,
+    ) -> FirstChoices {
+        let mut choices =
+            FirstChoices { leads: self.leads.len() as u32, takers: ByPlan([0; 3]), first_bills: 0.0 };
+        for lead in &self.leads {
+            if self.group.is_enterprise() {
+                let asks = passes_gate(offers, lead.demand, &lead.curve, params);
+                choices.takers.0[0] += u32::from(asks);
+                continue;
+            }
+            let own = (lead.curve, lead.demand);
+            let look = FirstLook::of(offers, promotion, own, lead.misjudgement, params);
+            if look.accepts(params) {
+                let plan = look.choice.plan;
+                let bill = offers[plan].price - look.discount - ongoing[plan];
+                choices.takers[plan] += 1;
+                choices.first_bills += bill.max(params.billing.effective_price_min);
+            }
+        }
+        choices
+    }
+
+    /// Qualities that all of these shares of the leads require at most at a price, in the order of the shares (0..=1). A
+    /// price above their budget is accepted by none, whatever the quality: infinity.
+    pub fn required(&self, price: f64, shares: &[f64], params: &Params) -> Vec<f64> {
+        let required = |lead: &SampledLead| match price > lead.curve.c_max {
+            true => f64::INFINITY,
+            false => required_quality(price, &lead.curve, params),
+        };
+        let mut all: Vec<f64> = self.leads.iter().map(required).collect();
+        all.sort_by(f64::total_cmp);
+        let last = all.len() - 1;
+        shares.iter().map(|share| all[((share * last as f64).round() as usize).min(last)]).collect()
+    }
+
+    /// The budget that a share of the leads does not exceed, dollars a month.
+    pub fn budget(&self, share: f64) -> f64 {
+        let mut budgets: Vec<f64> = self.leads.iter().map(|lead| lead.curve.c_max).collect();
+        budgets.sort_by(f64::total_cmp);
+        let last = budgets.len() - 1;
+        budgets[((share * last as f64).round() as usize).min(last)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::customers::traits::draw_traits;
+
+    const SAMPLE: u32 = 2000;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    fn sample(id: &str) -> LeadSample {
+        LeadSample::draw(group(id), SAMPLE, Expectation::default(), &Params::shipped(), &Streams::new(1))
+    }
+
+    fn alike(price: f64, quality: f64) -> ByPlan<Offer> {
+        ByPlan([Offer { price, quality, quota: 1e6 }; 3])
+    }
+
+    /// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
+    #[test]
+    fn conversions_are_within_two_points_of_those_of_the_simulator() {
+        let (params, s1) = (Params::shipped(), sample("S1"));
+        for (price, simulated) in [
+            (12.0, [0.37, 0.83, 0.96]),
+            (20.0, [0.18, 0.69, 0.80]),
+            (30.0, [0.06, 0.51, 0.69]),
+            (40.0, [0.02, 0.35, 0.56]),
+        ] {
+            for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
+                let own = s1.choose(&alike(price, quality), 0.0, &ByPlan([0.0; 3]), &params);
+                let off = own.conversion() - conversion;
+                assert!(off.abs() <= 0.02, "${price} at {quality}: {} and {conversion}", own.conversion());
+            }
+        }
+    }
+
+    #[test]
+    fn the_sample_is_the_first_customers_of_the_streams() {
+        let (params, streams) = (Params::shipped(), Streams::new(1));
+        let s1 = sample("S1");
+        assert_eq!(s1.leads.len(), 2000);
+        for n in [1, 9, 2000] {
+            let own = draw_traits(group("S1"), n, 0.3, &params, &streams);
+            assert_eq!(s1.leads[n as usize - 1].curve, own.curve);
+        }
+    }
+
+    #[test]
+    fn half_of_the_leads_ask_for_less_than_the_median_and_budgets_are_a_limit() {
+        let (params, s1) = (Params::shipped(), sample("S1"));
+        let [low, median, high]: [f64; 3] =
+            s1.required(14.0, &[0.1, 0.5, 0.9], &params).try_into().expect("three shares");
+        assert!(low < median && median < high && high < 1.0, "{low} {median} {high}");
+        let asked = s1.leads.iter().filter(|own| required_quality(14.0, &own.curve, &params) <= median);
+        assert_eq!(asked.count(), 1001);
+        assert_eq!(s1.required(s1.budget(0.5) + 0.01, &[0.5], &params), [f64::INFINITY]);
+    }
+
+    #[test]
+    fn promotions_win_leads_and_ongoing_ones_only_make_the_bill_cheaper() {
+        let (params, s1, none) = (Params::shipped(), sample("S1"), ByPlan([0.0; 3]));
+        let list = s1.choose(&alike(20.0, 0.4), 0.0, &none, &params);
+        let promoted = s1.choose(&alike(20.0, 0.4), 8.0, &none, &params);
+        let ongoing = s1.choose(&alike(20.0, 0.4), 0.0, &ByPlan([8.0; 3]), &params);
+        assert!(promoted.takers.0[0] > list.takers.0[0]);
+        assert_eq!(ongoing.takers, list.takers);
+        assert!((ongoing.revenue_per_lead() / list.revenue_per_lead() - 0.6).abs() < 1e-12);
+        let same = s1.choose(&alike(12.0, 0.4), 0.0, &none, &params);
+        assert_eq!(promoted, same, "a list price of 20 less 8 is a price of 12");
+    }
+
+    #[test]
+    fn companies_ask_for_an_offer_whatever_the_price_is() {
+        let (params, e1, none) = (Params::shipped(), sample("E1"), ByPlan([0.0; 3]));
+        let cheap = e1.choose(&alike(1.0, 0.55), 0.0, &none, &params);
+        let dear = e1.choose(&alike(900.0, 0.55), 0.0, &none, &params);
+        assert_eq!(cheap, dear);
+        assert!(cheap.conversion() > 0.2 && cheap.conversion() < 0.9, "{}", cheap.conversion());
+        assert_eq!(cheap.first_bills, 0.0);
+    }
+}

@@ -45,6 +45,8 @@ pub enum Scope {
     Decisions,
     /// Branches side by side.
     Branches,
+    /// A participation curve beside the plans.
+    Curve,
     /// Hidden state of the run.
     Xray,
     /// The offer of texts that were typed and not sent.
@@ -55,7 +57,7 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 24] = [
+    pub const ALL: [Scope; 25] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -70,6 +72,7 @@ impl Scope {
         Scope::Memo,
         Scope::Social,
         Scope::Market,
+        Scope::Curve,
         Scope::Xray,
         Scope::Dialog,
         Scope::Menu,
@@ -106,6 +109,7 @@ impl Scope {
             Scope::Visit => "visit",
             Scope::Decisions => "decisions",
             Scope::Branches => "branches",
+            Scope::Curve => "curve",
             Scope::Xray => "xray",
             Scope::Unsent => "unsent",
             Scope::Cover => "cover",
@@ -136,6 +140,7 @@ impl Scope {
             Scope::Visit => "Pages of a participant",
             Scope::Decisions => "What if: decisions",
             Scope::Branches => "What if: figures",
+            Scope::Curve => "Participation curve",
             Scope::Xray => "X-ray",
             Scope::Unsent => "Unsent text",
             Scope::Cover => "While the clock is stopped",
@@ -211,6 +216,7 @@ actions! {
         Explain "explain" "what is this" "Explain the selected figure or field."
         Why "why" "why" "Say how much of the change of the selected figure each cause brought: the week is simulated again without it. Not in an unfinished baseline run."
         Branches "branches" "what if" "Simulate the run again from a week on under other decisions, in memory. Not in an unfinished baseline run."
+        Curves "curves" "participation curve" "Show the quality that a group requires at a price, drag prices and qualities of the plans, and see what leads would do. Nothing is set."
         Glossary "glossary" "glossary" "Look up any term."
         Tour "tour" "tour" "Resume the tour of a practice run; the start menu begins it."
         TourSkip "tour-skip" "skip" "Skip this step of the tour."
@@ -334,6 +340,13 @@ actions! {
         StudyGroup "study-group" "study" "Order a study of the selected group to the chosen level, after confirmation."
         LevelUp "level-up" "level up" "Choose a higher level for the study."
         LevelDown "level-down" "level down" "Choose a lower level for the study."
+        GroupCurve "group-curve" "curve" "Show the participation curve of the selected group beside the plans."
+    }
+    Curve {
+        NextPlan "next-plan" "plan" "Drag the next plan, or all of them together. Left and right drag the price, up and down the quality."
+        NextCurve "next-curve" "next group" "Show the curve of the next known group."
+        PreviousCurve "previous-curve" "group before" "Show the curve of the known group before."
+        ResetCurve "reset-curve" "reset" "Put the plans back where they stand."
     }
     Xray {
         TypeChoice "type" "type" "Type a group, a part, the number of a customer, or the condition of a breakpoint."

@@ -2,6 +2,7 @@
 //!
 //! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
 
+mod curve;
 mod guide;
 mod input;
 mod leaving;
@@ -229,6 +230,8 @@ pub struct App {
     why_question: u64,
     /// Number of the last question what would have been.
     branches_question: u64,
+    /// The newest question for a curve.
+    curve_question: u64,
     /// Number of the last look at hidden state.
     look_question: u64,
     /// What is to follow when the run is closed.
@@ -302,6 +305,7 @@ impl App {
             rows_question: 0,
             why_question: 0,
             branches_question: 0,
+            curve_question: 0,
             look_question: 0,
             closing: None,
             opens_on: None,

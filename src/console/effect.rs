@@ -63,6 +63,10 @@ pub enum Effect {
     ShowRows(Figure),
     /// Close whatever lies over the screen.
     CloseDialogs,
+    /// Show the curve of a group, of the first known one if none is named.
+    ShowCurve(Option<Group>),
+    /// Draw the curve of a group for the page that is open.
+    AskCurve(Group),
     /// Find out what would have been; the flag ends the work.
     AskBranches(BranchesQuestion, Arc<AtomicBool>),
     /// Read the tree of branches in which the run stands.

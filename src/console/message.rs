@@ -12,7 +12,7 @@ use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows,
+    Change, CurveExplorer, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition, Preview, Refusal, Rows,
     TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
@@ -111,6 +111,8 @@ pub enum News {
     BranchesProgress(u64, usize, usize),
     /// What would have been.
     Branches(u64, Box<Result<BranchesFound, Refusal>>),
+    /// The curve of a group was drawn; the number says which question it answers.
+    Curve(u64, Box<Result<Arc<CurveExplorer>, Refusal>>),
     /// The tree of branches in which a run stands, with its id.
     Kin(String, Vec<Kin>),
     /// What was seen of the run from within; the number says which question it answers. With the company where it has changed.

@@ -6,6 +6,7 @@
 
 mod branches;
 mod causes;
+mod curve;
 mod desk;
 mod folder;
 mod inside;
@@ -39,6 +40,7 @@ use crate::session::{
     Rows, RunError, Session, UnsentTexts, WhatIf,
 };
 use crate::tools::ToolId;
+use crate::world::identifiers::Group;
 use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
@@ -65,6 +67,8 @@ pub enum Job {
     FindCauses(WhyAsked),
     /// Find out what would have been.
     FindBranches(BranchesAsked),
+    /// Draw the curve of a group; the number tells the answer from others.
+    FindCurve(u64, Group),
     /// Read the tree of branches in which the run stands.
     ReadKin,
     /// Look at hidden state of the run.
@@ -287,6 +291,7 @@ impl SessionThread {
             }),
             Job::FindCauses(asked) => self.find_causes(asked),
             Job::FindBranches(asked) => self.find_branches(asked),
+            Job::FindCurve(number, group) => self.find_curve(number, group),
             Job::ReadKin => self.read_kin(),
             Job::AskInside(number, sql) => self.ask_inside(number, &sql),
             Job::LookInside(number, question) => self.look_inside(number, &question),

@@ -3,6 +3,7 @@
 mod asked;
 mod breakpoints;
 mod check;
+mod curve;
 mod difference;
 mod groups;
 mod help;
@@ -68,6 +69,10 @@ const COMMANDS: &[(&str, &str)] = &[
     (
         "leads",
         "leads [GROUP]            leads by group, paid and by word of mouth, and what a lead and a first bill cost",
+    ),
+    (
+        "curve",
+        "curve GROUP [PRICE QUALITY] quality that leads require at a price, and what would come of a price and a quality",
     ),
     ("changes", "changes                  settings changed since the last week"),
     (
@@ -151,6 +156,7 @@ const LOOKS: &[&str] = &[
     "needs",
     "fit",
     "leads",
+    "curve",
     "history",
     "report",
     "branches",
@@ -302,6 +308,7 @@ impl Interpreter {
             "needs" => none(arguments).map(|()| self.needs()),
             "fit" => name(arguments).and_then(|name| self.fit(name, arguments)),
             "leads" => name(arguments).and_then(|name| self.leads(name, arguments)),
+            "curve" => self.curve(arguments),
             "undo" => none(arguments).map(|()| self.undo()),
             "redo" => none(arguments).map(|()| self.redo()),
             "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),

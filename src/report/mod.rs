@@ -10,6 +10,7 @@ pub(crate) mod books;
 mod card;
 pub(crate) mod chapters;
 pub(crate) mod collection;
+pub(crate) mod curve;
 pub(crate) mod deals;
 pub(crate) mod fit;
 pub(crate) mod funnel;

@@ -8,6 +8,7 @@ pub(crate) mod archive;
 mod ask;
 mod audit;
 mod counterfactual;
+mod curve;
 mod error;
 mod figures;
 mod folder;
@@ -29,6 +30,11 @@ pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use counterfactual::last_read::{LastRead, OfRecord};
 pub use counterfactual::one_each::unless_stopped;
 pub use counterfactual::script::PastCall;
+pub use curve::access::CurveLook;
+pub use curve::example::example_curve;
+pub use curve::explorer::{
+    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS,
+};
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};

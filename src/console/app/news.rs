@@ -129,6 +129,12 @@ impl App {
                 }
                 return;
             }
+            News::Curve(number, _) => {
+                if *number == self.curve_question {
+                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
+                }
+                return;
+            }
             News::Why(number, _) | News::WhyProgress(number, _) => {
                 if *number == self.why_question {
                     self.in_dialog(|dialog, look| dialog.hear(&news, look));

@@ -63,6 +63,8 @@ impl App {
                 self.orders.push(Order::Job(Job::AskInside(self.questions, sql)));
             }
             Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
+            Effect::ShowCurve(group) => self.show_curve(group),
+            Effect::AskCurve(group) => self.ask_curve(group),
             Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
             Effect::ReadKin => self.orders.push(Order::Job(Job::ReadKin)),
             Effect::OpenRun(id) => self.open_other(id),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, Outcome, term_picture};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::effect::Effect;
@@ -210,7 +210,12 @@ impl Dialog for Explain {
         let room = area.height.saturating_sub(2);
         let for_text = (text.len() as u16).min(room.saturating_sub(least));
         let for_links = (links + u16::from(links > 0)).min(room - for_text);
-        let own = centered(area, width, for_text + for_links + 2);
+        // A picture takes what text and links leave.
+        let for_picture = match (room - for_text - for_links).min(term_picture::MOST_ROWS) {
+            rows if rows >= term_picture::LEAST_ROWS && term_picture::has_picture(&page.term) => rows,
+            _ => 0,
+        };
+        let own = centered(area, width, for_text + for_picture + for_links + 2);
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, &page.title, &page.note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
@@ -222,7 +227,9 @@ impl Dialog for Explain {
             ]);
             canvas.line(row, &line);
         }
-        let below = Rect { y: above.bottom(), height: inside.height - above.height, ..inside };
+        let picture = Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
+        term_picture::draw(canvas, picture, &page.term);
+        let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
         self.draw_links(canvas, below, look);
         canvas.pane_keys(own, &self.keys(look));
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, Outcome, term_picture};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, centered, rows_of};
 use crate::console::effect::Effect;
@@ -151,9 +151,14 @@ impl Glossary {
         canvas.text(area, &rule, Role::Border);
         let text = format!("{} {}", term.text, self.numbers.fill(&term.more));
         let rest = Rect { y: area.y + 1, height: area.height - 1, ..area };
-        for (row, line) in rows_of(rest).zip(wrapped(text.trim(), area.width as usize)) {
+        // The picture stands beside the text, where that keeps half of the width.
+        let has_picture = term_picture::has_picture(&term.id) && area.width >= 2 * term_picture::COLUMNS;
+        let taken = if has_picture { term_picture::COLUMNS } else { 0 };
+        let words = Rect { width: area.width - taken, ..rest };
+        for (row, line) in rows_of(words).zip(wrapped(text.trim(), words.width.saturating_sub(taken.min(1)) as usize)) {
             canvas.text(row, &line, Role::Text);
         }
+        term_picture::draw(canvas, Rect { x: words.right(), width: taken, ..rest }, &term.id);
     }
 }
 
@@ -184,6 +189,19 @@ mod tests {
         assert!(away.close && matches!(away.effects[..], [Effect::Do(Action::Cash)]));
         assert!(!in_dialog(&mut dialog, Action::Close, &company).close, "the filter is cleared first");
         assert!(in_dialog(&mut dialog, Action::Close, &company).close);
+    }
+
+    #[test]
+    fn the_participation_curve_is_there_with_a_picture() {
+        let company = company();
+        let mut dialog = Glossary::new(company.numbers.clone());
+        in_dialog(&mut dialog, Action::Filter, &company);
+        dialog.table.edit_filter(|field| field.insert("participation curve"));
+        in_dialog(&mut dialog, Action::Commit, &company);
+        let shown = dialog_picture(&dialog, &company, 120, 40);
+        assert!(shown.contains("Participation curve") && shown.contains("$50") && shown.contains('┈'), "{shown}");
+        let small = dialog_picture(&dialog, &company, 80, 24);
+        assert!(small.contains("Participation curve") && !small.contains("$50"), "{small}");
     }
 
     #[test]

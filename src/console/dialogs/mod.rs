@@ -2,6 +2,7 @@
 
 pub mod branches;
 pub mod confirm;
+pub mod curve;
 pub mod explain;
 pub mod filing;
 pub mod final_page;
@@ -15,6 +16,7 @@ pub mod restore;
 pub mod rows;
 pub mod seek;
 pub mod take_over;
+mod term_picture;
 pub mod why;
 
 use std::sync::Arc;

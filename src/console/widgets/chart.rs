@@ -84,6 +84,18 @@ pub struct Side<'a> {
     pub holds: &'a [f64],
 }
 
+/// A letter or a word at a point, over everything else.
+pub struct Sign {
+    /// Place on the axis below.
+    pub x: f64,
+    /// Place on the axis to the left.
+    pub y: f64,
+    /// What stands there.
+    pub text: &'static str,
+    /// Meaning.
+    pub role: Role,
+}
+
 /// A chart.
 pub struct Plot<'a> {
     /// Curves; the last one lies on top.
@@ -132,6 +144,11 @@ impl Frame {
 impl Plot<'_> {
     /// Draws it; says so when there is nothing to draw yet.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        self.draw_with(canvas, area, &[]);
+    }
+
+    /// Draws it with signs on top; those outside of the axes stand at their ends.
+    pub fn draw_with(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[Sign]) {
         let area = area.intersection(canvas.buffer.area);
         if area.width < 16 || area.height < 4 {
             return;
@@ -169,6 +186,11 @@ impl Plot<'_> {
             }
         }
         self.draw_lines(canvas, &frame);
+        for sign in signs {
+            let place = Rect { x: frame.column(sign.x), y: frame.row(sign.y), height: 1, ..inside };
+            let room = inside.right().saturating_sub(place.x);
+            canvas.text(Rect { width: room, ..place }, sign.text, sign.role);
+        }
         if names > 0 {
             let place = Rect { x: inside.right() + 1, width: names, ..inside };
             self.draw_names(canvas, place, &frame);

@@ -57,8 +57,7 @@ impl LeadSample {
         params: &Params,
         streams: &Streams,
     ) -> LeadSample {
-        let keys: Vec<[u64; 2]> =
-            (1..=count.max(1)).map(|n| [group.index() as u64, u64::from(n)]).collect();
+        let keys: Vec<[u64; 2]> = (1..=count.max(1)).map(|n| [group.index() as u64, u64::from(n)]).collect();
         let traits = streams.keys(Part::Traits, &keys);
         let noises = streams.first_words(Part::LeadNoise, &keys);
         let lead = |(key, misjudgement)| {

@@ -50,8 +50,8 @@ const FIND: ToolId = ToolId::ResearchMarket;
 const STUDY: ToolId = ToolId::ResearchGroup;
 
 /// Actions worth showing where a group is selected.
-const GROUP_HINTS: [Action; 5] =
-    [Action::Open, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter];
+const GROUP_HINTS: [Action; 6] =
+    [Action::Open, Action::GroupCurve, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter];
 
 /// The screen.
 #[derive(Default)]
@@ -123,6 +123,15 @@ impl Market {
         let effect = self.group().map(|group| match level_of(company, group) {
             0 => Effect::Complain(format!("{group} is not found yet; nothing is known of it")),
             _ => Effect::ShowGroup(ScreenId::Customers, group),
+        });
+        effect.into_iter().collect()
+    }
+
+    /// The curve of the selected group.
+    fn show_curve(&self, company: &Company) -> Vec<Effect> {
+        let effect = self.group().map(|group| match level_of(company, group) {
+            0 => Effect::Complain(format!("{group} is not found yet; nothing is known of its curve")),
+            _ => Effect::ShowCurve(Some(group)),
         });
         effect.into_iter().collect()
     }
@@ -275,6 +284,7 @@ impl Paned for Market {
                 Some(vec![Effect::Complain("select the group to study in the pane of groups first".to_owned())])
             }
             Action::StudyGroup => Some(self.study(look.company)),
+            Action::GroupCurve => Some(self.show_curve(look.company)),
             Action::LevelUp | Action::LevelDown => {
                 self.choose_level(look.company, action == Action::LevelUp);
                 Some(Vec::new())

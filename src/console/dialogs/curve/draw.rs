@@ -1,0 +1,140 @@
+//! The page of the explorer: the plans in lines, what leads would do, and the curve.
+
+use ratatui::layout::Rect;
+
+use super::{CurvePage, Opened};
+use crate::console::canvas::{Canvas, Click, centered, rows_of};
+use crate::console::dialogs::Dialog;
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
+use crate::console::widgets::scale::Unit;
+use crate::notation::dollars;
+use crate::report::curve::{basis_in_words, outcome_in_words, plan_in_words, price, quality};
+use crate::session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
+use crate::world::identifiers::Plan;
+
+/// Widest that reads well.
+const WIDEST: u16 = 140;
+/// Lowest chart worth its rows.
+const LEAST_CHART: u16 = 5;
+
+impl CurvePage {
+    pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, area.width.saturating_sub(2).min(WIDEST), area.height.saturating_sub(2));
+        canvas.clear(own, Role::Text);
+        let note = self.opened().map_or(String::new(), |opened| basis_in_words(&opened.explorer.basis));
+        let title = format!("Participation curve of {}", self.group);
+        let inside = canvas.pane(own, &title, &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        match &self.found {
+            None => canvas.text(inside, &format!("asking {SAMPLED_LEADS} leads …"), Role::Warning),
+            Some(Err(refusal)) => {
+                for (row, line) in rows_of(inside).zip(wrapped(&refusal.message, inside.width as usize)) {
+                    canvas.text(row, &line, Role::Bad);
+                }
+            }
+            Some(Ok(opened)) => self.draw_opened(canvas, inside, opened),
+        }
+        canvas.pane_keys(own, &look.hints(&self.hints()));
+    }
+
+    fn draw_opened(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+        if area.is_empty() {
+            return;
+        }
+        let outcome = wrapped(&outcome_in_words(&opened.outcome), area.width as usize);
+        let legend = legend(opened, area);
+        let above = (3 + outcome.len()) as u16;
+        for (row, plan) in rows_of(area).zip(Plan::ALL) {
+            let here = self.chosen.is_none_or(|own| own == plan);
+            let role = if here { Role::Strong } else { Role::Text };
+            let mark = if here { "›" } else { " " };
+            let words = format!("{mark} {}", line_of(opened, plan));
+            canvas.text(row, &words, role);
+            canvas.click(row, Click::Row(0, plan.index()));
+        }
+        let rest = Rect { y: area.y + 3.min(area.height), height: area.height.saturating_sub(3), ..area };
+        for (row, line) in rows_of(rest).zip(&outcome) {
+            canvas.text(row, line, Role::Title);
+        }
+        let chart = Rect {
+            y: area.y + above.min(area.height),
+            height: area.height.saturating_sub(above + legend.len() as u16),
+            ..area
+        };
+        if chart.height >= LEAST_CHART {
+            self.draw_chart(canvas, chart, opened);
+        }
+        let below = Rect { y: chart.bottom(), height: area.bottom().saturating_sub(chart.bottom()), ..area };
+        for (row, line) in rows_of(below).zip(&legend) {
+            canvas.text(row, line, Role::Dim);
+        }
+    }
+
+    fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+        let points = &opened.explorer.points;
+        let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
+        let top = plans().map(|own| own.quality).fold(1.0, f64::max);
+        let most = opened.greatest_price();
+        // What nobody can pay for has no place on the chart: lines end there, and the band reaches its upper edge.
+        let line = |of: fn(&CurvePoint) -> f64, role| {
+            let inside = points.iter().filter(|point| of(point) <= top);
+            Line::through(inside.map(|point| (point.price, of(point))).collect(), role)
+        };
+        let mut lines = Vec::new();
+        if !opened.explorer.is_truth() {
+            lines.push(line(|point| point.median_between.0, Role::Dim));
+            lines.push(line(|point| point.median_between.1, Role::Dim));
+        }
+        lines.push(line(|point| point.median, Role::Series(0)).named("half"));
+        let covered = points.iter().filter(|point| point.tenth <= top);
+        let ends = covered.map(|point| (point.price, point.tenth, point.ninetieth.min(top))).collect();
+        let band = Band { ends, name: "" };
+        let x = Axis { write: &|value| dollars(value), holds: &[0.0, most] };
+        let y = Side { unit: Unit::Number, holds: &[0.0, top] };
+        let promotion = opened.explorer.promotion;
+        let sign = |plan: Plan| {
+            let own: &PlanPoint = &opened.plans[plan];
+            let here = self.chosen.is_none_or(|chosen| chosen == plan);
+            let role = if here { Role::Selection } else { Role::Series(1) };
+            Sign { x: (own.list - promotion).max(0.0), y: own.quality, text: plan.id(), role }
+        };
+        // The chosen one lies on top.
+        let mut order = Plan::ALL;
+        order.sort_by_key(|plan| self.chosen == Some(*plan));
+        let signs: Vec<Sign> = order.into_iter().map(sign).collect();
+        Plot { lines: &lines, band: Some(&band), mark: None, x: &x, y: &y }.draw_with(canvas, area, &signs);
+    }
+}
+
+/// A plan with what was dragged: `A $12 → $15, quality 0.20, taken by 12.3%`.
+fn line_of(opened: &Opened, plan: Plan) -> String {
+    let (now, was) = (&opened.plans[plan], &opened.explorer.plans[plan]);
+    let words = plan_in_words(plan, now, opened.outcome.takers.as_ref());
+    let mut changes = Vec::new();
+    if now.list != was.list {
+        changes.push(format!("set {}", price(was.list)));
+    }
+    if now.quality != was.quality {
+        changes.push(format!("delivered {}", quality(was.quality)));
+    }
+    if changes.is_empty() { words } else { format!("{words} ({})", changes.join(", ")) }
+}
+
+/// What the signs of the chart mean, as far as there is room.
+fn legend(opened: &Opened, area: Rect) -> Vec<String> {
+    if area.height < 14 {
+        return Vec::new();
+    }
+    let mut words =
+        "price across, quality up; line: half of the leads ask for no more; shaded: one to nine in ten".to_owned();
+    if !opened.explorer.is_truth() {
+        words += "; dim lines: half of them at the ends of the error. Studies tell means only: how widely a group spreads and how far its curve rises is assumed";
+    }
+    if opened.explorer.group.is_enterprise() {
+        words += "; price a seat";
+    }
+    wrapped(&words, area.width as usize)
+}

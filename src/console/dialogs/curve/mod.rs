@@ -1,0 +1,215 @@
+//! The curve explorer: the quality that a group requires at a price, the plans beside it, and what leads would make of other
+//! prices and qualities. Nothing that is dragged here is set.
+
+mod draw;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use ratatui::layout::Rect;
+use serde_json::{Map, Value, json};
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::Canvas;
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::screens::Look;
+use crate::session::{CurveExplorer, CurveOutcome, PlanPoint, Refusal};
+use crate::tools::ToolId;
+use crate::world::identifiers::{ByPlan, Group, Plan};
+
+/// Qualities are dragged by this much, with page keys by ten times as much.
+const QUALITY_STEP: f64 = 0.01;
+/// No product is as good as this.
+const MOST_QUALITY: f64 = 2.0;
+
+/// What is known of a group, with the plans as they are dragged.
+struct Opened {
+    explorer: Arc<CurveExplorer>,
+    plans: ByPlan<PlanPoint>,
+    outcome: CurveOutcome,
+}
+
+/// The explorer of a group.
+pub struct CurvePage {
+    group: Group,
+    /// What was found; none while it is drawn.
+    found: Option<Result<Opened, Refusal>>,
+    /// The plan that is dragged; none for all of them.
+    chosen: Option<Plan>,
+}
+
+impl CurvePage {
+    /// Waits for the curve of a group.
+    pub fn new(group: Group) -> CurvePage {
+        CurvePage { group, found: None, chosen: Some(Plan::A) }
+    }
+
+    fn take(&mut self, found: &Result<Arc<CurveExplorer>, Refusal>) {
+        self.found = Some(match found {
+            Ok(explorer) => {
+                let (explorer, plans) = (explorer.clone(), explorer.plans);
+                let outcome = explorer.outcome(&plans);
+                Ok(Opened { explorer, plans, outcome })
+            }
+            Err(refusal) => Err(refusal.clone()),
+        });
+    }
+
+    fn opened(&self) -> Option<&Opened> {
+        self.found.as_ref()?.as_ref().ok()
+    }
+
+    /// Changes the chosen plan, or all of them, and asks the leads again.
+    fn drag(&mut self, change: impl Fn(&mut PlanPoint)) {
+        let chosen = self.chosen;
+        let Some(Ok(opened)) = &mut self.found else { return };
+        for plan in Plan::ALL.into_iter().filter(|plan| chosen.is_none_or(|own| own == *plan)) {
+            change(&mut opened.plans[plan]);
+        }
+        opened.outcome = opened.explorer.outcome(&opened.plans);
+    }
+
+    fn drag_price(&mut self, steps: f64) {
+        let Some(most) = self.opened().map(Opened::greatest_price) else { return };
+        let step = price_step(most);
+        self.drag(|own| own.list = stepped(own.list, steps, step).clamp(0.0, most));
+    }
+
+    fn drag_quality(&mut self, steps: f64) {
+        self.drag(|own| own.quality = stepped(own.quality, steps, QUALITY_STEP).clamp(0.0, MOST_QUALITY));
+    }
+
+    /// Back to the plans as they stand.
+    fn reset(&mut self) {
+        if let Some(Ok(opened)) = &mut self.found {
+            opened.plans = opened.explorer.plans;
+            opened.outcome = opened.explorer.outcome(&opened.plans);
+        }
+    }
+
+    /// A, B, C, all together.
+    fn choose_next(&mut self) {
+        self.chosen = match self.chosen {
+            None => Some(Plan::A),
+            Some(plan) => Plan::ALL.into_iter().skip_while(|own| *own != plan).nth(1),
+        };
+    }
+
+    /// Another known group, forward or back.
+    fn turn(&mut self, forward: bool, look: &Look<'_>) -> Outcome {
+        let known = &look.company.seen.known_groups;
+        let Some(at) = known.iter().position(|own| *own == self.group) else { return Outcome::stay() };
+        let step = if forward { 1 } else { known.len() - 1 };
+        self.group = known[(at + step) % known.len()];
+        self.found = None;
+        Outcome::with(vec![Effect::AskCurve(self.group)])
+    }
+
+    /// To the form of prices with those that were dragged typed into it.
+    fn to_form(&self) -> Outcome {
+        let Some(opened) = self.opened() else { return Outcome::stay() };
+        let moved = |plan: &Plan| opened.plans[*plan].list != opened.explorer.plans[*plan].list;
+        let prices: Map<String, Value> = Plan::ALL
+            .into_iter()
+            .filter(moved)
+            .map(|plan| (plan.id().to_owned(), json!(opened.plans[plan].list)))
+            .collect();
+        let form = match prices.is_empty() {
+            true => Effect::ShowTool(ToolId::SetPrices),
+            false => Effect::Prefill { tool: ToolId::SetPrices, arguments: Value::Object(prices) },
+        };
+        Outcome::close_with(vec![Effect::CloseDialogs, form])
+    }
+}
+
+impl Opened {
+    /// The price at the right end of the curve.
+    fn greatest_price(&self) -> f64 {
+        self.explorer.points.last().map_or(1.0, |point| point.price)
+    }
+}
+
+/// Dollars by which prices are dragged: some hundred steps over the curve.
+fn price_step(most: f64) -> f64 {
+    match most {
+        most if most <= 150.0 => 1.0,
+        most if most <= 400.0 => 2.0,
+        _ => 5.0,
+    }
+}
+
+/// The next multiples of a step, so many on.
+fn stepped(value: f64, steps: f64, step: f64) -> f64 {
+    let at = value / step;
+    // From between two multiples the first step leads to the nearer end.
+    let from = if steps > 0.0 { (at + 1e-9).floor() } else { (at - 1e-9).ceil() };
+    (from + steps) * step
+}
+
+impl Dialog for CurvePage {
+    fn what(&self) -> String {
+        format!("curve of {}", self.group)
+    }
+
+    fn term(&self) -> Option<String> {
+        Some("participation-curve".to_owned())
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::Curve, Scope::List, Scope::Dialog]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.opened() {
+            Some(_) => vec![
+                Action::Left,
+                Action::Right,
+                Action::Up,
+                Action::Down,
+                Action::NextPlan,
+                Action::NextCurve,
+                Action::ResetCurve,
+                Action::Open,
+                Action::Close,
+            ],
+            None => vec![Action::Close],
+        }
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        match action {
+            Action::Close | Action::Cancel => return Outcome::close(),
+            Action::NextCurve | Action::PreviousCurve => return self.turn(action == Action::NextCurve, look),
+            Action::Open | Action::Confirm => return self.to_form(),
+            Action::Left => self.drag_price(-1.0),
+            Action::Right => self.drag_price(1.0),
+            Action::Up | Action::ScrollUp => self.drag_quality(1.0),
+            Action::Down | Action::ScrollDown => self.drag_quality(-1.0),
+            Action::PageUp => self.drag_quality(10.0),
+            Action::PageDown => self.drag_quality(-10.0),
+            Action::NextPlan => self.choose_next(),
+            Action::ResetCurve => self.reset(),
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
+        if let News::Curve(_, found) = news {
+            self.take(found);
+        }
+        Outcome::stay()
+    }
+
+    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+        self.chosen = Plan::ALL.get(row).copied();
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        self.draw_page(canvas, area, look);
+    }
+}

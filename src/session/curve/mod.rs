@@ -1,0 +1,13 @@
+//! The curve explorer: how much quality a group requires at a price, and what would come of other prices and qualities
+//! (docs/mechanics/customers/curve-explorer.md).
+//!
+//! In debug runs and in runs that are over it is drawn from the traits of the group itself, and each look is recorded; in all
+//! others from what studies have told, so that nothing hidden can be read off it.
+
+pub(in crate::session) mod access;
+pub(in crate::session) mod assumed;
+pub(in crate::session) mod example;
+pub(in crate::session) mod explorer;
+
+#[cfg(test)]
+mod tests;

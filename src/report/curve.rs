@@ -10,12 +10,12 @@ const ROW_EVERY: usize = 6;
 /// What no quality wins.
 const NOBODY: &str = "–";
 
-/// What the curve is drawn from: `the study of day 0 (level 1, ±65%)`.
+/// What the curve is drawn from: `estimates of day 0, ±65%`.
 pub fn basis_in_words(basis: &CurveBasis) -> String {
     match basis {
         CurveBasis::Truth { day } => format!("the truth of day {day}"),
-        CurveBasis::Estimates { level, noise, as_of } => {
-            format!("what is known since day {as_of} (level {level}, ±{})", percent(*noise, 0))
+        CurveBasis::Estimates { noise, as_of, .. } => {
+            format!("estimates of day {as_of}, ±{}", percent(*noise, 0))
         }
     }
 }
@@ -65,6 +65,15 @@ pub fn outcome_in_words(outcome: &CurveOutcome) -> String {
     }
 }
 
+/// The same in few words: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
+pub fn outcome_in_few_words(outcome: &CurveOutcome) -> String {
+    let conversion = with_ends(&outcome.conversion, |value| percent(value, 0));
+    match &outcome.revenue_per_lead {
+        Some(revenue) => format!("{conversion} · {} a lead", with_ends(revenue, cents)),
+        None => format!("{conversion} ask for an offer"),
+    }
+}
+
 /// A figure, with its ends where it has some.
 pub fn with_ends(figure: &Expected, write: impl Fn(f64) -> String) -> String {
     let likely = write(figure.likely);
@@ -100,7 +109,7 @@ mod tests {
     fn an_unfinished_run_is_told_with_ends_and_what_is_assumed() {
         let mut session = played(0);
         let own = session.curve_explorer(Group::parse("S1").expect("a group")).expect("an explorer");
-        assert_eq!(basis_in_words(&own.basis), "what is known since day 0 (level 1, ±65%)");
+        assert_eq!(basis_in_words(&own.basis), "estimates of day 0, ±65%");
         assert_eq!(columns(&own).len(), 6);
         assert_eq!(rows(&own).len(), 11);
         assert!(rows(&own)[0][0] == "$0" && rows(&own)[10][3] == "–");

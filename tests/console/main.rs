@@ -2,6 +2,7 @@
 
 mod behind;
 mod company;
+mod curve;
 mod figures;
 mod focus;
 mod guide;

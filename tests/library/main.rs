@@ -2,6 +2,7 @@
 
 mod battery;
 mod breakpoints;
+mod curve;
 mod difference;
 mod durability;
 mod enterprise;

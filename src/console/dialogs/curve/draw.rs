@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::{CurvePage, Opened};
+use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::dialogs::Dialog;
 use crate::console::screens::Look;
@@ -11,7 +12,9 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use crate::console::widgets::scale::Unit;
 use crate::notation::dollars;
-use crate::report::curve::{basis_in_words, outcome_in_words, plan_in_words, price, quality};
+use crate::report::curve::{
+    basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, price, quality,
+};
 use crate::session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
 use crate::world::identifiers::Plan;
 
@@ -19,13 +22,20 @@ use crate::world::identifiers::Plan;
 const WIDEST: u16 = 140;
 /// Lowest chart worth its rows.
 const LEAST_CHART: u16 = 5;
+/// Rows from which each plan has a line of its own.
+const LEAST_IN_FULL: u16 = 12;
+/// Rows from which the chart is explained.
+const LEAST_WITH_LEGEND: u16 = 14;
 
 impl CurvePage {
     pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let own = centered(area, area.width.saturating_sub(2).min(WIDEST), area.height.saturating_sub(2));
         canvas.clear(own, Role::Text);
         let note = self.opened().map_or(String::new(), |opened| basis_in_words(&opened.explorer.basis));
-        let title = format!("Participation curve of {}", self.group);
+        let title = match own.width {
+            ..78 => format!("Curve of {}", self.group),
+            _ => format!("Participation curve of {}", self.group),
+        };
         let inside = canvas.pane(own, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         match &self.found {
@@ -37,31 +47,45 @@ impl CurvePage {
             }
             Some(Ok(opened)) => self.draw_opened(canvas, inside, opened),
         }
-        canvas.pane_keys(own, &look.hints(&self.hints()));
+        canvas.pane_keys(own, &self.keys(look));
+    }
+
+    /// What drags stands before all other keys.
+    fn keys(&self, look: &Look<'_>) -> String {
+        let label = |action| look.keys.label(action).unwrap_or_default();
+        let drags = match self.opened() {
+            Some(_) => format!(
+                "{} {} price · {} {} quality · ",
+                label(Action::Left),
+                label(Action::Right),
+                label(Action::Up),
+                label(Action::Down)
+            ),
+            None => String::new(),
+        };
+        drags + &look.hints(&self.hints())
     }
 
     fn draw_opened(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
-        if area.is_empty() {
-            return;
-        }
-        let outcome = wrapped(&outcome_in_words(&opened.outcome), area.width as usize);
+        let is_low = area.height < LEAST_IN_FULL;
+        let outcome = match is_low {
+            true => vec![outcome_in_few_words(&opened.outcome)],
+            false => wrapped(&outcome_in_words(&opened.outcome), area.width as usize),
+        };
         let legend = legend(opened, area);
-        let above = (3 + outcome.len()) as u16;
-        for (row, plan) in rows_of(area).zip(Plan::ALL) {
-            let here = self.chosen.is_none_or(|own| own == plan);
-            let role = if here { Role::Strong } else { Role::Text };
-            let mark = if here { "›" } else { " " };
-            let words = format!("{mark} {}", line_of(opened, plan));
-            canvas.text(row, &words, role);
-            canvas.click(row, Click::Row(0, plan.index()));
+        let plans = if is_low { 1 } else { Plan::ALL.len() as u16 }.min(area.height);
+        match is_low {
+            true => canvas.text(area, &self.plans_in_few_words(opened), Role::Strong),
+            false => self.draw_plans(canvas, Rect { height: plans, ..area }, opened),
         }
-        let rest = Rect { y: area.y + 3.min(area.height), height: area.height.saturating_sub(3), ..area };
+        let rest = Rect { y: area.y + plans, height: area.height - plans, ..area };
         for (row, line) in rows_of(rest).zip(&outcome) {
             canvas.text(row, line, Role::Title);
         }
+        let above = (outcome.len() as u16).min(rest.height);
         let chart = Rect {
-            y: area.y + above.min(area.height),
-            height: area.height.saturating_sub(above + legend.len() as u16),
+            y: rest.y + above,
+            height: (rest.height - above).saturating_sub(legend.len() as u16),
             ..area
         };
         if chart.height >= LEAST_CHART {
@@ -71,6 +95,27 @@ impl CurvePage {
         for (row, line) in rows_of(below).zip(&legend) {
             canvas.text(row, line, Role::Dim);
         }
+    }
+
+    /// Before a plan that is dragged.
+    fn mark(&self, plan: Plan) -> &'static str {
+        if self.chosen.is_none_or(|own| own == plan) { "›" } else { " " }
+    }
+
+    fn draw_plans(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+        for (row, plan) in rows_of(area).zip(Plan::ALL) {
+            let mark = self.mark(plan);
+            let role = if mark == "›" { Role::Strong } else { Role::Text };
+            canvas.text(row, &format!("{mark} {}", line_of(opened, plan)), role);
+            canvas.click(row, Click::Row(0, plan.index()));
+        }
+    }
+
+    fn plans_in_few_words(&self, opened: &Opened) -> String {
+        let words = |(plan, own): (Plan, &PlanPoint)| {
+            format!("{}{plan} {} {}", self.mark(plan), price(own.list), quality(own.quality))
+        };
+        opened.plans.pairs().map(words).collect::<Vec<_>>().join("  ")
     }
 
     fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
@@ -125,16 +170,14 @@ fn line_of(opened: &Opened, plan: Plan) -> String {
 
 /// What the signs of the chart mean, as far as there is room.
 fn legend(opened: &Opened, area: Rect) -> Vec<String> {
-    if area.height < 14 {
+    if area.height < LEAST_WITH_LEGEND {
         return Vec::new();
     }
+    let unit = if opened.explorer.group.is_enterprise() { "price a seat" } else { "price" };
     let mut words =
-        "price across, quality up; line: half of the leads ask for no more; shaded: one to nine in ten".to_owned();
+        format!("{unit} across, quality up · line: half of the leads ask for no more · shaded: 1 to 9 in 10");
     if !opened.explorer.is_truth() {
-        words += "; dim lines: half of them at the ends of the error. Studies tell means only: how widely a group spreads and how far its curve rises is assumed";
-    }
-    if opened.explorer.group.is_enterprise() {
-        words += "; price a seat";
+        words += " · dim lines: half, at the ends of the error · spread and rise are assumed: studies tell means";
     }
     wrapped(&words, area.width as usize)
 }

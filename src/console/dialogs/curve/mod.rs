@@ -164,17 +164,9 @@ impl Dialog for CurvePage {
 
     fn hints(&self) -> Vec<Action> {
         match self.opened() {
-            Some(_) => vec![
-                Action::Left,
-                Action::Right,
-                Action::Up,
-                Action::Down,
-                Action::NextPlan,
-                Action::NextCurve,
-                Action::ResetCurve,
-                Action::Open,
-                Action::Close,
-            ],
+            Some(_) => {
+                vec![Action::NextPlan, Action::NextCurve, Action::ResetCurve, Action::Open, Action::Close]
+            },
             None => vec![Action::Close],
         }
     }

@@ -1,0 +1,135 @@
+//! The curve explorer: its pictures, what is dragged, and that only a look inside is recorded as one.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use novamind::session::{
+    Activity, Configuration, Goal, Mode, NewRun, Record, Session, Storage, Trajectory, lines_afterwards, verify,
+};
+
+use super::harness::Console;
+use super::looks::cut_with_room;
+use super::replay::replayed;
+use crate::support::company::{open_shop, weeks};
+
+/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
+const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
+
+fn run(runs: &Path, mode: Mode, count: usize) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(84),
+        mode,
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    open_shop(&mut session);
+    weeks(&mut session, count);
+    session
+}
+
+fn in_run(runs: &Path, mode: Mode) -> Console {
+    drop(run(runs, mode, 3));
+    Console::in_latest_run(runs, SIZES[2])
+}
+
+fn folder_of(runs: &Path) -> std::path::PathBuf {
+    let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
+    folders.filter(|path| path.is_dir()).max().expect("a run")
+}
+
+/// What was looked at, in the order of the lines.
+fn looks(lines: &Trajectory) -> Vec<String> {
+    let look = |record: &Record| match record {
+        Record::Activity(Activity::Xray(look)) => {
+            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
+        }
+        _ => None,
+    };
+    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+}
+
+fn recorded(folder: &Path) -> Trajectory {
+    Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines")
+}
+
+fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
+    let mut text = String::new();
+    for size in SIZES {
+        console.size = size;
+        let letters = console.screen();
+        complaints.extend(cut_with_room(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
+        writeln!(text, "{}×{}\n{letters}", size.0, size.1).expect("text");
+    }
+    console.size = SIZES[2];
+    text
+}
+
+#[test]
+fn the_explorer_in_pictures_of_four_sizes() {
+    let mut complaints = Vec::new();
+    for (mode, name) in [(Mode::Sandbox, "estimates"), (Mode::Debug, "truth")] {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut console = in_run(runs.path(), mode);
+        for (place, keys) in [("", "7 v"), ("-dragged", "tab right right right pageup up"), ("-companies", ". . .")] {
+            console.press(keys);
+            insta::assert_snapshot!(format!("curve-{name}{place}"), picture(&mut console, &mut complaints));
+        }
+    }
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = in_run(runs.path(), Mode::Sandbox);
+    console.press("; g / 'participation' enter");
+    insta::assert_snapshot!("curve-glossary", picture(&mut console, &mut complaints));
+    console.press("enter");
+    insta::assert_snapshot!("curve-explained", picture(&mut console, &mut complaints));
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn dragging_sets_nothing_and_leads_to_the_form() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = in_run(runs.path(), Mode::Sandbox);
+    console.press("; v");
+    console.shows("Participation curve of S1");
+    console.shows("estimates of day 0, ±65%");
+    console.press("right right down");
+    console.shows("A $14");
+    console.press("enter");
+    console.shows("set_prices");
+    console.shows("14");
+    drop(console);
+    let lines = recorded(&folder_of(runs.path()));
+    assert_eq!(looks(&lines), [""; 0], "estimates are no look inside");
+    let calls = lines.lines.iter().filter(|line| matches!(&line.record, Record::Call(_)));
+    let days: Vec<u32> = calls.map(|line| line.day).collect();
+    assert!(!days.is_empty() && days.iter().all(|day| *day == 0), "{days:?}");
+}
+
+#[test]
+fn each_look_at_the_truth_is_a_line_and_changes_no_hash() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = in_run(runs.path(), Mode::Debug);
+    console.press("7 v");
+    console.shows("the truth of day 21");
+    console.press("right up . esc");
+    drop(console);
+    let folder = folder_of(runs.path());
+    assert_eq!(looks(&recorded(&folder)), ["curve S1 21", "curve S2 21"]);
+    assert_eq!(verify(&folder).expect("it verifies").day, 21);
+}
+
+#[test]
+fn a_replay_shows_the_truth_of_its_moment_once_the_run_is_over() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Sandbox, 3);
+    drop(session.end());
+    drop(session);
+    let mut console = replayed(runs.path(), SIZES[2], Goal::Week(2));
+    console.press("7 v");
+    console.shows("the truth of day 7");
+    drop(console);
+    let folder = folder_of(runs.path());
+    let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");
+    assert_eq!(looks(&after), ["curve S1 7"]);
+}

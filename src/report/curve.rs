@@ -127,6 +127,9 @@ mod tests {
         assert_eq!(with_ends(&sure, |value| percent(value, 1)), "50.0%");
         let open = Expected { likely: 0.5, least: 0.1, most: 0.75 };
         assert_eq!(with_ends(&open, |value| percent(value, 1)), "50.0% (10.0% to 75.0%)");
-        assert_eq!((price(12.0), price(12.5), quality(f64::INFINITY)), ("$12".into(), "$12.50".into(), "–".into()));
+        assert_eq!(
+            (price(12.0), price(12.5), quality(f64::INFINITY)),
+            ("$12".into(), "$12.50".into(), "–".into())
+        );
     }
 }

@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use novamind::session::{
-    Activity, Configuration, Goal, Mode, NewRun, Record, Session, Storage, Trajectory, lines_afterwards, verify,
+    Activity, Configuration, Goal, Mode, NewRun, Record, Session, Storage, Trajectory, lines_afterwards,
+    verify,
 };
 
 use super::harness::Console;
@@ -72,7 +73,9 @@ fn the_explorer_in_pictures_of_four_sizes() {
     for (mode, name) in [(Mode::Sandbox, "estimates"), (Mode::Debug, "truth")] {
         let runs = tempfile::tempdir().expect("a folder");
         let mut console = in_run(runs.path(), mode);
-        for (place, keys) in [("", "7 v"), ("-dragged", "tab right right right pageup up"), ("-companies", ". . .")] {
+        for (place, keys) in
+            [("", "7 v"), ("-dragged", "tab right right right pageup up"), ("-companies", ". . .")]
+        {
             console.press(keys);
             insta::assert_snapshot!(format!("curve-{name}{place}"), picture(&mut console, &mut complaints));
         }
@@ -127,9 +130,9 @@ fn a_replay_shows_the_truth_of_its_moment_once_the_run_is_over() {
     drop(session);
     let mut console = replayed(runs.path(), SIZES[2], Goal::Week(2));
     console.press("7 v");
-    console.shows("the truth of day 7");
+    console.shows("the truth of day 14");
     drop(console);
     let folder = folder_of(runs.path());
     let after = lines_afterwards(&folder, &recorded(&folder)).expect("lines");
-    assert_eq!(looks(&after), ["curve S1 7"]);
+    assert_eq!(looks(&after), ["curve S1 14"]);
 }

@@ -227,7 +227,8 @@ impl Dialog for Explain {
             ]);
             canvas.line(row, &line);
         }
-        let picture = Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
+        let picture =
+            Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
         term_picture::draw(canvas, picture, &page.term);
         let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
         self.draw_links(canvas, below, look);

@@ -24,6 +24,8 @@ pub struct Glossary {
 
 /// Rows for the text of the selected term.
 const TEXT_ROWS: u16 = 6;
+/// The same with a picture beside it: a rule, and the picture.
+const PICTURE_ROWS: u16 = 1 + term_picture::MOST_ROWS;
 
 impl Glossary {
     /// All terms by topic, with the figures of the run.
@@ -126,7 +128,12 @@ impl Dialog for Glossary {
         };
         let inside = canvas.pane(own, "Glossary", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let for_text = if inside.height >= 2 * TEXT_ROWS { TEXT_ROWS } else { 0 };
+        let has_picture = self.selected().is_some_and(|term| term_picture::has_picture(&term.id));
+        let for_text = match inside.height {
+            height if has_picture && height >= 2 * PICTURE_ROWS => PICTURE_ROWS,
+            height if height >= 2 * TEXT_ROWS => TEXT_ROWS,
+            _ => 0,
+        };
         let list = Rect { height: inside.height - for_text, ..inside };
         self.table.draw(canvas, list, true, 0);
         if self.table.shown().is_empty() && list.height > 1 {
@@ -155,7 +162,9 @@ impl Glossary {
         let has_picture = term_picture::has_picture(&term.id) && area.width >= 2 * term_picture::COLUMNS;
         let taken = if has_picture { term_picture::COLUMNS } else { 0 };
         let words = Rect { width: area.width - taken, ..rest };
-        for (row, line) in rows_of(words).zip(wrapped(text.trim(), words.width.saturating_sub(taken.min(1)) as usize)) {
+        for (row, line) in
+            rows_of(words).zip(wrapped(text.trim(), words.width.saturating_sub(taken.min(1)) as usize))
+        {
             canvas.text(row, &line, Role::Text);
         }
         term_picture::draw(canvas, Rect { x: words.right(), width: taken, ..rest }, &term.id);
@@ -199,7 +208,10 @@ mod tests {
         dialog.table.edit_filter(|field| field.insert("participation curve"));
         in_dialog(&mut dialog, Action::Commit, &company);
         let shown = dialog_picture(&dialog, &company, 120, 40);
-        assert!(shown.contains("Participation curve") && shown.contains("$50") && shown.contains('┈'), "{shown}");
+        assert!(
+            shown.contains("Participation curve") && shown.contains("$50") && shown.contains('┈'),
+            "{shown}"
+        );
         let small = dialog_picture(&dialog, &company, 80, 24);
         assert!(small.contains("Participation curve") && !small.contains("$50"), "{small}");
     }

@@ -7,7 +7,9 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::database::text::aligned;
 use crate::notation::nearest;
-use crate::report::curve::{basis_in_words, columns, outcome_in_words, plan_in_words, price, quality, remarks, rows};
+use crate::report::curve::{
+    basis_in_words, columns, outcome_in_words, plan_in_words, price, quality, remarks, rows,
+};
 use crate::session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
 use crate::world::identifiers::{Group, Plan};
 

@@ -63,7 +63,8 @@ impl Session {
             return Err(Refusal::at("group", "group_not_discovered", message));
         };
         // What the market has added since the study is not known.
-        let market = |reading| (Expectation::default(), Arc::new(market_of(own, reading, &self.simulation.params)));
+        let market =
+            |reading| (Expectation::default(), Arc::new(market_of(own, reading, &self.simulation.params)));
         let markets = [Reading::Likely, Reading::Strict, Reading::Generous].map(market).into();
         let basis = CurveBasis::Estimates { level: own.level, noise: own.noise, as_of: own.as_of };
         Ok(CurveExplorer::of(group, basis, self.on_offer(group), markets))

@@ -45,7 +45,7 @@ pub(super) fn market_of(own: &Estimates, reading: Reading, run: &Params) -> Para
         Reading::Generous => (end(own.budget, true), end(own.floor, false), end(own.usage, false)),
     };
     let mut params = Params::shipped();
-    params.fidelity = run.fidelity.clone();
+    params.fidelity = run.fidelity;
     let widened = params.customer_generation.c_max_std_multiplier;
     let group = &mut params.group[own.group.index()];
     group.c_max_mean = budget;

@@ -177,7 +177,8 @@ fn legend(opened: &Opened, area: Rect) -> Vec<String> {
     let mut words =
         format!("{unit} across, quality up · line: half of the leads ask for no more · shaded: 1 to 9 in 10");
     if !opened.explorer.is_truth() {
-        words += " · dim lines: half, at the ends of the error · spread and rise are assumed: studies tell means";
+        words +=
+            " · dim lines: half, at the ends of the error · spread and rise are assumed: studies tell means";
     }
     wrapped(&words, area.width as usize)
 }

@@ -166,7 +166,7 @@ impl Dialog for CurvePage {
         match self.opened() {
             Some(_) => {
                 vec![Action::NextPlan, Action::NextCurve, Action::ResetCurve, Action::Open, Action::Close]
-            },
+            }
             None => vec![Action::Close],
         }
     }

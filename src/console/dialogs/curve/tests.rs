@@ -87,7 +87,10 @@ fn every_window_has_its_page() {
 
 #[test]
 fn steps_lead_to_round_values() {
-    assert_eq!((stepped(12.5, 1.0, 1.0), stepped(12.5, -1.0, 1.0), stepped(12.0, 1.0, 1.0)), (13.0, 12.0, 13.0));
+    assert_eq!(
+        (stepped(12.5, 1.0, 1.0), stepped(12.5, -1.0, 1.0), stepped(12.0, 1.0, 1.0)),
+        (13.0, 12.0, 13.0)
+    );
     assert!((stepped(0.1234, 1.0, 0.01) - 0.13).abs() < 1e-12);
     assert_eq!((price_step(90.0), price_step(300.0), price_step(900.0)), (1.0, 2.0, 5.0));
 }

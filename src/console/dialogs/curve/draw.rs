@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::{CurvePage, Opened};
+use super::{CurvePage, ExploredCurve};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::dialogs::Dialog;
@@ -66,7 +66,7 @@ impl CurvePage {
         drags + &look.hints(&self.hints())
     }
 
-    fn draw_opened(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+    fn draw_opened(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &ExploredCurve) {
         let is_low = area.height < LEAST_IN_FULL;
         let outcome = match is_low {
             true => vec![outcome_in_few_words(&opened.outcome)],
@@ -102,7 +102,7 @@ impl CurvePage {
         if self.chosen.is_none_or(|own| own == plan) { "›" } else { " " }
     }
 
-    fn draw_plans(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+    fn draw_plans(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &ExploredCurve) {
         for (row, plan) in rows_of(area).zip(Plan::ALL) {
             let mark = self.mark(plan);
             let role = if mark == "›" { Role::Strong } else { Role::Text };
@@ -111,14 +111,14 @@ impl CurvePage {
         }
     }
 
-    fn plans_in_few_words(&self, opened: &Opened) -> String {
+    fn plans_in_few_words(&self, opened: &ExploredCurve) -> String {
         let words = |(plan, own): (Plan, &PlanPoint)| {
             format!("{}{plan} {} {}", self.mark(plan), price(own.list), quality(own.quality))
         };
         opened.plans.pairs().map(words).collect::<Vec<_>>().join("  ")
     }
 
-    fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &Opened) {
+    fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &ExploredCurve) {
         let points = &opened.explorer.points;
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
         let top = plans().map(|own| own.quality).fold(1.0, f64::max);
@@ -155,7 +155,7 @@ impl CurvePage {
 }
 
 /// A plan with what was dragged: `A $12 → $15, quality 0.20, taken by 12.3%`.
-fn line_of(opened: &Opened, plan: Plan) -> String {
+fn line_of(opened: &ExploredCurve, plan: Plan) -> String {
     let (now, was) = (&opened.plans[plan], &opened.explorer.plans[plan]);
     let words = plan_in_words(plan, now, opened.outcome.takers.as_ref());
     let mut changes = Vec::new();
@@ -169,7 +169,7 @@ fn line_of(opened: &Opened, plan: Plan) -> String {
 }
 
 /// What the signs of the chart mean, as far as there is room.
-fn legend(opened: &Opened, area: Rect) -> Vec<String> {
+fn legend(opened: &ExploredCurve, area: Rect) -> Vec<String> {
     if area.height < LEAST_WITH_LEGEND {
         return Vec::new();
     }

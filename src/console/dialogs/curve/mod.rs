@@ -26,7 +26,7 @@ const QUALITY_STEP: f64 = 0.01;
 const MOST_QUALITY: f64 = 2.0;
 
 /// What is known of a group, with the plans as they are dragged.
-struct Opened {
+struct ExploredCurve {
     explorer: Arc<CurveExplorer>,
     plans: ByPlan<PlanPoint>,
     outcome: CurveOutcome,
@@ -36,7 +36,7 @@ struct Opened {
 pub struct CurvePage {
     group: Group,
     /// What was found; none while it is drawn.
-    found: Option<Result<Opened, Refusal>>,
+    found: Option<Result<ExploredCurve, Refusal>>,
     /// The plan that is dragged; none for all of them.
     chosen: Option<Plan>,
 }
@@ -52,13 +52,13 @@ impl CurvePage {
             Ok(explorer) => {
                 let (explorer, plans) = (explorer.clone(), explorer.plans);
                 let outcome = explorer.outcome(&plans);
-                Ok(Opened { explorer, plans, outcome })
+                Ok(ExploredCurve { explorer, plans, outcome })
             }
             Err(refusal) => Err(refusal.clone()),
         });
     }
 
-    fn opened(&self) -> Option<&Opened> {
+    fn opened(&self) -> Option<&ExploredCurve> {
         self.found.as_ref()?.as_ref().ok()
     }
 
@@ -73,7 +73,7 @@ impl CurvePage {
     }
 
     fn drag_price(&mut self, steps: f64) {
-        let Some(most) = self.opened().map(Opened::greatest_price) else { return };
+        let Some(most) = self.opened().map(ExploredCurve::greatest_price) else { return };
         let step = price_step(most);
         self.drag(|own| own.list = stepped(own.list, steps, step).clamp(0.0, most));
     }
@@ -125,7 +125,7 @@ impl CurvePage {
     }
 }
 
-impl Opened {
+impl ExploredCurve {
     /// The price at the right end of the curve.
     fn greatest_price(&self) -> f64 {
         self.explorer.points.last().map_or(1.0, |point| point.price)

@@ -50,8 +50,8 @@ const FIND: ToolId = ToolId::ResearchMarket;
 const STUDY: ToolId = ToolId::ResearchGroup;
 
 /// Actions worth showing where a group is selected.
-const GROUP_HINTS: [Action; 6] =
-    [Action::Open, Action::GroupCurve, Action::StudyGroup, Action::LevelUp, Action::FindGroup, Action::Filter];
+const GROUP_HINTS: [Action; 5] =
+    [Action::Open, Action::GroupCurve, Action::StudyGroup, Action::FindGroup, Action::Filter];
 
 /// The screen.
 #[derive(Default)]

@@ -122,6 +122,7 @@ impl Options {
             overrides: self.set.clone(),
             fault: self.planted,
             lesson: self.lesson_entry(context)?,
+            handout: None,
             mode: if self.lesson.is_some() { Mode::Lesson } else { self.mode.unwrap_or(standard.mode) },
             participant: self.participant.clone(),
             agreed: self.consent.then(|| ConsentGiven::on_paper().now()),

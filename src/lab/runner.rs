@@ -204,6 +204,7 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     let standard = NewRun::default();
     NewRun {
         lesson: None,
+        handout: None,
         seed: Some(spec.seed),
         days: spec.days.or(policy.start.days),
         cash: spec.cash.or(policy.start.cash),

@@ -14,6 +14,7 @@ use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECT
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::session::play::memo::notes_file;
 use crate::session::resume::integrity::Integrity;
@@ -67,6 +68,10 @@ impl Export {
             let path = folder.join(AFTERWARDS);
             let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
             put(AFTERWARDS, bytes.get(..after.length as usize).unwrap_or(&bytes))?;
+        }
+        for name in [PLAN_FILE, TEXTS_FILE].into_iter().filter(|_| manifest.lesson.is_some()) {
+            let path = folder.join(name);
+            put(name, &std::fs::read(&path).map_err(RunError::io(&path))?)?;
         }
         let memo = notes_file(folder, &trajectory);
         match std::fs::read(&memo) {
@@ -122,7 +127,7 @@ impl Export {
 
     fn seal(&self) -> Result<Seal, RunError> {
         let folder = &self.copies;
-        let there = [MANIFEST, TRAJECTORY, AFTERWARDS, MEMO, DATABASE]
+        let there = [MANIFEST, TRAJECTORY, AFTERWARDS, PLAN_FILE, TEXTS_FILE, MEMO, DATABASE]
             .into_iter()
             .filter(|name| folder.join(name).exists());
         let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;

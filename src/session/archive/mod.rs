@@ -10,12 +10,13 @@
 //! | `run.toml` | what the run is |
 //! | `trajectory.jsonl` | the truth, up to its last confirmed line |
 //! | `afterwards.jsonl` | what was done after the end, if anything was |
+//! | `lesson.toml`, `lesson.md` | the lesson, if the run belongs to one |
 //! | `memo.md` | the player's notes, if there are any |
 //! | `world.db` | the observable company, with ordinary tables only, for any SQLite tool |
 //!
 //! There is nothing else in it, whatever lies in the folder of the run: no snapshot, so no hidden state. The database is
 //! made from the trajectory while the run is simulated again, so an archive that exists has been verified. Who imports
-//! it gets the first three files; the database is a projection and is made anew.
+//! it gets these files but the seal; the database is a projection and is made anew.
 
 mod export;
 mod import;
@@ -34,15 +35,18 @@ pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 
 use crate::session::error::RunError;
+use crate::session::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::session::play::afterwards::AFTERWARDS;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
-const FILES: [(&str, u64); 7] = [
+const FILES: [(&str, u64); 9] = [
     (SEAL, 1 << 20),
     (SIGNATURE, 1 << 10),
     (MANIFEST, 1 << 20),
     (TRAJECTORY, 4 << 30),
     (AFTERWARDS, 1 << 30),
+    (PLAN_FILE, 1 << 20),
+    (TEXTS_FILE, 1 << 20),
     (MEMO, 64 << 20),
     (DATABASE, 16 << 30),
 ];
@@ -66,7 +70,7 @@ pub(in crate::session) fn is_archive_name(name: &str) -> bool {
 }
 
 /// Whether this can be the name of a run: eight hexadecimal digits.
-fn is_run_name(name: &str) -> bool {
+pub(in crate::session) fn is_run_name(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 

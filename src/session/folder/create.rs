@@ -11,6 +11,7 @@ use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
 use crate::database::{Location, Position, Projector};
+use crate::session::class::stamp::HandoutEntry;
 use crate::session::error::RunError;
 use crate::session::lesson::conduct::LessonEntry;
 use crate::session::play::history::History;
@@ -56,6 +57,8 @@ pub struct NewRun {
     pub study: Option<StudyEntry>,
     /// The lesson it is a part of; lesson runs only.
     pub lesson: Option<LessonEntry>,
+    /// The hand-out of a class that it begins with, and its name where that hand-out names it.
+    pub handout: Option<HandoutEntry>,
     /// Where the run is kept.
     pub storage: Storage,
     /// Whether the database is kept up to date; without it queries are refused.
@@ -100,6 +103,7 @@ impl Default for NewRun {
             agreed: None,
             study: None,
             lesson: None,
+            handout: None,
             storage: Storage::Memory,
             projection: true,
             sync_calls: true,
@@ -259,11 +263,12 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
     };
+    let handed_out = new.handout.clone().map_or((None, None), |entry| (entry.run, Some(entry.stamp)));
     let manifest = Manifest {
         format: FORMAT,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         mechanics: MECHANICS,
-        id: new_id(),
+        id: handed_out.0.unwrap_or_else(new_id),
         created: now(),
         seed,
         days,
@@ -277,6 +282,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         parent: None,
         study,
         lesson: new.lesson.as_ref().map(LessonEntry::stamp),
+        handout: handed_out.1,
         rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
         earlier,
         fault: new.fault,

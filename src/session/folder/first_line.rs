@@ -24,6 +24,7 @@ pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
         consent: manifest.consent,
         study: manifest.study,
         lesson: manifest.lesson,
+        handout: manifest.handout,
         rules: manifest.rules,
         earlier_runs: manifest.earlier,
         parent: manifest.parent,

@@ -8,6 +8,7 @@ use toml::{Table, Value};
 use super::configuration::Configuration;
 use super::consent::Consent;
 use super::mode::Mode;
+use crate::session::class::stamp::HandoutStamp;
 use crate::session::error::RunError;
 use crate::session::lesson::stamp::LessonStamp;
 use crate::session::study::rules::{ResultsShown, SessionRules};
@@ -68,6 +69,9 @@ pub struct Manifest {
     /// The lesson it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
+    /// The hand-out of a class that it began with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub handout: Option<HandoutStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
@@ -166,6 +170,7 @@ impl Manifest {
             parent: start.parent,
             study: start.study,
             lesson: start.lesson,
+            handout: start.handout,
             rules: start.rules,
             earlier: start.earlier_runs,
             fault: start.fault,
@@ -318,6 +323,7 @@ mod tests {
             parent: None,
             study: None,
             lesson: None,
+            handout: None,
             rules: None,
             earlier: Vec::new(),
             fault: None,

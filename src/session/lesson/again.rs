@@ -1,6 +1,7 @@
 //! Trying a step of a lesson again, from its beginning, in a run of its own.
 
 use super::conduct::LessonEntry;
+use crate::session::class::stamp::HandoutEntry;
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::create::{NewRun, Storage};
 use crate::session::folder::mode::Mode;
@@ -53,6 +54,7 @@ impl Session {
             mode: Mode::Lesson,
             participant: self.manifest.participant.clone(),
             lesson: Some(LessonEntry { lesson: standing.lesson.clone(), part, is_judged: true }),
+            handout: self.manifest.handout.clone().map(HandoutEntry::of_later_run),
             storage: Storage::Runs(runs.to_owned()),
             ..NewRun::default()
         };

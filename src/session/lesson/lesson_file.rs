@@ -13,9 +13,9 @@ use crate::session::why::FigureUnit;
 use crate::world::params::{ParameterError, ParameterSource};
 
 /// Name of the plan in the folder of a run.
-const PLAN_FILE: &str = "lesson.toml";
+pub(in crate::session) const PLAN_FILE: &str = "lesson.toml";
 /// Name of the texts in the folder of a run.
-const TEXTS_FILE: &str = "lesson.md";
+pub(in crate::session) const TEXTS_FILE: &str = "lesson.md";
 
 /// A lesson.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +99,19 @@ impl Lesson {
         let source =
             ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
         Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
+    }
+
+    /// The lesson as its plan and its texts say, handed over without files.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with line and key.
+    pub(in crate::session) fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
+        Ok(Lesson::read(name, plan, texts, false)?)
+    }
+
+    /// Its plan and its texts, as they were written.
+    pub(in crate::session) fn sources(&self) -> (&str, &str) {
+        (&self.plan_text, &self.texts)
     }
 
     /// Keeps it with a run, so that the run can be judged wherever it goes.

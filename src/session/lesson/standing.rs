@@ -41,7 +41,7 @@ impl LessonPart {
 
 impl LessonStanding {
     /// A lesson whose record says this.
-    pub(super) fn of<'a>(
+    pub(in crate::session) fn of<'a>(
         lesson: Arc<Lesson>,
         part: usize,
         lines: impl IntoIterator<Item = &'a Line>,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::unnamed::UnnamedBranch;
+use super::unnamed::{UnnamedBranch, write_branch};
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
 use crate::session::folder::manifest::{FORMAT, Manifest};
@@ -102,6 +102,7 @@ fn unnamed_branch(
         mode,
         study: None,
         lesson: None,
+        handout: None,
         rules: Some(SessionRules::of_mode(mode)),
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
@@ -153,4 +154,17 @@ fn makes_company(line: &Line) -> bool {
     let record = &line.record;
     record.accepted_call().is_some()
         || matches!(record, Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_))
+}
+
+/// Writes the files of a branch that shares some lines with its parent; nothing is opened.
+///
+/// # Errors
+/// The folder cannot be written.
+pub(in crate::session) fn write_past(
+    folder: &Path,
+    manifest: &Manifest,
+    lines: &[Line],
+) -> Result<(), RunError> {
+    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    write_branch(folder, manifest, &shared_lines(lines))
 }

@@ -46,16 +46,7 @@ impl UnnamedBranch {
         let folder = &self.folder;
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
         let _lock = lock_run(folder, &manifest.id)?;
-        manifest.write(folder)?;
-        let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
-        writer.append(0, &start_of(manifest), Durability::Written)?;
-        for line in shared {
-            writer.copy(line)?;
-        }
-        let day = shared.last().map_or(0, |line| line.day);
-        let branch = Branch { from: manifest.parent.clone() };
-        writer.append(day, &Record::Branch(branch), Durability::Synced)?;
-        sync_folder(folder)
+        write_branch(folder, manifest, shared)
     }
 
     /// Opens it where it lies.
@@ -84,6 +75,23 @@ impl UnnamedBranch {
         }
         opened
     }
+}
+
+/// Writes the files of a branch into its folder: what it is, the lines it shares, and that it is a branch.
+///
+/// # Errors
+/// The disk refuses.
+pub(super) fn write_branch(folder: &Path, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
+    manifest.write(folder)?;
+    let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
+    writer.append(0, &start_of(manifest), Durability::Written)?;
+    for line in shared {
+        writer.copy(line)?;
+    }
+    let day = shared.last().map_or(0, |line| line.day);
+    let branch = Branch { from: manifest.parent.clone() };
+    writer.append(day, &Record::Branch(branch), Durability::Synced)?;
+    sync_folder(folder)
 }
 
 impl Drop for UnnamedBranch {

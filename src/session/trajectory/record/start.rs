@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::shortest;
+use crate::session::class::stamp::HandoutStamp;
 use crate::session::folder::consent::Consent;
 use crate::session::folder::mode::Mode;
 use crate::session::lesson::stamp::LessonStamp;
@@ -53,6 +54,9 @@ pub struct Start {
     /// The lesson it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
+    /// The hand-out of a class that it began with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub handout: Option<HandoutStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,

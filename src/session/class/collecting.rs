@@ -1,0 +1,275 @@
+//! What came back of a class: found in folders and archives of any number of machines, simulated again, and told apart.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::class_file::{Class, ClassStudent};
+use super::evidence::{ClassRun, Evidence, RunVerdict, examine};
+use super::finding::ClassFinding;
+use super::handout::{ENDING, HandedOut, Handout};
+use super::reference::{ClassReference, references};
+use crate::session::archive::Workshop;
+use crate::session::error::RunError;
+use crate::session::folder::manifest::{Manifest, write_whole};
+use crate::session::lesson::lesson_file::Lesson;
+use crate::session::lesson::reference::AnswersCompanies;
+use crate::session::study::gather::{CollectNote, FoundRun, gather};
+
+/// Name of the file in the folder of the class.
+const COLLECTED_FILE: &str = "collected.json";
+
+/// What came back of a class.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClassCollection {
+    /// Runs, by label and the moment they were begun.
+    pub runs: Vec<ClassRun>,
+    /// The good play on the seeds that were played.
+    pub references: Vec<ClassReference>,
+    /// What should be known.
+    pub findings: Vec<ClassFinding>,
+    /// How many records were found once more, or in an earlier state: the latest counts.
+    pub superseded: u32,
+    /// How many runs belong to something else.
+    pub others: u32,
+}
+
+/// What is collected.
+pub struct ClassSources<'a> {
+    /// The class.
+    pub class: &'a Class,
+    /// Its folder.
+    pub folder: &'a Path,
+    /// Folders of runs and archives; they are searched with all that lies below.
+    pub places: &'a [PathBuf],
+}
+
+impl ClassCollection {
+    /// Collects what came back, and keeps it in the folder of the class; `progress` is told how many runs of how many are done.
+    ///
+    /// # Errors
+    /// The folder cannot be read or written, or the good play of the lesson cannot be played.
+    pub fn collect(
+        sources: &ClassSources<'_>,
+        answers: AnswersCompanies<'_>,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<ClassCollection, RunError> {
+        let lesson = sources.class.lesson_kept(sources.folder)?;
+        let workshop = Workshop::within(sources.folder)?;
+        let gathered = gather(sources.places, workshop.path(), workshop.path(), None);
+        let mut returned = Returned { sources, lesson: lesson.as_ref(), runs: Vec::new(), findings: Vec::new(), others: 0 };
+        let mut superseded = 0;
+        for note in gathered.notes {
+            match note {
+                CollectNote::Unreadable { path, problem } => {
+                    let label = returned.label_of_place(&path);
+                    returned.findings.push(ClassFinding::Unreadable { label, path, problem });
+                }
+                CollectNote::Superseded { .. } => superseded += 1,
+                _ => {}
+            }
+        }
+        let all = gathered.runs.len() + gathered.conflicts.len();
+        for (done, found) in gathered.runs.iter().enumerate() {
+            progress(done, all);
+            returned.take(found);
+        }
+        for (done, records) in gathered.conflicts.values().enumerate() {
+            progress(gathered.runs.len() + done, all);
+            returned.take_several(records);
+        }
+        returned.find_what_is_missing();
+        let Returned { mut runs, mut findings, others, .. } = returned;
+        runs.sort_by(|one, other| (&one.label, &one.created, &one.run).cmp(&(&other.label, &other.created, &other.run)));
+        findings.sort_by(|one, other| one.label().cmp(&other.label()));
+        let references = match &lesson {
+            Some(lesson) => references(lesson, &runs, answers)?,
+            None => Vec::new(),
+        };
+        let collection = ClassCollection { runs, references, findings, superseded, others };
+        let text = serde_json::to_string(&collection).expect("a collection holds plain values");
+        write_whole(&sources.folder.join(COLLECTED_FILE), text.as_bytes())?;
+        Ok(collection)
+    }
+
+    /// Reads what was collected last.
+    ///
+    /// # Errors
+    /// Nothing was collected yet, or the file is damaged.
+    pub fn read(folder: &Path) -> Result<ClassCollection, RunError> {
+        let path = folder.join(COLLECTED_FILE);
+        let collect = format!("`novamind class collect {} PLACES` makes it", folder.display());
+        let text = match std::fs::read_to_string(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Err(RunError::NotPossible(format!("nothing was collected in {} yet: {collect}", folder.display())));
+            }
+            read => read.map_err(RunError::io(&path))?,
+        };
+        serde_json::from_str(&text).map_err(|error| RunError::Damaged {
+            line: error.line(),
+            problem: error.to_string(),
+            safe: format!("Hand-outs and runs were not touched; {collect} anew"),
+            path,
+        })
+    }
+}
+
+/// What was found so far.
+struct Returned<'a> {
+    sources: &'a ClassSources<'a>,
+    lesson: Option<&'a Arc<Lesson>>,
+    runs: Vec<ClassRun>,
+    findings: Vec<ClassFinding>,
+    others: u32,
+}
+
+impl Returned<'_> {
+    /// The student whom a path names: a folder with their label, or a file whose name begins with it.
+    fn label_of_place(&self, path: &Path) -> Option<String> {
+        let begins = |part: &str, label: &str| {
+            part.strip_prefix(label).is_some_and(|rest| !rest.starts_with(|letter: char| letter.is_alphanumeric()))
+        };
+        let parts: Vec<_> = path.iter().rev().map(|part| part.to_string_lossy()).collect();
+        let students = || self.sources.class.students.iter().map(|student| &student.label);
+        parts.iter().find_map(|part| students().find(|label| begins(part, label))).cloned()
+    }
+
+    fn label_of(&self, found: &FoundRun) -> Option<String> {
+        found.manifest.participant.clone().or_else(|| self.label_of_place(&found.source))
+    }
+
+    /// Whether a record has to do with the class: it began with one of its hand-outs, or is one of its lesson.
+    fn concerns(&self, manifest: &Manifest) -> bool {
+        let class = self.sources.class;
+        let own = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
+        let of_lesson = class.lesson.as_ref().zip(manifest.lesson.as_ref());
+        own || (manifest.handout.is_none() && of_lesson.is_some_and(|(own, other)| own.name == other.name))
+    }
+
+    fn take(&mut self, found: &FoundRun) {
+        if !self.concerns(&found.manifest) {
+            self.others += 1;
+            return;
+        }
+        let run = self.judged(found);
+        self.runs.push(run);
+    }
+
+    /// Records of one run that contradict each other: whole ones count for nobody, and each is told.
+    fn take_several(&mut self, records: &[FoundRun]) {
+        let own: Vec<&FoundRun> = records.iter().filter(|found| self.concerns(&found.manifest)).collect();
+        let Some(first) = own.first() else {
+            self.others += records.len() as u32;
+            return;
+        };
+        let (label, run) = (self.label_of(first).unwrap_or_default(), first.manifest.id.clone());
+        let judged: Vec<ClassRun> = own.iter().map(|found| self.judged(found)).collect();
+        let (good, wrong): (Vec<ClassRun>, Vec<ClassRun>) = judged.into_iter().partition(|run| run.is_whole());
+        if good.len() > 1 {
+            let paths = good.iter().map(|run| run.source.clone()).collect();
+            self.findings.push(ClassFinding::Twice { label, run, paths });
+            self.runs.extend(good.into_iter().map(|run| ClassRun { verdict: RunVerdict::Twice, ..run }));
+        } else {
+            self.runs.extend(good);
+        }
+        self.runs.extend(wrong);
+    }
+
+    /// A record with what it shows, and whether it counts.
+    fn judged(&mut self, found: &FoundRun) -> ClassRun {
+        let label = self.label_of(found).unwrap_or_default();
+        let examined = examine(&found.folder, self.lesson);
+        let manifest = &found.manifest;
+        let id = manifest.id.clone();
+        let (verdict, finding) = match (&examined, self.foreign(found, &label)) {
+            (Err(error), _) => {
+                let problem = problem_of(error, found);
+                (RunVerdict::Altered, Some(ClassFinding::Altered { label: label.clone(), run: id.clone(), problem }))
+            }
+            (Ok(_), Some((verdict, finding))) => (verdict, Some(finding)),
+            (Ok(evidence), None) if evidence.is_over => (RunVerdict::Finished, None),
+            (Ok(_), None) => (RunVerdict::NotFinished, None),
+        };
+        self.findings.extend(finding);
+        let part = manifest.lesson.as_ref().map_or(1, |stamp| stamp.part);
+        let nothing = |_| Evidence { part, seed: manifest.seed, ..Evidence::default() };
+        ClassRun {
+            label,
+            run: id,
+            created: manifest.created.clone(),
+            source: found.source.clone(),
+            verdict,
+            evidence: examined.unwrap_or_else(nothing),
+        }
+    }
+
+    /// Why a whole record does not count: it is not what was handed out to this student.
+    fn foreign(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
+        let (class, manifest) = (self.sources.class, &found.manifest);
+        let (label, run) = (label.to_owned(), manifest.id.clone());
+        let other_lesson = class.lesson.as_ref().map(|own| &own.digest) != manifest.lesson.as_ref().map(|own| &own.digest);
+        let stamp = manifest.handout.as_ref().filter(|stamp| stamp.class == class.class);
+        let owner = stamp.and_then(|stamp| class.students.iter().find(|student| student.run == stamp.run));
+        let Some(owner) = owner else {
+            let label = Some(label).filter(|label| !label.is_empty());
+            return Some((RunVerdict::Unknown, ClassFinding::Unknown { label, run, path: found.source.clone() }));
+        };
+        if owner.label != label {
+            let of = Some(owner.label.clone());
+            return Some((RunVerdict::OtherHandout, ClassFinding::OtherHandout { label, run, of }));
+        }
+        if other_lesson {
+            return Some((RunVerdict::OtherLesson, ClassFinding::OtherLesson { label, run }));
+        }
+        if class.run.is_some() && !self.begins_as_handed_out(owner, found) {
+            return Some((RunVerdict::OtherHandout, ClassFinding::OtherHandout { label, run, of: None }));
+        }
+        None
+    }
+
+    /// Whether a run with a past has the one that was handed out; where the hand-out is gone from the folder nobody can say.
+    fn begins_as_handed_out(&self, student: &ClassStudent, found: &FoundRun) -> bool {
+        let path = self.sources.folder.join(format!("{}{ENDING}", student.label));
+        let Ok(Handout { content: HandedOut::Run(past), .. }) = Handout::read(&path) else { return true };
+        let own = std::fs::read(found.folder.join("trajectory.jsonl")).unwrap_or_default();
+        found.manifest.id == student.run && own.starts_with(past.trajectory.as_bytes())
+    }
+
+    fn find_what_is_missing(&mut self) {
+        let class = self.sources.class;
+        let parts: u32 = self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32);
+        let told: BTreeSet<String> = self.findings.iter().filter_map(|own| own.label().map(str::to_owned)).collect();
+        for student in &class.students {
+            let label = student.label.clone();
+            let own = || self.runs.iter().filter(|run| run.label == label);
+            let is_finished = |part: &u32| {
+                own().any(|run| run.evidence.part == *part && run.verdict == RunVerdict::Finished)
+            };
+            let open: Vec<u32> = (1..=parts).filter(|part| !is_finished(part)).collect();
+            let is_whole = own().any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
+            if own().next().is_none() && !told.contains(&label) {
+                self.findings.push(ClassFinding::Missing { label });
+            } else if is_whole && !open.is_empty() {
+                self.findings.push(ClassFinding::NotFinished { label, parts: open });
+            }
+        }
+        let altered = class.altered_handouts(self.sources.folder).into_iter();
+        self.findings.extend(altered.map(|label| ClassFinding::AlteredHandout { label }));
+    }
+}
+
+impl ClassRun {
+    fn is_whole(&self) -> bool {
+        matches!(self.verdict, RunVerdict::Finished | RunVerdict::NotFinished)
+    }
+}
+
+/// An error of a copy, told of where the record was found.
+fn problem_of(error: &RunError, found: &FoundRun) -> String {
+    match error {
+        RunError::Damaged { line, problem, .. } => format!("{}: line {line}: {problem}", found.source.display()),
+        other => other.to_string(),
+    }
+}

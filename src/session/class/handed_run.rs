@@ -1,0 +1,87 @@
+//! A run of an instructor as every student is to begin with it: a branch of its last week, under a label and a name of its own.
+
+use std::path::Path;
+
+use super::handout::HandedRun;
+use super::stamp::HandoutStamp;
+use crate::session::archive::Workshop;
+use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
+use crate::session::folder::manifest::{FORMAT, Manifest};
+use crate::session::folder::mode::Mode;
+use crate::session::resume::branch::write_past;
+use crate::session::resume::verify::verify;
+use crate::session::study::rules::SessionRules;
+use crate::session::trajectory::record::Parent;
+use crate::session::trajectory::{Line, Record, Trajectory, now};
+
+/// A run that can be handed out.
+pub(super) struct Past {
+    manifest: Manifest,
+    lines: Vec<Line>,
+    /// Its last day.
+    pub(super) day: u32,
+}
+
+impl Past {
+    /// Reads a run, and simulates it again.
+    ///
+    /// # Errors
+    /// It is damaged, an unfinished baseline run, a run of a study or a lesson, or is over and cannot be played on.
+    pub(super) fn of(folder: &Path) -> Result<Past, RunError> {
+        let manifest = Derived::of(folder)?.manifest;
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+        let refused = |why: &str| Err(RunError::NotPossible(format!("run {} cannot be handed out: {why}", manifest.id)));
+        if manifest.lesson.is_some() {
+            return refused("it belongs to a lesson; hand out the lesson itself");
+        }
+        if manifest.study.is_some() || (manifest.mode == Mode::Baseline && trajectory.end().is_none()) {
+            return refused("an unfinished baseline run, or one of a study, has no branches; end it first, or take another run");
+        }
+        let day = verify(folder)?.day;
+        if day >= manifest.days {
+            return refused("no day is left in it; branch it at an earlier week and hand out the branch");
+        }
+        let closing = trajectory.lines.iter().rposition(Line::closes_days).map_or(1, |at| at + 1);
+        let lines = trajectory.lines.into_iter().take(closing).collect();
+        Ok(Past { manifest, lines, day })
+    }
+
+    /// Name of the run.
+    pub(super) fn run(&self) -> &str {
+        &self.manifest.id
+    }
+
+    /// The files of a branch of it.
+    ///
+    /// # Errors
+    /// `beside` cannot be written.
+    pub(super) fn handed_to(&self, label: &str, stamp: &HandoutStamp, beside: &Path) -> Result<HandedRun, RunError> {
+        let was_changed = self.lines.iter().any(|line| matches!(line.record, Record::Override(_)));
+        let mode = if was_changed || self.manifest.fault.is_some() { Mode::Debug } else { Mode::Sandbox };
+        let manifest = Manifest {
+            id: stamp.run.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            created: now(),
+            format: FORMAT,
+            mode,
+            participant: Some(label.to_owned()),
+            handout: Some(stamp.clone()),
+            rules: Some(SessionRules::of_mode(mode)),
+            // What the instructor played and agreed to says nothing of the student.
+            earlier: Vec::new(),
+            earlier_runs: 0,
+            consent: None,
+            parent: Some(Parent { run: self.manifest.id.clone(), seq: self.lines.last().map_or(0, |line| line.seq) }),
+            ..self.manifest.clone()
+        };
+        let workshop = Workshop::within(beside)?;
+        let folder = workshop.path().join(&stamp.run);
+        write_past(&folder, &manifest, &self.lines)?;
+        let text = |file: &str| {
+            let path = folder.join(file);
+            std::fs::read_to_string(&path).map_err(RunError::io(&path))
+        };
+        Ok(HandedRun { manifest: text("run.toml")?, trajectory: text("trajectory.jsonl")? })
+    }
+}

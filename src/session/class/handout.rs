@@ -1,0 +1,231 @@
+//! A hand-out: one file a student, with what they play (docs/formats/class.md#hand-out).
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::stamp::{HandoutEntry, HandoutStamp};
+use crate::session::archive::is_run_name;
+use crate::session::error::RunError;
+use crate::session::folder::configuration::Configuration;
+use crate::session::folder::create::{NewRun, Storage};
+use crate::session::folder::derived::Derived;
+use crate::session::folder::manifest::{Manifest, sync_folder, write_whole};
+use crate::session::folder::mode::Mode;
+use crate::session::folder::runs::{list_runs, participant_folder};
+use crate::session::lesson::conduct::LessonEntry;
+use crate::session::lesson::lesson_file::Lesson;
+use crate::session::state::Session;
+use crate::world::params::ParameterSource;
+
+/// Format of hand-outs that this program writes.
+pub(super) const HANDOUT_FORMAT: u32 = 1;
+
+/// Ending of the names of hand-outs.
+pub(super) const ENDING: &str = ".nm";
+
+/// The file of a student.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Handout {
+    /// Who plays.
+    pub label: String,
+    /// The class, and the run that it begins.
+    pub stamp: HandoutStamp,
+    /// What is played.
+    pub content: HandedOut,
+}
+
+/// What is played.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HandedOut {
+    /// A lesson, from its first part on.
+    Lesson(Arc<Lesson>),
+    /// A run with a past, as its files are to be.
+    Run(HandedRun),
+}
+
+/// The files of a run with a past.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandedRun {
+    /// `run.toml`.
+    pub manifest: String,
+    /// `trajectory.jsonl`.
+    pub trajectory: String,
+}
+
+/// A hand-out as its file holds it.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HandoutFile {
+    format: u32,
+    program: String,
+    class: String,
+    label: String,
+    run: String,
+    /// Hash of the file with this field empty.
+    seal: String,
+    lesson: Option<HandedLesson>,
+    past: Option<HandedRun>,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HandedLesson {
+    name: String,
+    plan: String,
+    texts: String,
+}
+
+impl HandoutFile {
+    fn text(&self) -> String {
+        toml::to_string(self).expect("a hand-out holds plain values")
+    }
+
+    fn sealed(self) -> HandoutFile {
+        let bare = HandoutFile { seal: String::new(), ..self.clone() };
+        HandoutFile { seal: blake3::hash(bare.text().as_bytes()).to_hex().to_string(), ..self }
+    }
+}
+
+impl Handout {
+    /// Reads the file of a student.
+    ///
+    /// # Errors
+    /// It cannot be read, was altered after it was handed out, or is of a later format.
+    pub fn read(path: &Path) -> Result<Handout, RunError> {
+        let refused = |problem: &str| {
+            RunError::NotPossible(format!(
+                "{}: {problem}. No run was begun or changed; ask for the hand-out again, or copy it again without opening it \
+                 in an editor",
+                path.display()
+            ))
+        };
+        let bytes = std::fs::read(path).map_err(RunError::io(path))?;
+        let text = String::from_utf8(bytes).map_err(|_| refused("this is no hand-out of a class"))?;
+        let format = text.parse::<toml::Table>().ok().and_then(|table| table.get("format")?.as_integer());
+        if let Some(format) = format.filter(|format| *format > i64::from(HANDOUT_FORMAT)) {
+            return Err(refused(&format!(
+                "it is a hand-out of format {format}, and this program reads format {HANDOUT_FORMAT}: a later version reads it"
+            )));
+        }
+        let altered = "this hand-out was altered, or it is cut short: its seal does not fit its bytes";
+        let file: HandoutFile = toml::from_str(&text).map_err(|_| match text.starts_with("format = ") {
+            true => refused(altered),
+            false => refused("this is no hand-out of a class"),
+        })?;
+        if file.clone().sealed().text() != text {
+            return Err(refused(altered));
+        }
+        if !is_run_name(&file.run) || !is_run_name(&file.class) || participant_folder(Path::new(""), &file.label).is_err() {
+            return Err(refused("its label, or the name of its run, is none"));
+        }
+        let stamp = HandoutStamp { class: file.class, run: file.run };
+        let content = match (file.lesson, file.past) {
+            (Some(own), None) => {
+                let source = ParameterSource { name: path.display().to_string(), text: own.plan };
+                HandedOut::Lesson(Arc::new(Lesson::of_texts(&own.name, source, own.texts)?))
+            }
+            (None, Some(past)) => HandedOut::Run(past),
+            _ => return Err(refused("it holds neither a lesson nor a run")),
+        };
+        Ok(Handout { label: file.label, stamp, content })
+    }
+
+    /// Writes the file of the student into a folder; tells its seal.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub(super) fn write(&self, folder: &Path) -> Result<String, RunError> {
+        let (lesson, past) = match &self.content {
+            HandedOut::Lesson(lesson) => {
+                let (plan, texts) = lesson.sources();
+                let (plan, texts) = (plan.to_owned(), texts.to_owned());
+                (Some(HandedLesson { name: lesson.name.clone(), plan, texts }), None)
+            }
+            HandedOut::Run(past) => (None, Some(past.clone())),
+        };
+        let file = HandoutFile {
+            format: HANDOUT_FORMAT,
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            class: self.stamp.class.clone(),
+            label: self.label.clone(),
+            run: self.stamp.run.clone(),
+            seal: String::new(),
+            lesson,
+            past,
+        };
+        let file = file.sealed();
+        write_whole(&folder.join(format!("{}{ENDING}", self.label)), file.text().as_bytes())?;
+        Ok(file.seal)
+    }
+
+    /// The seal of a file, if it is a hand-out and whole.
+    pub(super) fn seal_of(path: &Path) -> Option<String> {
+        Handout::read(path).ok()?;
+        toml::from_str::<HandoutFile>(&std::fs::read_to_string(path).ok()?).ok().map(|file| file.seal)
+    }
+
+    /// Makes sure that the run of this hand-out is there, below the folder of all runs; tells the name of the run that the
+    /// student goes on with: the one that was played last and is not over, else the one that was played last.
+    ///
+    /// # Errors
+    /// A run of this name is there that did not begin with this hand-out; the run cannot be begun.
+    pub fn place(&self, base: &Path) -> Result<String, RunError> {
+        let runs = participant_folder(base, &self.label).map_err(RunError::NotPossible)?;
+        if let Some(run) = self.newest(&runs)? {
+            return Ok(run);
+        }
+        let folder = runs.join(&self.stamp.run);
+        if folder.exists() {
+            return Err(RunError::Exists(format!(
+                "{} is there, and is no run of this hand-out. Nothing was changed; move that folder away, and open the hand-out \
+                 again",
+                folder.display()
+            )));
+        }
+        match &self.content {
+            HandedOut::Lesson(lesson) => self.begin_lesson(lesson, runs)?,
+            HandedOut::Run(past) => self.begin_run(past, &folder)?,
+        }
+        Ok(self.stamp.run.clone())
+    }
+
+    fn newest(&self, runs: &Path) -> Result<Option<String>, RunError> {
+        let is_own = |id: &str| {
+            Derived::of(&runs.join(id)).is_ok_and(|own| own.manifest.handout.as_ref() == Some(&self.stamp))
+        };
+        let own: Vec<_> = list_runs(runs)?.into_iter().filter(|run| is_own(&run.id)).collect();
+        let open = own.iter().find(|run| run.ended.is_none() && run.problem.is_none());
+        Ok(open.or(own.first()).map(|run| run.id.clone()))
+    }
+
+    fn begin_lesson(&self, lesson: &Arc<Lesson>, runs: PathBuf) -> Result<(), RunError> {
+        let new = NewRun {
+            mode: Mode::Lesson,
+            participant: Some(self.label.clone()),
+            lesson: Some(LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true }),
+            handout: Some(HandoutEntry::of_first_run(self.stamp.clone())),
+            storage: Storage::Runs(runs),
+            ..NewRun::default()
+        };
+        Session::create(new, &Configuration::shipped()).map(|_| ())
+    }
+
+    fn begin_run(&self, past: &HandedRun, folder: &Path) -> Result<(), RunError> {
+        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        let written = write_whole(&folder.join("run.toml"), past.manifest.as_bytes())
+            .and_then(|()| write_whole(&folder.join("trajectory.jsonl"), past.trajectory.as_bytes()))
+            .and_then(|()| sync_folder(folder))
+            .and_then(|()| Manifest::read(folder))
+            .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
+                true => Ok(()),
+                false => Err(RunError::NotPossible("the run of the hand-out belongs to another hand-out".to_owned())),
+            });
+        if written.is_err() {
+            let _ = std::fs::remove_dir_all(folder);
+        }
+        written
+    }
+}

@@ -1,0 +1,65 @@
+//! The good play of the lesson of a class, on the seeds that were played.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
+use crate::session::error::RunError;
+use crate::session::folder::configuration::Configuration;
+use crate::session::lesson::definition::{GoalBound, LessonPart};
+use crate::session::lesson::lesson_file::Lesson;
+use crate::session::lesson::reference::{AnswersCompanies, PartPlay, play_part};
+
+/// The good play of a part on a seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClassReference {
+    /// What it came to; it names part and seed.
+    pub evidence: Evidence,
+}
+
+/// Plays the good play for every part and seed of some runs.
+///
+/// # Errors
+/// A part cannot begin, or a call is refused.
+pub(super) fn references(
+    lesson: &Arc<Lesson>,
+    runs: &[ClassRun],
+    answers: AnswersCompanies<'_>,
+) -> Result<Vec<ClassReference>, RunError> {
+    let counted = runs.iter().filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
+    let wanted: BTreeSet<(u32, u64)> = counted.map(|run| (run.evidence.part, run.evidence.seed)).collect();
+    wanted.into_iter().map(|(part, seed)| reference(lesson, part, seed, answers)).collect()
+}
+
+fn reference(
+    lesson: &Arc<Lesson>,
+    part: u32,
+    seed: u64,
+    answers: AnswersCompanies<'_>,
+) -> Result<ClassReference, RunError> {
+    let play = PartPlay {
+        lesson,
+        part: (part as usize).saturating_sub(1),
+        seed: Some(seed),
+        plays: &lesson.plan.good.plays,
+        weeks: None,
+        is_judged: false,
+    };
+    let session = play_part(&play, &Configuration::shipped(), answers)?;
+    Ok(ClassReference { evidence: evidence_of(&session, session.lesson(), seed) })
+}
+
+/// The goal that a part is ranked by: the last goal of its last step that has one; steps and goals are counted from 0.
+pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
+    let step = part.steps.iter().rposition(|step| !step.goals.is_empty())?;
+    Some((step, part.steps[step].goals.len() - 1))
+}
+
+/// A value as a share of what the good play has: more is better. Where the least is wanted it is the other way round; none
+/// where the good play has nothing above 0.
+pub fn share_of_good(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
+    let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
+    (all > 0.0 && good > 0.0).then(|| of / all)
+}

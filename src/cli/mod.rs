@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand.
 
 mod bench;
+mod class;
 mod completions;
 mod failure;
 mod keys;
@@ -80,6 +81,8 @@ enum Command {
     Scenario(scenario::Options),
     /// List, show and check lessons.
     Lesson(lesson::Options),
+    /// Hand out lessons and runs to students, collect what comes back, and show it.
+    Class(class::Options),
     /// Set up studies with people: protocol, participants, checks.
     Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
@@ -106,6 +109,7 @@ impl Command {
             Command::Pictures(_) => "pictures",
             Command::Scenario(_) => "scenario",
             Command::Lesson(_) => "lesson",
+            Command::Class(_) => "class",
             Command::Study(_) => "study",
             Command::Lab(_) => "lab",
             Command::Bench(_) => "bench",
@@ -115,6 +119,7 @@ impl Command {
 }
 
 /// What every command may need.
+#[derive(Clone)]
 pub struct Context {
     /// Configuration of this person.
     pub configuration: Configuration,
@@ -151,6 +156,19 @@ impl Context {
         let named = self.runs.as_ref().filter(|_| self.names_runs);
         words.extend(named.map(|folder| format!("--runs-dir {}", for_shell(folder))));
         words
+    }
+
+    /// The same for the student of a hand-out.
+    ///
+    /// # Errors
+    /// Somebody else was named with --as.
+    pub fn of_student(&self, label: &str) -> Result<Context, Failure> {
+        match &self.participant {
+            Some(whose) if whose != label => {
+                Err(Failure::usage(format!("this is the hand-out of {label}, not of {whose}: leave out --as {whose}")))
+            }
+            _ => Ok(Context { participant: Some(label.to_owned()), ..self.clone() }),
+        }
     }
 
     /// Checks that a participant who is named is the one whose runs these are.
@@ -237,14 +255,22 @@ impl Context {
         )))
     }
 
+    /// Folder of the runs of all participants.
+    ///
+    /// # Errors
+    /// The platform has none and none was named.
+    fn base_of_runs(&self) -> Result<PathBuf, Failure> {
+        self.runs.clone().ok_or_else(|| {
+            Failure::usage("this system names no folder for data; name one with --runs-dir or NOVAMIND_RUNS")
+        })
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors
     /// The platform has none and none was named.
     pub fn runs(&self) -> Result<PathBuf, Failure> {
-        let base = self.runs.clone().ok_or_else(|| {
-            Failure::usage("this system names no folder for data; name one with --runs-dir or NOVAMIND_RUNS")
-        })?;
+        let base = self.base_of_runs()?;
         match &self.participant {
             None => Ok(base),
             Some(label) => participant_folder(&base, label).map_err(Failure::usage),
@@ -326,6 +352,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Pictures(options)) => pictures::run(&options, &context),
         Some(Command::Scenario(options)) => scenario::run(&options, &context),
         Some(Command::Lesson(options)) => lesson::run(options, &context),
+        Some(Command::Class(options)) => class::run(options, &context),
         Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),

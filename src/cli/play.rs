@@ -1,7 +1,7 @@
 //! `novamind play`: the console, or line by line.
 
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
@@ -17,8 +17,8 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, LessonEntry, Library, Mode, NewRun,
-    RunError, Session, Storage, Study, find_run, steady,
+    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Handout, LessonEntry, Library, Mode, NewRun, RunError, Session,
+    Storage, Study, find_run, steady,
 };
 
 /// Options of `play`.
@@ -63,6 +63,9 @@ pub struct Options {
     /// Play a lesson.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["seed", "days", "cash", "scenario", "mode", "set", "planted"])]
     lesson: Option<String>,
+    /// Begin, or go on with, what a hand-out of a class holds, in the folder of runs of its student.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["run", "new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson", "watch"])]
+    handout: Option<PathBuf>,
     /// Theme of the console.
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
@@ -109,6 +112,7 @@ impl Options {
             || !self.set.is_empty()
             || self.planted.is_some()
             || self.lesson.is_some()
+            || self.handout.is_some()
     }
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
@@ -152,6 +156,12 @@ impl Options {
 
 /// Runs the command.
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
+    if let Some(path) = &options.handout {
+        let handout = Handout::read(path)?;
+        let own = context.of_student(&handout.label)?;
+        let run = Some(handout.place(&context.base_of_runs()?)?);
+        return self::run(Options { run, handout: None, ..options }, &own);
+    }
     if let Some(id) = &options.run {
         context.check_play(&find_run(&context.runs()?, id)?)?;
     }

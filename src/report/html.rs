@@ -5,7 +5,7 @@ use super::svg;
 use crate::notation::acts;
 
 /// The style of the page.
-const STYLE: &str = include_str!("../../assets/report.css");
+pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
 /// The page as HTML.
 pub fn write(page: &Page) -> String {

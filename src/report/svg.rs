@@ -17,15 +17,15 @@ const LEGEND_ROW: f64 = 20.0;
 const LETTER: f64 = 6.6;
 
 /// A range of values with round steps.
-struct Scale {
-    from: f64,
-    to: f64,
+pub(super) struct Scale {
+    pub(super) from: f64,
+    pub(super) to: f64,
     step: f64,
 }
 
 impl Scale {
     /// A scale over values in about so many steps; widened to round ends if asked.
-    fn of(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
+    pub(super) fn of(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(value), to.max(value)));
@@ -42,11 +42,11 @@ impl Scale {
         Scale { from, to, step }
     }
 
-    fn share(&self, value: f64) -> f64 {
+    pub(super) fn share(&self, value: f64) -> f64 {
         ((value - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
-    fn ticks(&self) -> Vec<f64> {
+    pub(super) fn ticks(&self) -> Vec<f64> {
         let first = (self.from / self.step - 1e-9).ceil() as i64;
         let last = (self.to / self.step + 1e-9).floor() as i64;
         (first..=last).map(|at| at as f64 * self.step).collect()

@@ -30,7 +30,7 @@ pub use ask::{connection_to_file, rows_as_json, with_the_way_to_hidden_tables};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use class::class_file::{Class, ToHandOut};
 pub use class::collecting::{ClassCollection, ClassSources};
-pub use class::evidence::{ClassRun, Evidence, RunVerdict};
+pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
 pub use class::finding::ClassFinding;
 pub use class::handout::Handout;
 pub use class::reference::{ClassReference, ranked_goal, share_of_good};

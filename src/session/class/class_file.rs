@@ -94,7 +94,10 @@ impl Class {
             return Err(RunError::NotPossible(message));
         }
         if folder.join(CLASS_FILE).exists() {
-            let message = format!("{} holds a class already: name another folder. Nothing was changed", folder.display());
+            let message = format!(
+                "{} holds a class already: name another folder. Nothing was changed",
+                folder.display()
+            );
             return Err(RunError::Exists(message));
         }
         let past = match what {

@@ -59,7 +59,8 @@ impl ClassCollection {
         let lesson = sources.class.lesson_kept(sources.folder)?;
         let workshop = Workshop::within(sources.folder)?;
         let gathered = gather(sources.places, workshop.path(), workshop.path(), None);
-        let mut returned = Returned { sources, lesson: lesson.as_ref(), runs: Vec::new(), findings: Vec::new(), others: 0 };
+        let mut returned =
+            Returned { sources, lesson: lesson.as_ref(), runs: Vec::new(), findings: Vec::new(), others: 0 };
         let mut superseded = 0;
         for note in gathered.notes {
             match note {
@@ -82,7 +83,9 @@ impl ClassCollection {
         }
         returned.find_what_is_missing();
         let Returned { mut runs, mut findings, others, .. } = returned;
-        runs.sort_by(|one, other| (&one.label, &one.created, &one.run).cmp(&(&other.label, &other.created, &other.run)));
+        runs.sort_by(|one, other| {
+            (&one.label, &one.created, &one.run).cmp(&(&other.label, &other.created, &other.run))
+        });
         findings.sort_by(|one, other| one.label().cmp(&other.label()));
         let references = match &lesson {
             Some(lesson) => references(lesson, &runs, answers)?,
@@ -103,7 +106,10 @@ impl ClassCollection {
         let collect = format!("`novamind class collect {} PLACES` makes it", folder.display());
         let text = match std::fs::read_to_string(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(RunError::NotPossible(format!("nothing was collected in {} yet: {collect}", folder.display())));
+                return Err(RunError::NotPossible(format!(
+                    "nothing was collected in {} yet: {collect}",
+                    folder.display()
+                )));
             }
             read => read.map_err(RunError::io(&path))?,
         };
@@ -129,7 +135,8 @@ impl Returned<'_> {
     /// The student whom a path names: a folder with their label, or a file whose name begins with it.
     fn label_of_place(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
-            part.strip_prefix(label).is_some_and(|rest| !rest.starts_with(|letter: char| letter.is_alphanumeric()))
+            part.strip_prefix(label)
+                .is_some_and(|rest| !rest.starts_with(|letter: char| letter.is_alphanumeric()))
         };
         let parts: Vec<_> = path.iter().rev().map(|part| part.to_string_lossy()).collect();
         let students = || self.sources.class.students.iter().map(|student| &student.label);
@@ -166,7 +173,8 @@ impl Returned<'_> {
         };
         let (label, run) = (self.label_of(first).unwrap_or_default(), first.manifest.id.clone());
         let judged: Vec<ClassRun> = own.iter().map(|found| self.judged(found)).collect();
-        let (good, wrong): (Vec<ClassRun>, Vec<ClassRun>) = judged.into_iter().partition(|run| run.is_whole());
+        let (good, wrong): (Vec<ClassRun>, Vec<ClassRun>) =
+            judged.into_iter().partition(|run| run.is_whole());
         if good.len() > 1 {
             let paths = good.iter().map(|run| run.source.clone()).collect();
             self.findings.push(ClassFinding::Twice { label, run, paths });
@@ -186,7 +194,10 @@ impl Returned<'_> {
         let (verdict, finding) = match (&examined, self.foreign(found, &label)) {
             (Err(error), _) => {
                 let problem = problem_of(error, found);
-                (RunVerdict::Altered, Some(ClassFinding::Altered { label: label.clone(), run: id.clone(), problem }))
+                (
+                    RunVerdict::Altered,
+                    Some(ClassFinding::Altered { label: label.clone(), run: id.clone(), problem }),
+                )
             }
             (Ok(_), Some((verdict, finding))) => (verdict, Some(finding)),
             (Ok(evidence), None) if evidence.is_over => (RunVerdict::Finished, None),
@@ -209,12 +220,16 @@ impl Returned<'_> {
     fn foreign(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
-        let other_lesson = class.lesson.as_ref().map(|own| &own.digest) != manifest.lesson.as_ref().map(|own| &own.digest);
+        let other_lesson =
+            class.lesson.as_ref().map(|own| &own.digest) != manifest.lesson.as_ref().map(|own| &own.digest);
         let stamp = manifest.handout.as_ref().filter(|stamp| stamp.class == class.class);
         let owner = stamp.and_then(|stamp| class.students.iter().find(|student| student.run == stamp.run));
         let Some(owner) = owner else {
             let label = Some(label).filter(|label| !label.is_empty());
-            return Some((RunVerdict::Unknown, ClassFinding::Unknown { label, run, path: found.source.clone() }));
+            return Some((
+                RunVerdict::Unknown,
+                ClassFinding::Unknown { label, run, path: found.source.clone() },
+            ));
         };
         if owner.label != label {
             let of = Some(owner.label.clone());
@@ -240,7 +255,8 @@ impl Returned<'_> {
     fn find_what_is_missing(&mut self) {
         let class = self.sources.class;
         let parts: u32 = self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32);
-        let told: BTreeSet<String> = self.findings.iter().filter_map(|own| own.label().map(str::to_owned)).collect();
+        let told: BTreeSet<String> =
+            self.findings.iter().filter_map(|own| own.label().map(str::to_owned)).collect();
         for student in &class.students {
             let label = student.label.clone();
             let own = || self.runs.iter().filter(|run| run.label == label);
@@ -248,7 +264,8 @@ impl Returned<'_> {
                 own().any(|run| run.evidence.part == *part && run.verdict == RunVerdict::Finished)
             };
             let open: Vec<u32> = (1..=parts).filter(|part| !is_finished(part)).collect();
-            let is_whole = own().any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
+            let is_whole =
+                own().any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
             if own().next().is_none() && !told.contains(&label) {
                 self.findings.push(ClassFinding::Missing { label });
             } else if is_whole && !open.is_empty() {
@@ -269,7 +286,9 @@ impl ClassRun {
 /// An error of a copy, told of where the record was found.
 fn problem_of(error: &RunError, found: &FoundRun) -> String {
     match error {
-        RunError::Damaged { line, problem, .. } => format!("{}: line {line}: {problem}", found.source.display()),
+        RunError::Damaged { line, problem, .. } => {
+            format!("{}: line {line}: {problem}", found.source.display())
+        }
         other => other.to_string(),
     }
 }

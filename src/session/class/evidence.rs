@@ -81,8 +81,10 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
     let lesson = lesson.filter(|lesson| manifest.lesson.is_some() && part < lesson.plan.parts.len());
     let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));
     let asks = lesson.is_some_and(|lesson| lesson.asks_database());
-    let projector = asks.then(|| Projector::start(Location::memory(), 0, params.clone(), |_| false)).transpose()?;
-    let session = Session::unwritten(manifest.clone(), None, params, projector.map(|(projector, _)| projector));
+    let projector =
+        asks.then(|| Projector::start(Location::memory(), 0, params.clone(), |_| false)).transpose()?;
+    let session =
+        Session::unwritten(manifest.clone(), None, params, projector.map(|(projector, _)| projector));
     let mut replay = Replay { session, standing, decisions: BTreeMap::new(), weeks: 0 };
     for line in &trajectory.lines {
         replay.session.apply_line(&path, line)?;
@@ -157,7 +159,8 @@ impl Replay {
 
     fn evidence(self, seed: u64) -> Evidence {
         let Replay { session, standing, decisions, weeks } = self;
-        let decisions = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1)))).collect();
+        let decisions =
+            decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1)))).collect();
         Evidence { decisions, ..evidence_of(&session, standing.as_ref(), seed) }
     }
 }
@@ -198,7 +201,8 @@ fn step_of(standing: &LessonStanding, step: usize) -> StepEvidence {
 
 fn figures_of(session: &Session) -> BTreeMap<String, f64> {
     let Some(last) = session.weeks().last() else { return BTreeMap::new() };
-    let measured = WeekFigure::ALL.iter().filter_map(|figure| Some((figure.name().to_owned(), figure.of_week(last)?)));
+    let measured =
+        WeekFigure::ALL.iter().filter_map(|figure| Some((figure.name().to_owned(), figure.of_week(last)?)));
     let all = measured.chain([("cash".to_owned(), last.cash)]);
     all.filter(|(_, value)| value.is_finite()).collect()
 }

@@ -31,12 +31,16 @@ impl Past {
     pub(super) fn of(folder: &Path) -> Result<Past, RunError> {
         let manifest = Derived::of(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-        let refused = |why: &str| Err(RunError::NotPossible(format!("run {} cannot be handed out: {why}", manifest.id)));
+        let refused = |why: &str| {
+            Err(RunError::NotPossible(format!("run {} cannot be handed out: {why}", manifest.id)))
+        };
         if manifest.lesson.is_some() {
             return refused("it belongs to a lesson; hand out the lesson itself");
         }
         if manifest.study.is_some() || (manifest.mode == Mode::Baseline && trajectory.end().is_none()) {
-            return refused("an unfinished baseline run, or one of a study, has no branches; end it first, or take another run");
+            return refused(
+                "an unfinished baseline run, or one of a study, has no branches; end it first, or take another run",
+            );
         }
         let day = verify(folder)?.day;
         if day >= manifest.days {
@@ -56,7 +60,12 @@ impl Past {
     ///
     /// # Errors
     /// `beside` cannot be written.
-    pub(super) fn handed_to(&self, label: &str, stamp: &HandoutStamp, beside: &Path) -> Result<HandedRun, RunError> {
+    pub(super) fn handed_to(
+        &self,
+        label: &str,
+        stamp: &HandoutStamp,
+        beside: &Path,
+    ) -> Result<HandedRun, RunError> {
         let was_changed = self.lines.iter().any(|line| matches!(line.record, Record::Override(_)));
         let mode = if was_changed || self.manifest.fault.is_some() { Mode::Debug } else { Mode::Sandbox };
         let manifest = Manifest {
@@ -72,7 +81,10 @@ impl Past {
             earlier: Vec::new(),
             earlier_runs: 0,
             consent: None,
-            parent: Some(Parent { run: self.manifest.id.clone(), seq: self.lines.last().map_or(0, |line| line.seq) }),
+            parent: Some(Parent {
+                run: self.manifest.id.clone(),
+                seq: self.lines.last().map_or(0, |line| line.seq),
+            }),
             ..self.manifest.clone()
         };
         let workshop = Workshop::within(beside)?;

@@ -118,7 +118,10 @@ impl Handout {
         if file.clone().sealed().text() != text {
             return Err(refused(altered));
         }
-        if !is_run_name(&file.run) || !is_run_name(&file.class) || participant_folder(Path::new(""), &file.label).is_err() {
+        if !is_run_name(&file.run)
+            || !is_run_name(&file.class)
+            || participant_folder(Path::new(""), &file.label).is_err()
+        {
             return Err(refused("its label, or the name of its run, is none"));
         }
         let stamp = HandoutStamp { class: file.class, run: file.run };
@@ -221,7 +224,9 @@ impl Handout {
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => Ok(()),
-                false => Err(RunError::NotPossible("the run of the hand-out belongs to another hand-out".to_owned())),
+                false => Err(RunError::NotPossible(
+                    "the run of the hand-out belongs to another hand-out".to_owned(),
+                )),
             });
         if written.is_err() {
             let _ = std::fs::remove_dir_all(folder);

@@ -28,7 +28,8 @@ pub(super) fn references(
     runs: &[ClassRun],
     answers: AnswersCompanies<'_>,
 ) -> Result<Vec<ClassReference>, RunError> {
-    let counted = runs.iter().filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
+    let counted =
+        runs.iter().filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
     let wanted: BTreeSet<(u32, u64)> = counted.map(|run| (run.evidence.part, run.evidence.seed)).collect();
     wanted.into_iter().map(|(part, seed)| reference(lesson, part, seed, answers)).collect()
 }

@@ -1,0 +1,159 @@
+//! `novamind class`: hand out a lesson or a run to students, collect what comes back, and show it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, Subcommand};
+
+use super::lesson::lesson_of;
+use super::run::progress_bar;
+use super::runs::{as_csv, tidy_up_on_signals};
+use super::{Context, Failure, print};
+use crate::report::class::{
+    ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
+};
+use crate::report::count;
+use crate::rules::answers_to_companies;
+use crate::session::{Class, ClassCollection, ClassSources, ToHandOut, find_run_to_read, write_whole};
+
+/// Options of `class`.
+#[derive(Debug, Args)]
+pub struct Options {
+    #[command(subcommand)]
+    command: ClassCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum ClassCommand {
+    /// Make a hand-out for every student: a lesson, or a run up to the end of its last week.
+    New {
+        /// Name of the lesson, or path of its file.
+        #[arg(required_unless_present = "from", conflicts_with = "from")]
+        lesson: Option<String>,
+        /// Hand out a run instead, or `latest`: the newest. Every student goes on with a branch of it.
+        #[arg(long, value_name = "RUN")]
+        from: Option<String>,
+        /// How many students, from 1 to 999.
+        #[arg(long, value_name = "N")]
+        students: u32,
+        /// Folder of the class.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Collect what came back: check it, and write class.csv and class-columns.csv into the folder of the class.
+    Collect {
+        /// Folder of the class.
+        folder: PathBuf,
+        /// Folders of runs of the machines, and archives; they are searched with all that lies below [default: the folder of
+        /// the class].
+        #[arg(value_name = "PLACE")]
+        places: Vec<PathBuf>,
+    },
+    /// Show what was collected: ranking, curves, decisions, guesses, pitfalls.
+    Show {
+        /// Folder of the class.
+        folder: PathBuf,
+        /// The student whose curve is lit [default: the first of the ranking].
+        #[arg(long, value_name = "LABEL")]
+        student: Option<String>,
+        /// Decision of the scatter, for instance "price A" [default: the one in which students differ most].
+        #[arg(long, value_name = "NAME")]
+        decision: Option<String>,
+        /// Figure of the scatter, for instance subscribers [default: cash].
+        #[arg(long, value_name = "NAME")]
+        figure: Option<String>,
+        /// Show ranks instead of labels, and nothing that names a student.
+        #[arg(long)]
+        hide_names: bool,
+        /// Write one page for the projector to this file, without scripts.
+        #[arg(long, value_name = "FILE")]
+        html: Option<PathBuf>,
+    },
+}
+
+/// Runs the command.
+pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
+    match options.command {
+        ClassCommand::New { lesson, from, students, out } => {
+            let what = match (lesson, from) {
+                (Some(lesson), _) => ToHandOut::Lesson(Arc::new(lesson_of(&lesson, &context.configuration)?)),
+                (None, Some(run)) => {
+                    let folder = find_run_to_read(&context.runs()?, &run)?;
+                    context.look(&folder, "class", "hand out")?;
+                    ToHandOut::Run(folder)
+                }
+                (None, None) => return Err(Failure::usage("name a lesson, or a run with --from")),
+            };
+            new(&what, students, &out)
+        }
+        ClassCommand::Collect { folder, places } => collect(&folder, &places),
+        ClassCommand::Show { folder, student, decision, figure, hide_names, html } => {
+            let shown = Shown { hides_names: hide_names, lit: student, decision, figure };
+            show(&folder, shown, html.as_deref())
+        }
+    }
+}
+
+fn new(what: &ToHandOut, students: u32, out: &Path) -> Result<(), Failure> {
+    tidy_up_on_signals();
+    let class = Class::create(out, what, students)?;
+    let (first, last) = (class.students.first(), class.students.last());
+    let names = first.zip(last).map(|(first, last)| format!("{}.nm to {}.nm", first.label, last.label));
+    print(&format!(
+        "class {}: {} for {} in {}\nA student plays with: novamind play --handout {}.nm\nWhat comes back is collected with: \
+         novamind class collect {} PLACES\n",
+        class.class,
+        names.unwrap_or_default(),
+        count(students, "student"),
+        out.display(),
+        first.map_or("S01", |first| &first.label),
+        out.display()
+    ))
+}
+
+fn collect(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
+    tidy_up_on_signals();
+    let class = Class::read(folder)?;
+    let own = [folder.to_owned()];
+    let sources =
+        ClassSources { class: &class, folder, places: if places.is_empty() { &own } else { places } };
+    let mut bar = None;
+    let collection = ClassCollection::collect(&sources, &answers_to_companies, &mut |done, all| {
+        bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
+    })?;
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    let lesson = class.lesson_kept(folder)?;
+    let view = ClassView {
+        class: &class,
+        lesson: lesson.as_ref(),
+        collection: &collection,
+        shown: Shown::default(),
+    };
+    for (file, table) in [("class.csv", rows(&view)), ("class-columns.csv", columns_table(&view))] {
+        write_whole(&folder.join(file), as_csv(&table)?.as_bytes())?;
+    }
+    print(&format!(
+        "{}class.csv and class-columns.csv are in {}; `novamind class show {}` shows the class\n",
+        collected_in_words(&view),
+        folder.display(),
+        folder.display()
+    ))?;
+    match collection.findings.len() as u32 {
+        0 => Ok(()),
+        findings => Err(Failure::failed(format!("{} to look into", count(findings, "finding")))),
+    }
+}
+
+fn show(folder: &Path, shown: Shown, html: Option<&Path>) -> Result<(), Failure> {
+    let class = Class::read(folder)?;
+    let lesson = class.lesson_kept(folder)?;
+    let collection = ClassCollection::read(folder)?;
+    let view = ClassView { class: &class, lesson: lesson.as_ref(), collection: &collection, shown };
+    view.check().map_err(Failure::usage)?;
+    let Some(path) = html else { return print(&shown_in_words(&view)) };
+    std::fs::write(path, as_html(&view))
+        .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    print(&format!("written: {}\n", path.display()))
+}

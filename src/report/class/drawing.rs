@@ -1,0 +1,114 @@
+//! Curves and points of a class as SVG: all of them grey, those of one student lit by the page's style.
+
+use std::fmt::Write;
+
+use super::curves::StudentPoints;
+use crate::report::html::escaped;
+use crate::report::svg::Scale;
+use crate::report::words::tick;
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 340.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 14.0;
+const TOP: f64 = 12.0;
+const BOTTOM: f64 = 44.0;
+
+/// What is drawn.
+pub(super) struct Drawing<'a> {
+    /// What a reader who does not see it is told.
+    pub title: String,
+    /// What stands across.
+    pub across: String,
+    /// Lines or points.
+    pub points: &'a [StudentPoints<'a>],
+    /// Whether the points of a student are joined.
+    pub is_line: bool,
+    /// Whether a line is drawn where both values are the same.
+    pub has_diagonal: bool,
+}
+
+/// Draws; `class_of` names the class and the title of a student's mark.
+pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(String, String)>) -> String {
+    let all = || drawing.points.iter().flat_map(|own| &own.points).copied();
+    let both = drawing.has_diagonal;
+    let across = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![x] });
+    let up = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![y] });
+    let (x, y) = (Scale::of(across, 8.0, both || !drawing.is_line), Scale::of(up, 5.0, true));
+    let column = |value: f64| LEFT + x.share(value) * (WIDTH - LEFT - RIGHT);
+    let row = |value: f64| TOP + (1.0 - y.share(value)) * (HEIGHT - TOP - BOTTOM);
+    let title = escaped(&drawing.title);
+    let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\">\n");
+    for value in y.ticks() {
+        let at = row(value);
+        let _ = writeln!(
+            svg,
+            "<line class=\"grid\" x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{:.1}\" y2=\"{at:.1}\"/><text class=\"label end\" \
+             x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            WIDTH - RIGHT,
+            LEFT - 8.0,
+            at + 4.0,
+            escaped(&tick(value))
+        );
+    }
+    let below = HEIGHT - BOTTOM + 16.0;
+    for value in x.ticks() {
+        let _ = writeln!(
+            svg,
+            "<text class=\"label middle\" x=\"{:.1}\" y=\"{below:.1}\">{}</text>",
+            column(value),
+            escaped(&tick(value))
+        );
+    }
+    let _ = writeln!(
+        svg,
+        "<text class=\"label middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+        LEFT + (WIDTH - LEFT - RIGHT) / 2.0,
+        below + 18.0,
+        escaped(&drawing.across)
+    );
+    if both {
+        let (from, to) = (x.from.max(y.from), x.to.min(y.to));
+        let _ = writeln!(
+            svg,
+            "<line class=\"zero\" x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\"/>",
+            column(from),
+            row(from),
+            column(to),
+            row(to)
+        );
+    }
+    // The good play lies above the others, below the lit one.
+    let (good, students): (Vec<_>, Vec<_>) = drawing.points.iter().partition(|own| own.label.is_none());
+    for own in students.into_iter().chain(good) {
+        let (class, name) = match own.label {
+            None => ("good".to_owned(), "good play".to_owned()),
+            Some(label) => match class_of(label) {
+                Some(named) => named,
+                None => continue,
+            },
+        };
+        let finite = || own.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let name = escaped(&name);
+        if drawing.is_line {
+            let points: Vec<String> =
+                finite().map(|(x, y)| format!("{:.1},{:.1}", column(*x), row(*y))).collect();
+            let _ = writeln!(
+                svg,
+                "<polyline class=\"curve {class}\" points=\"{}\"><title>{name}</title></polyline>",
+                points.join(" ")
+            );
+        } else {
+            for (x, y) in finite() {
+                let _ = writeln!(
+                    svg,
+                    "<circle class=\"dot {class}\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\"><title>{name}</title></circle>",
+                    column(*x),
+                    row(*y)
+                );
+            }
+        }
+    }
+    svg.push_str("</svg>\n");
+    svg
+}

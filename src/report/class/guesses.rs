@@ -1,0 +1,75 @@
+//! What students guessed, against what came of it.
+
+use super::ClassView;
+use crate::session::{ClassRun, GuessForm};
+
+/// A question of the lesson and the answers of the class.
+pub(super) struct AskedClass<'a> {
+    /// The part, counted from 1.
+    pub part: u32,
+    /// The question.
+    pub question: &'a str,
+    /// The choices; empty where a number was asked for.
+    pub choices: &'a [String],
+    /// Label, guess, outcome, of everybody who has both.
+    pub answers: Vec<(&'a str, f64, f64)>,
+}
+
+/// The questions of the lesson, in order.
+pub(super) fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
+    let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
+    let mut all = Vec::new();
+    for (part, own) in (1..).zip(parts) {
+        for (step, own) in own.steps.iter().enumerate() {
+            let Some(guess) = &own.guess else { continue };
+            let choices: &[String] = match &guess.form {
+                GuessForm::Choice { choices, .. } => choices,
+                GuessForm::Number { .. } => &[],
+            };
+            let answers = first_tries(view, part).filter_map(|run| {
+                let step = run.evidence.steps.get(step)?;
+                Some((run.label.as_str(), step.guess?, step.outcome?))
+            });
+            all.push(AskedClass { part, question: &guess.question, choices, answers: answers.collect() });
+        }
+    }
+    all
+}
+
+/// The first run of each student in a part: whoever tries again knows the outcome.
+fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
+    let of_part: Vec<&ClassRun> = view.whole().filter(|run| run.evidence.part == part).collect();
+    let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
+    let firsts: Vec<&ClassRun> =
+        (0..of_part.len()).filter(|at| is_first(*at)).map(|at| of_part[at]).collect();
+    firsts.into_iter()
+}
+
+/// How many guesses among choices were right in a run.
+pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
+    let part = view.lesson.and_then(|lesson| lesson.plan.parts.get(run.evidence.part as usize - 1));
+    let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();
+    let is_choice = |step: &crate::session::LessonStep| {
+        step.guess.as_ref().is_some_and(|guess| matches!(guess.form, GuessForm::Choice { .. }))
+    };
+    let all = steps.iter().zip(&run.evidence.steps).filter(|(step, _)| is_choice(step));
+    all.filter(|(_, own)| own.guess.is_some() && own.guess == own.outcome).count()
+}
+
+/// How many students met each pitfall, the most frequent first: name, what is said, how many.
+pub(super) fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<(&'a str, String, usize)> {
+    let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
+    let met_by = |name: &str| {
+        let labels: std::collections::BTreeSet<&str> = view
+            .whole()
+            .filter(|run| run.evidence.pitfalls.iter().any(|own| own == name))
+            .map(|run| run.label.as_str())
+            .collect();
+        labels.len()
+    };
+    let say = |text: &str| view.lesson.map(|lesson| lesson.filled(text)).unwrap_or_default();
+    let counted = known.iter().map(|own| (own.name.as_str(), say(&own.say), met_by(&own.name)));
+    let mut all: Vec<(&str, String, usize)> = counted.filter(|(_, _, count)| *count > 0).collect();
+    all.sort_by(|one, other| other.2.cmp(&one.2).then_with(|| one.0.cmp(other.0)));
+    all
+}

@@ -1,0 +1,195 @@
+//! The class as one HTML page for the projector: no script, no other file. One student is lit: their name is chosen with
+//! the mouse or with the arrow keys, for the names are a group of radio buttons.
+
+use std::fmt::Write;
+
+use super::curves::{StudentPoints, curves, scatter};
+use super::drawing::{Drawing, draw};
+use super::guesses::{asked, pitfalls};
+use super::ranking::{RankedStudent, ranked};
+use super::words::finding_in_words;
+use super::{ClassView, RunVerdict};
+use crate::notation::percent;
+use crate::report::html::{STYLE, escaped};
+use crate::report::words::{count, money};
+
+/// What the page has besides the style of every report.
+const OWN_STYLE: &str = include_str!("../../../assets/class.css");
+
+/// The page.
+pub fn as_html(view: &ClassView<'_>) -> String {
+    let ranking = ranked(view);
+    let lit = view.shown.lit.as_deref().or(ranking.first().map(|first| first.label));
+    let finished = view.collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count();
+    let title = escaped(&view.title());
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}{}</style>\n\
+         </head>\n<body>\n<main>\n<header>\n<p class=\"brand\">NovaMind class</p>\n<h1>{title}</h1>\n<ul class=\"tags\">\
+         <li>{}</li><li>{} finished</li></ul>\n<p class=\"note\">Ranked by {}.</p>\n</header>\n",
+        lighting(ranking.len()),
+        count(view.class.students.len() as u32, "student"),
+        count(finished as u32, "run"),
+        escaped(&view.measure())
+    );
+    // The buttons stand before everything that they light, which style can only say of what follows.
+    for (at, student) in ranking.iter().enumerate() {
+        let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
+        let name = escaped(&student.name);
+        let _ = writeln!(
+            page,
+            "<input class=\"pick\" type=\"radio\" name=\"lit\" id=\"r{at}\" aria-label=\"{name}\"{checked}/>"
+        );
+    }
+    let names = ranking.iter().enumerate();
+    let names: String = names
+        .map(|(at, own)| format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escaped(&own.name)))
+        .collect();
+    let _ = write!(page, "<div class=\"names\">\n{names}</div>\n");
+    for part in 1..=view.parts() {
+        page += &drawings(view, &ranking, part);
+    }
+    page += &table(view, &ranking);
+    page += &guesses(view, &ranking);
+    page += &pitfalls_met(view);
+    if !view.shown.hides_names && !view.collection.findings.is_empty() {
+        let wrong = view
+            .collection
+            .findings
+            .iter()
+            .map(|own| format!("<li>{}</li>\n", escaped(&finding_in_words(own))));
+        let _ = write!(
+            page,
+            "<section>\n<h2>Not counted, or not there</h2>\n<ul>\n{}</ul>\n</section>\n",
+            wrong.collect::<String>()
+        );
+    }
+    page + "</main>\n</body>\n</html>\n"
+}
+
+/// The style that lights the student whose button is chosen.
+fn lighting(students: usize) -> String {
+    let rule = |at: usize| {
+        format!(
+            "#r{at}:checked~section .c{at}{{stroke:var(--c2);stroke-opacity:1;stroke-width:4;fill-opacity:1}}\
+             #r{at}:checked~section .dot.c{at}{{fill:var(--c2);stroke:none}}\
+             #r{at}:checked~.names .n{at},#r{at}:checked~section tr.t{at} td{{color:var(--c2);font-weight:700}}\
+             #r{at}:focus-visible~.names .n{at}{{outline:2px solid var(--c2)}}\n"
+        )
+    };
+    (0..students).map(rule).collect()
+}
+
+/// Class and name of the marks of a student.
+fn marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
+    |label| {
+        let at = ranking.iter().position(|own| own.label == label)?;
+        Some((format!("c{at}"), ranking[at].name.clone()))
+    }
+}
+
+fn figure(caption: &str, drawing: &Drawing<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    format!(
+        "<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n",
+        escaped(caption),
+        draw(drawing, &marks(ranking))
+    )
+}
+
+fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> String {
+    let heading = view.part_title(part).unwrap_or("Curves");
+    let all = curves(view, ranking, part);
+    let title = format!("Cash by day of {}", count(ranking.len() as u32, "student"));
+    let curves =
+        Drawing { title, across: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
+    let mut text = format!("<section>\n<h2>{}</h2>\n", escaped(heading));
+    text += &figure("Cash, dollars; the dashed curve is the good play", &curves, ranking);
+    if let Some(scatter) = scatter(view, ranking, part) {
+        let caption = format!("{} at the end against {}", scatter.figure, scatter.decision);
+        let across = format!("{}, mean of the weeks", scatter.decision);
+        let points = &scatter.points;
+        let drawing = Drawing { title: caption.clone(), across, points, is_line: false, has_diagonal: false };
+        text += &figure(&caption, &drawing, ranking);
+    }
+    text + "</section>\n"
+}
+
+fn table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let score = if view.lesson.is_some() { "Of good play" } else { "Cash" };
+    let mut text = format!(
+        "<section>\n<h2>Ranking</h2>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\" class=\"number\">Rank</th>\
+         <th scope=\"col\">Student</th><th scope=\"col\" class=\"number\">{score}</th><th scope=\"col\" class=\"number\">Tries\
+         </th><th scope=\"col\" class=\"number\">Hints</th><th scope=\"col\" class=\"number\">Goals</th><th scope=\"col\">\
+         Pitfalls</th></tr></thead>\n<tbody>\n"
+    );
+    for (at, student) in ranking.iter().enumerate() {
+        let score = if view.lesson.is_some() { percent(student.score, 0) } else { money(student.score) };
+        let _ = writeln!(
+            text,
+            "<tr class=\"t{at}\"><td class=\"number\">{}</td><td>{}</td><td class=\"number\">{score}</td><td class=\"number\">{}\
+             </td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
+            at + 1,
+            escaped(&student.name),
+            student.tries(),
+            student.hints(),
+            student.goals(),
+            escaped(&student.pitfalls())
+        );
+    }
+    text + "</tbody>\n</table></div>\n</section>\n"
+}
+
+fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let mut text = String::new();
+    for asked in asked(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
+        if asked.choices.is_empty() {
+            let points: Vec<StudentPoints<'_>> = asked
+                .answers
+                .iter()
+                .map(|(label, guess, outcome)| StudentPoints {
+                    label: Some(label),
+                    points: vec![(*guess, *outcome)],
+                })
+                .collect();
+            let title = format!("{} What came of it, against the guess", asked.question);
+            let across = "guess; on the line it was right".to_owned();
+            let drawing = Drawing { title, across, points: &points, is_line: false, has_diagonal: true };
+            text += &figure(asked.question, &drawing, ranking);
+            continue;
+        }
+        text += &format!("<h3>{}</h3>\n", escaped(asked.question));
+        let bar = |(number, choice): (u32, &String)| {
+            let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+            let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
+            (choice.clone(), taken, is_right)
+        };
+        text += &bars((1..).zip(asked.choices).map(bar), asked.answers.len());
+    }
+    if text.is_empty() { text } else { format!("<section>\n<h2>Guesses</h2>\n{text}</section>\n") }
+}
+
+fn pitfalls_met(view: &ClassView<'_>) -> String {
+    let met = pitfalls(view);
+    let Some((_, say, _)) = met.first() else { return String::new() };
+    let rows = met.iter().enumerate().map(|(at, (name, _, count))| ((*name).to_owned(), *count, at == 0));
+    format!(
+        "<section>\n<h2>Pitfalls</h2>\n<p>{}</p>\n{}</section>\n",
+        escaped(say),
+        bars(rows, view.class.students.len())
+    )
+}
+
+/// Counts as bars; a few of them stand out.
+fn bars(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
+    let bar = |(name, count, own): (String, usize, bool)| {
+        format!(
+            "<li{}><span class=\"name\">{}</span><span class=\"amount\">{count}</span><span class=\"track\"><span \
+             style=\"width:{:.1}%\"></span></span></li>\n",
+            if own { " class=\"own\"" } else { "" },
+            escaped(&name),
+            100.0 * count as f64 / all.max(1) as f64
+        )
+    };
+    format!("<ol class=\"bars\">\n{}</ol>\n", rows.map(bar).collect::<String>())
+}

@@ -1,0 +1,67 @@
+//! The ranking of a class: by the lesson's measure, relative to the good play on the same seed.
+
+use super::ClassView;
+use crate::session::{ClassRun, RunVerdict};
+
+/// A student in the ranking.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RankedStudent<'a> {
+    /// Label.
+    pub label: &'a str,
+    /// What is shown for the label: the rank, where names are hidden.
+    pub name: String,
+    /// Share of the good play, or dollars where there is none.
+    pub score: f64,
+    /// The best finished try of each part; where no lesson was handed out, the one run.
+    pub runs: Vec<&'a ClassRun>,
+}
+
+/// Students by their score, the best first; those of whom nothing counts are not among them.
+pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
+    let day = common_day(view);
+    let of_student = |label: &'a str| {
+        let (score, runs) = match view.lesson {
+            Some(_) => score_in_lesson(view, label)?,
+            None => score_of_run(view, label, day)?,
+        };
+        Some(RankedStudent { label, name: String::new(), score, runs })
+    };
+    let labels = view.class.students.iter().map(|student| student.label.as_str());
+    let mut all: Vec<RankedStudent<'a>> = labels.filter_map(of_student).collect();
+    all.sort_by(|one, other| other.score.total_cmp(&one.score).then_with(|| one.label.cmp(other.label)));
+    for (at, student) in all.iter_mut().enumerate() {
+        student.name =
+            if view.shown.hides_names { format!("no. {}", at + 1) } else { student.label.to_owned() };
+    }
+    all
+}
+
+/// Mean over the parts, and the best try of each.
+fn score_in_lesson<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
+    let own: Vec<&ClassRun> =
+        view.whole().filter(|run| run.label == label && run.verdict == RunVerdict::Finished).collect();
+    let best = |part: u32| {
+        let scored = own
+            .iter()
+            .filter(|run| run.evidence.part == part)
+            .map(|run| (view.share(run).unwrap_or(0.0), *run));
+        scored.max_by(|(one, _), (other, _)| one.total_cmp(other))
+    };
+    let found: Vec<(f64, &ClassRun)> = (1..=view.parts()).filter_map(best).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let sum: f64 = found.iter().map(|(share, _)| share).sum();
+    Some((sum / f64::from(view.parts()), found.into_iter().map(|(_, run)| run).collect()))
+}
+
+fn score_of_run<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f64, Vec<&'a ClassRun>)> {
+    let run = view.whole().find(|run| run.label == label)?;
+    let cash = run.evidence.cash.iter().rev().find(|(own, _)| *own <= day)?.1;
+    Some((cash, vec![run]))
+}
+
+/// The last day that every whole run has reached.
+fn common_day(view: &ClassView<'_>) -> u32 {
+    view.whole().map(|run| run.evidence.day).min().unwrap_or(0)
+}

@@ -1,0 +1,243 @@
+//! What came back of a class, as text.
+
+use super::ClassView;
+use super::curves::{curves, scatter};
+use super::guesses::{asked, pitfalls};
+use super::plot::{Drawn, plot};
+use super::ranking::{RankedStudent, ranked};
+use crate::notation::{compact, percent, printable};
+use crate::report::words::{count, money};
+use crate::session::{ClassFinding, RunVerdict};
+
+/// What should be known, in a sentence that says what to do.
+pub fn finding_in_words(finding: &ClassFinding) -> String {
+    match finding {
+        ClassFinding::Unreadable { label, path, problem } => {
+            let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
+            format!("{who}{} is not taken: {problem}", path.display())
+        }
+        ClassFinding::Altered { label, run, problem } => {
+            format!("{label}: run {run} was altered and does not count. {problem}. Ask for the run again")
+        }
+        ClassFinding::Twice { label, run, paths } => {
+            let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+            format!(
+                "{label}: run {run} was played twice, and neither record goes on from the other: {}. Neither is ranked; ask \
+                 which one counts, and collect without the other",
+                paths.join(" and ")
+            )
+        }
+        ClassFinding::OtherLesson { label, run } => {
+            format!(
+                "{label}: run {run} was played by another lesson, or another version of it, and does not count"
+            )
+        }
+        ClassFinding::OtherHandout { label, run, of: Some(of) } => {
+            format!(
+                "{label}: run {run} began with the hand-out of {of} and does not count; find out who played it"
+            )
+        }
+        ClassFinding::OtherHandout { label, run, of: None } => {
+            format!(
+                "{label}: run {run} has another past than the one that was handed out, and does not count"
+            )
+        }
+        ClassFinding::Unknown { label, run, path } => {
+            let who = label.as_deref().unwrap_or("nobody in particular");
+            format!(
+                "{who}: run {run} in {} did not begin with a hand-out of this class and does not count",
+                path.display()
+            )
+        }
+        ClassFinding::Missing { label } => format!("{label}: nothing came back"),
+        ClassFinding::NotFinished { label, parts } if parts.len() == 1 && parts[0] == 1 => {
+            format!("{label}: not finished")
+        }
+        ClassFinding::NotFinished { label, parts } => {
+            let parts: Vec<String> = parts.iter().map(u32::to_string).collect();
+            format!("{label}: not finished: part {}", parts.join(", "))
+        }
+        ClassFinding::AlteredHandout { label } => {
+            format!(
+                "{label}: the hand-out in the folder of the class was altered; runs that began before are not touched by that"
+            )
+        }
+    }
+}
+
+/// What came back, in short, and what is wrong.
+pub fn collected_in_words(view: &ClassView<'_>) -> String {
+    let collection = view.collection;
+    let mut text = headline(view) + "\n";
+    if collection.superseded > 0 {
+        let records = count(collection.superseded, "record");
+        text += &format!("{records} found once more, or in an earlier state: the latest counts\n");
+    }
+    if collection.others > 0 {
+        text += &format!("{} of something else, left alone\n", count(collection.others, "run"));
+    }
+    for finding in &collection.findings {
+        text += &format!("! {}\n", printable(&finding_in_words(finding)));
+    }
+    text
+}
+
+fn headline(view: &ClassView<'_>) -> String {
+    let students = view.class.students.len() as u32;
+    let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
+    let verdicts = [
+        RunVerdict::Finished,
+        RunVerdict::NotFinished,
+        RunVerdict::Altered,
+        RunVerdict::Twice,
+        RunVerdict::OtherLesson,
+        RunVerdict::OtherHandout,
+        RunVerdict::Unknown,
+    ];
+    let runs: Vec<String> = verdicts
+        .into_iter()
+        .filter(|verdict| of(*verdict) > 0)
+        .map(|verdict| format!("{} {}", of(verdict), verdict.id()))
+        .collect();
+    let runs =
+        if runs.is_empty() { "no run came back".to_owned() } else { format!("runs: {}", runs.join(", ")) };
+    format!("{} · {} · {runs}", view.title(), count(students, "student"))
+}
+
+/// The class for a terminal: ranking, curves, a decision against a figure, guesses, pitfalls, and what is wrong.
+pub fn shown_in_words(view: &ClassView<'_>) -> String {
+    let ranking = ranked(view);
+    let mut text = format!("{}\nRanked by {}.\n\n", headline(view), view.measure());
+    text += &ranking_in_words(view, &ranking);
+    let lit = view.shown.lit.as_deref().or(ranking.first().map(|first| first.label));
+    for part in 1..=view.parts() {
+        text += &drawings(view, &ranking, part, lit);
+    }
+    text += &guesses_in_words(view, &ranking);
+    let met = pitfalls(view);
+    if let Some((name, say, most)) = met.first() {
+        text += &format!("\nThe pitfall met most: {name}, by {}. {say}\n", count(*most as u32, "student"));
+        for (name, _, own) in &met[1..] {
+            text += &format!("  {name}: {own}\n");
+        }
+    }
+    match view.shown.hides_names {
+        // What is wrong names students.
+        true => text,
+        false => {
+            let wrong: String =
+                view.collection.findings.iter().map(|own| format!("! {}\n", finding_in_words(own))).collect();
+            let text = if wrong.is_empty() { text } else { text + "\n" + &wrong };
+            printable(&text).into_owned()
+        }
+    }
+}
+
+fn ranking_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let width = ranking.iter().map(|student| student.name.chars().count()).max().unwrap_or(0).max(7);
+    let heading = if view.lesson.is_some() { "of good" } else { "cash" };
+    let mut text = format!("rank  {:<width$}  {heading:>12}  tries  hints  goals  pitfalls\n", "student");
+    for (at, student) in ranking.iter().enumerate() {
+        let score = match view.lesson {
+            Some(_) => percent(student.score, 0),
+            None => money(student.score),
+        };
+        text += format!(
+            "{:>4}  {:<width$}  {score:>12}  {:>5}  {:>5}  {:>5}  {}",
+            at + 1,
+            student.name,
+            student.tries(),
+            student.hints(),
+            student.goals(),
+            student.pitfalls()
+        )
+        .trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+impl RankedStudent<'_> {
+    /// The highest try of the runs that count.
+    pub(super) fn tries(&self) -> u32 {
+        self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
+    }
+
+    /// Hints in the runs that count.
+    pub(super) fn hints(&self) -> u32 {
+        self.runs.iter().map(|run| run.evidence.hints).sum()
+    }
+
+    /// Goals that were reached, and goals that were judged: `2/3`.
+    pub(super) fn goals(&self) -> String {
+        let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
+        format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())
+    }
+
+    /// Names of the pitfalls that were met.
+    pub(super) fn pitfalls(&self) -> String {
+        let all: Vec<&str> =
+            self.runs.iter().flat_map(|run| &run.evidence.pitfalls).map(String::as_str).collect();
+        all.join(" ")
+    }
+}
+
+/// The curves of a part, and a decision against a figure.
+fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32, lit: Option<&str>) -> String {
+    let all = curves(view, ranking, part);
+    let title = view.part_title(part).map(|title| format!(", {title}")).unwrap_or_default();
+    let name = ranking.iter().find(|own| Some(own.label) == lit).map_or("nobody", |own| own.name.as_str());
+    let mut text = format!("\nCash by day{title}: {name} #, good play o, others ·\n");
+    let sign = |label: Option<&str>| match label {
+        None => 'o',
+        label if label == lit => '#',
+        Some(_) => '\u{b7}',
+    };
+    let drawn = |own: &[super::curves::StudentPoints<'_>], is_line: bool| {
+        let mut all: Vec<Drawn<'_>> =
+            own.iter().map(|own| Drawn { sign: sign(own.label), points: &own.points, is_line }).collect();
+        all.sort_by_key(|own| ['\u{b7}', 'o', '#'].iter().position(|sign| *sign == own.sign));
+        plot(&all)
+    };
+    text += &drawn(&all, true);
+    if let Some(scatter) = scatter(view, ranking, part) {
+        text += &format!("\n{} across, {} up: {name} #, others ·\n", scatter.decision, scatter.figure);
+        text += &drawn(&scatter.points, false);
+    }
+    text
+}
+
+fn guesses_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let mut text = String::new();
+    for asked in asked(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
+        let part = if view.parts() > 1 { format!("part {}: ", asked.part) } else { String::new() };
+        text += &format!("\nGuesses: {part}{}\n", asked.question);
+        if asked.choices.is_empty() {
+            let mut guesses: Vec<f64> = asked.answers.iter().map(|answer| answer.1).collect();
+            guesses.sort_by(f64::total_cmp);
+            let distance = |answer: &&(&str, f64, f64)| (answer.1 - answer.2).abs();
+            let nearest = asked.answers.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+            let named = |label: &str| {
+                ranking.iter().find(|own| own.label == label).map_or("-", |own| own.name.as_str())
+            };
+            let nearest = nearest.map(|(label, guess, outcome)| {
+                format!("; nearest {}: {} for {}", named(label), compact(*guess), compact(*outcome))
+            });
+            text += &format!(
+                "  {} from {} to {}, in the middle {}{}\n",
+                guesses.len(),
+                compact(guesses[0]),
+                compact(guesses[guesses.len() - 1]),
+                compact(guesses[guesses.len() / 2]),
+                nearest.unwrap_or_default()
+            );
+        } else {
+            for (number, choice) in (1..).zip(asked.choices) {
+                let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+                let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
+                text += &format!("  {:>3}  {choice}{}\n", taken, if is_right { "  (right)" } else { "" });
+            }
+        }
+    }
+    text
+}

@@ -9,7 +9,7 @@ pub(crate) mod anonymised;
 pub(crate) mod books;
 mod card;
 pub(crate) mod chapters;
-pub(crate) mod class;
+pub mod class;
 pub(crate) mod collection;
 pub(crate) mod curve;
 pub(crate) mod deals;

@@ -3,6 +3,7 @@
 mod battery;
 mod breakpoints;
 mod curve;
+mod classes;
 mod difference;
 mod durability;
 mod enterprise;

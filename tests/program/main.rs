@@ -1,6 +1,7 @@
 //! Stories of the built program: pipes, scripts, files, archives, terminals; and its figures beside recorded ones.
 
 mod audited;
+mod classes;
 mod determinism;
 mod edges;
 mod exports;

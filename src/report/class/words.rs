@@ -14,7 +14,10 @@ pub fn finding_in_words(finding: &ClassFinding) -> String {
     match finding {
         ClassFinding::Unreadable { label, path, problem } => {
             let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
-            format!("{who}{} is not taken: {problem}", path.display())
+            let place = path.display().to_string();
+            // Most problems name their place.
+            let place = if problem.contains(&place) { String::new() } else { format!("{place}: ") };
+            format!("{who}not taken: {place}{problem}")
         }
         ClassFinding::Altered { label, run, problem } => {
             format!("{label}: run {run} was altered and does not count. {problem}. Ask for the run again")

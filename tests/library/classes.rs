@@ -1,0 +1,343 @@
+//! A class of thirty: handed out, played on thirty machines, collected and shown.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use novamind::report::class::{ClassView, Shown, as_html, columns_table, rows, shown_in_words};
+use novamind::rules::answers_to_companies;
+use novamind::session::{
+    Access, Class, ClassCollection, ClassFinding, ClassSources, Configuration, Export, Handout, Lesson,
+    NewRun, RunVerdict, SealKey, Session, Storage, ToHandOut, Via, manifest_of,
+};
+use serde_json::json;
+use tempfile::TempDir;
+
+use crate::support::forging::forge;
+
+/// A class in a folder, and its machines.
+struct School {
+    place: TempDir,
+    class: Class,
+}
+
+impl School {
+    fn of(what: &ToHandOut, students: u32) -> School {
+        let place = tempfile::tempdir().expect("a folder");
+        let class = Class::create(&place.path().join("class"), what, students).expect("a class");
+        School { place, class }
+    }
+
+    fn folder(&self) -> PathBuf {
+        self.place.path().join("class")
+    }
+
+    fn handout(&self, label: &str) -> PathBuf {
+        self.folder().join(format!("{label}.nm"))
+    }
+
+    fn machine(&self, name: &str) -> PathBuf {
+        self.place.path().join("machines").join(name)
+    }
+
+    /// Opens a hand-out on a machine of its own; tells the folder of its run.
+    fn begin(&self, label: &str, machine: &str) -> PathBuf {
+        let runs = self.machine(machine);
+        let run = Handout::read(&self.handout(label)).expect("a hand-out").place(&runs).expect("a run");
+        runs.join("participants").join(label).join(run)
+    }
+
+    /// Plays a hand-out at a price on a machine of its own; tells the folder of its run.
+    fn play(&self, label: &str, machine: &str, price: f64, weeks: u32) -> PathBuf {
+        let folder = self.begin(label, machine);
+        play_on(&folder, price, weeks);
+        folder
+    }
+
+    fn collect(&self, places: &[PathBuf]) -> ClassCollection {
+        let folder = self.folder();
+        let sources = ClassSources { class: &self.class, folder: &folder, places };
+        ClassCollection::collect(&sources, &answers_to_companies, &mut |_, _| {}).expect("collected")
+    }
+}
+
+fn play_on(folder: &Path, price: f64, weeks: u32) {
+    let mut session = Session::open(folder, Access::Write, true).expect("it opens");
+    session
+        .call("set_prices", &json!({"A": price, "B": price * 2.5, "C": price * 6.25}), Via::Script)
+        .expect("prices");
+    for _ in 0..weeks {
+        let awaits = |own: &Session| {
+            own.lesson_step().is_some_and(|step| own.lesson().is_some_and(|it| it.awaits_guess(step)))
+        };
+        if awaits(&session) {
+            session.guess_in_lesson(if price < 20.0 { 2.0 } else { 1.0 }).expect("a guess");
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+}
+
+fn lesson() -> ToHandOut {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
+    ToHandOut::Lesson(Arc::new(Lesson::of_file(&path).expect("a lesson")))
+}
+
+/// Forges lines, and removes what remembers the true ones.
+fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
+    forge(folder, change);
+    let kept = ["run.toml", "trajectory.jsonl", "lesson.toml", "lesson.md"];
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        if !kept.contains(&entry.file_name().to_string_lossy().as_ref()) {
+            fs::remove_file(entry.path()).expect("removed");
+        }
+    }
+}
+
+/// Hands a run over as an archive beside its machine, and removes the run.
+fn as_archive(folder: &Path, archive: &Path) {
+    let beside = archive.parent().expect("a folder");
+    fs::create_dir_all(beside).expect("a folder");
+    let export = Export::prepare(folder, beside, &SealKey::default()).expect("it is whole");
+    export.write(archive, false, None).expect("written");
+    drop(export);
+    fs::remove_dir_all(folder).expect("removed");
+}
+
+fn replace_in(path: &Path, from: &str, to: &str) {
+    let text = fs::read_to_string(path).expect("a text");
+    assert!(text.contains(from), "{from} in {}", path.display());
+    fs::write(path, text.replacen(from, to, 1)).expect("written");
+}
+
+#[test]
+fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
+    let school = School::of(&lesson(), 30);
+    let (altered, forged, twice, missing, open) = ("S05", "S06", "S07", "S08", "S09");
+    for (number, student) in school.class.students.iter().enumerate() {
+        let label = student.label.as_str();
+        let price = 8.0 + 1.5 * number as f64;
+        let machine = format!("machine-{label}");
+        match label {
+            "S08" => {}
+            "S09" => drop(school.play(label, &machine, price, 2)),
+            "S07" => {
+                school.play(label, &machine, price, 3);
+                school.play(label, "machine-two", 40.0, 3);
+            }
+            _ => {
+                let folder = school.play(label, &machine, price, 3);
+                match label {
+                    // A figure is another; the sum of its line is not.
+                    "S05" => replace_in(
+                        &folder.join("trajectory.jsonl"),
+                        "\"event\":\"goal\"",
+                        "\"event\":\"hint\"",
+                    ),
+                    // A better goal, with sums and chain computed anew.
+                    "S06" => forge_all(&folder, |_, line| {
+                        if line["event"] == "goal" {
+                            line["value"] = json!(99_999.0);
+                            line["met"] = json!(true);
+                        }
+                    }),
+                    _ if number % 3 == 0 => {
+                        let archive = school.machine("archives").join(format!("{label}.tar.gz"));
+                        as_archive(&folder, &archive);
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    // The same run once more is no other run.
+    let again = school.machine("archives").join("copy-of-S01.tar.gz");
+    fs::copy(school.machine("archives").join("S01.tar.gz"), &again).expect("copied");
+    // A run of something else lies on a machine, as everywhere.
+    let other = Storage::Runs(school.machine("machine-S02"));
+    drop(Session::create(
+        NewRun { storage: other, days: Some(28), ..NewRun::default() },
+        &Configuration::shipped(),
+    ));
+
+    let collection = school.collect(&[school.place.path().join("machines")]);
+    let mut found: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for finding in &collection.findings {
+        let kind = match finding {
+            ClassFinding::Unreadable { problem, .. } => {
+                assert!(problem.contains("line "), "{problem}");
+                "unreadable"
+            }
+            ClassFinding::Altered { problem, .. } => {
+                assert!(problem.contains("the line says 99999 for step 2"), "{problem}");
+                "altered"
+            }
+            ClassFinding::Twice { paths, .. } => {
+                assert_eq!(paths.len(), 2);
+                "twice"
+            }
+            ClassFinding::Missing { .. } => "missing",
+            ClassFinding::NotFinished { parts, .. } => {
+                assert_eq!(*parts, [1]);
+                "open"
+            }
+            other => panic!("{other:?}"),
+        };
+        found.entry(finding.label().expect("a label")).or_default().push(kind);
+    }
+    let expected: BTreeMap<&str, Vec<&str>> = [
+        (altered, vec!["unreadable"]),
+        (forged, vec!["altered"]),
+        (twice, vec!["twice"]),
+        (missing, vec!["missing"]),
+        (open, vec!["open"]),
+    ]
+    .into();
+    assert_eq!(found, expected);
+    assert_eq!((collection.superseded, collection.others), (1, 1));
+    let of = |verdict| collection.runs.iter().filter(|run| run.verdict == verdict).count();
+    assert_eq!(of(RunVerdict::Finished), 25);
+    assert_eq!((of(RunVerdict::Twice), of(RunVerdict::NotFinished), of(RunVerdict::Altered)), (2, 1, 1));
+    assert_eq!(ClassCollection::read(&school.folder()).expect("kept"), collection);
+    check_tables(&school, &collection);
+}
+
+fn check_tables(school: &School, collection: &ClassCollection) {
+    let lesson = school.class.lesson_kept(&school.folder()).expect("kept");
+    let view = |shown| ClassView { class: &school.class, lesson: lesson.as_ref(), collection, shown };
+    let plain = view(Shown::default());
+    let table = rows(&plain);
+    assert_eq!(table.len(), collection.runs.len() + 1);
+    let column = |name: &str| table[0].iter().position(|own| own == name).expect(name);
+    let first = table.iter().find(|row| row[0] == "S01").expect("a row");
+    assert_eq!(
+        first[column("of_good")],
+        "1",
+        "S01 plays as the good play does: {first:?} {:?}",
+        collection.references
+    );
+    assert_eq!(
+        (first[column("goals_reached")].as_str(), first[column("verdict")].as_str()),
+        ("1", "finished")
+    );
+    assert_eq!((first[column("guesses_right")].as_str(), first[column("pitfalls")].as_str()), ("1", ""));
+    let last = table.iter().find(|row| row[0] == "S30").expect("a row");
+    assert_eq!((last[column("goals_reached")].as_str(), last[column("pitfalls")].as_str()), ("0", "dear"));
+    let explained: Vec<String> =
+        columns_table(&plain).into_iter().skip(1).map(|row| row[0].clone()).collect();
+    assert_eq!(explained, table[0], "every column is explained");
+
+    let text = shown_in_words(&plain);
+    let ranking: Vec<&str> = text.lines().filter(|line| line.contains('%') && line.contains("/1")).collect();
+    assert_eq!(ranking.len(), 25, "{text}");
+    assert!(ranking[0].contains("S01") && ranking[0].contains("100%"), "{text}");
+    for part in
+        ["price A across, cash up", "The pitfall met most: dear, by ", "Will a higher price", "! S05: "]
+    {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    let hidden = shown_in_words(&view(Shown { hides_names: true, ..Shown::default() }));
+    assert!(hidden.contains("no. 25") && !hidden.contains("S0") && !hidden.contains("S1"), "{hidden}");
+    let page = as_html(&view(Shown { lit: Some("S12".to_owned()), ..Shown::default() }));
+    for foreign in ["<script", "http://", "https://", "src=", "href=", "url(", "@import"] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+    assert_eq!(page.matches("<polyline class=\"curve c").count(), 25);
+    assert_eq!(page.matches("checked=\"checked\"").count(), 1);
+    let page = as_html(&view(Shown { hides_names: true, ..Shown::default() }));
+    assert!(!page.contains("S01") && page.contains("no. 1"), "no label is on the page");
+    let wrong = view(Shown { figure: Some("subscriber".to_owned()), ..Shown::default() }).check();
+    assert!(wrong.expect_err("no such figure").contains("subscribers"));
+}
+
+#[test]
+fn an_altered_hand_out_is_refused_and_says_what_to_do() {
+    let school = School::of(&lesson(), 1);
+    let path = school.handout("S01");
+    let whole = fs::read_to_string(&path).expect("a hand-out");
+    let seven = whole.replacen("label = \"S01\"", "label = \"S02\"", 1);
+    let easy = whole.replacen("relative = 0.9", "relative = 0.1", 1);
+    let lines = whole.replace('\n', "\r\n");
+    for text in [seven.as_str(), &easy, &lines, &whole[..whole.len() - 20], &format!("{whole}\n"), ""] {
+        assert_ne!(text, whole);
+        fs::write(&path, text).expect("written");
+        let error = Handout::read(&path).expect_err("it is refused").to_string();
+        assert!(error.contains("S01.nm") && error.contains("ask for the hand-out again"), "{error}");
+    }
+    fs::write(&path, whole.replacen("format = 1", "format = 9", 1)).expect("written");
+    assert!(Handout::read(&path).expect_err("a later format").to_string().contains("a later version"));
+    fs::write(&path, [0xff, 0xfe]).expect("written");
+    assert!(Handout::read(&path).is_err());
+    let collection = school.collect(&[school.folder()]);
+    assert!(collection.findings.contains(&ClassFinding::AlteredHandout { label: "S01".to_owned() }));
+}
+
+#[test]
+fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
+    let school = School::of(&lesson(), 2);
+    let folder = school.begin("S02", "one");
+    assert_eq!(folder.file_name().expect("a name").to_string_lossy(), school.class.students[1].run);
+    let manifest = manifest_of(&folder).expect("a manifest");
+    assert_eq!(manifest.participant.as_deref(), Some("S02"));
+    play_on(&folder, 40.0, 3);
+    assert_eq!(school.begin("S02", "one"), folder, "the run that is over is shown");
+    let again =
+        Session::open(&folder, Access::Write, true).expect("it opens").try_step_again(0).expect("a try");
+    let id = again.manifest().id.clone();
+    drop(again);
+    let own = school.begin("S02", "one");
+    assert_eq!(own, folder.with_file_name(&id), "the open try is gone on with");
+    play_on(&own, 8.0, 3);
+    let collection = school.collect(&[school.machine("one")]);
+    assert_eq!(collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count(), 2);
+    assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
+    assert_eq!(collection.findings, [ClassFinding::Missing { label: "S01".to_owned() }]);
+
+    // Somebody else's hand-out, with the own label in the first line.
+    let manifest = folder.join("run.toml");
+    replace_in(&manifest, "participant = \"S02\"", "participant = \"S01\"");
+    forge_all(&folder, |at, line| {
+        if at == 0 {
+            line["participant"] = json!("S01");
+        }
+    });
+    let collection = school.collect(std::slice::from_ref(&folder));
+    let of = Some("S02".to_owned());
+    let label = "S01".to_owned();
+    let run = school.class.students[1].run.clone();
+    assert!(
+        collection.findings.contains(&ClassFinding::OtherHandout { label, run, of }),
+        "{:?}",
+        collection.findings
+    );
+}
+
+#[test]
+fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
+    let teacher = tempfile::tempdir().expect("a folder");
+    let storage = Storage::Runs(teacher.path().to_owned());
+    let new = NewRun { storage, days: Some(70), seed: Some(5), ..NewRun::default() };
+    let session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let folder = session.folder().expect("a folder").to_owned();
+    drop(session);
+    play_on(&folder, 12.0, 2);
+    let school = School::of(&ToHandOut::Run(folder), 3);
+    let [first, second] =
+        [("S01", 8.0), ("S02", 30.0)].map(|(label, price)| school.play(label, label, price, 3));
+    assert_ne!(first.file_name(), second.file_name());
+    let played = Session::open(&first, Access::Read, true).expect("it opens");
+    assert_eq!((played.day(), played.manifest().seed), (35, 5));
+    drop(played);
+    let collection = school.collect(&[school.place.path().join("machines")]);
+    let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
+    assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);
+    assert!(collection.findings.contains(&ClassFinding::Missing { label: "S03".to_owned() }));
+    let shown = Shown::default();
+    let view = ClassView { class: &school.class, lesson: None, collection: &collection, shown };
+    let text = shown_in_words(&view);
+    assert!(text.contains("Ranked by cash on the last day that every run has reached"), "{text}");
+
+    let refused = Class::create(&school.folder(), &lesson(), 3).expect_err("the class is there").to_string();
+    assert!(refused.contains("name another folder"), "{refused}");
+}

@@ -9,11 +9,11 @@ use super::lesson::lesson_of;
 use super::run::progress_bar;
 use super::runs::{as_csv, tidy_up_on_signals};
 use super::{Context, Failure, print};
+use crate::lab::answers_to_companies;
 use crate::report::class::{
     ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
 };
 use crate::report::count;
-use crate::rules::answers_to_companies;
 use crate::session::{Class, ClassCollection, ClassSources, ToHandOut, find_run_to_read, write_whole};
 
 /// Options of `class`.

@@ -18,6 +18,7 @@ mod runner;
 mod statistics;
 mod symbols;
 
+pub use crate::rules::answers_to_companies;
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};

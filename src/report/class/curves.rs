@@ -80,7 +80,8 @@ fn most_different(all: &[&BTreeMap<String, f64>]) -> Option<String> {
         ((most - least) / most.abs().max(least.abs()).max(1e-9), distinct.len())
     };
     let sorted: std::collections::BTreeSet<&String> = names.collect();
-    let best = sorted.into_iter().rev().map(|name| (spread(name), name)).filter(|((spread, _), _)| *spread > 1e-9);
+    let best =
+        sorted.into_iter().rev().map(|name| (spread(name), name)).filter(|((spread, _), _)| *spread > 1e-9);
     best.max_by(|(one, _), (other, _)| one.1.cmp(&other.1).then(one.0.total_cmp(&other.0)))
         .map(|(_, name)| name.clone())
 }

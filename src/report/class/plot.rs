@@ -65,7 +65,7 @@ fn between(from: f64, to: f64, share: f64) -> f64 {
 fn reach(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (least, most) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
-    (least <= most).then(|| if most - least < 1e-9 { (least - 1.0, most + 1.0) } else { (least, most) })
+    (least <= most).then_some(if most - least < 1e-9 { (least - 1.0, most + 1.0) } else { (least, most) })
 }
 
 #[cfg(test)]

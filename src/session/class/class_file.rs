@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::handed_run::Past;
+use super::handed_run::HandedPast;
 use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
 use super::stamp::HandoutStamp;
 use crate::session::error::RunError;
@@ -102,7 +102,7 @@ impl Class {
         }
         let past = match what {
             ToHandOut::Lesson(_) => None,
-            ToHandOut::Run(run) => Some(Past::of(run)?),
+            ToHandOut::Run(run) => Some(HandedPast::of(run)?),
         };
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
         let mut class = Class {

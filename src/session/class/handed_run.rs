@@ -16,19 +16,19 @@ use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record, Trajectory, now};
 
 /// A run that can be handed out.
-pub(super) struct Past {
+pub(super) struct HandedPast {
     manifest: Manifest,
     lines: Vec<Line>,
     /// Its last day.
     pub(super) day: u32,
 }
 
-impl Past {
+impl HandedPast {
     /// Reads a run, and simulates it again.
     ///
     /// # Errors
     /// It is damaged, an unfinished baseline run, a run of a study or a lesson, or is over and cannot be played on.
-    pub(super) fn of(folder: &Path) -> Result<Past, RunError> {
+    pub(super) fn of(folder: &Path) -> Result<HandedPast, RunError> {
         let manifest = Derived::of(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
         let refused = |why: &str| {
@@ -48,7 +48,7 @@ impl Past {
         }
         let closing = trajectory.lines.iter().rposition(Line::closes_days).map_or(1, |at| at + 1);
         let lines = trajectory.lines.into_iter().take(closing).collect();
-        Ok(Past { manifest, lines, day })
+        Ok(HandedPast { manifest, lines, day })
     }
 
     /// Name of the run.

@@ -64,3 +64,17 @@ pub fn share_of_good(bound: Option<GoalBound>, value: f64, good: f64) -> Option<
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
     (all > 0.0 && good > 0.0).then(|| of / all)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_is_better_and_nothing_is_a_share_of_nothing() {
+        assert_eq!(share_of_good(Some(GoalBound::AtLeast(1.0)), 3.0, 4.0), Some(0.75));
+        assert_eq!(share_of_good(Some(GoalBound::AtMost(1.0)), 8.0, 4.0), Some(0.5));
+        assert_eq!(share_of_good(None, -2.0, 4.0), Some(-0.5));
+        assert_eq!(share_of_good(None, 2.0, 0.0), None);
+        assert_eq!(share_of_good(Some(GoalBound::AtMost(1.0)), 0.0, 4.0), None);
+    }
+}

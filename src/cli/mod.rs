@@ -164,9 +164,9 @@ impl Context {
     /// Somebody else was named with --as.
     pub fn of_student(&self, label: &str) -> Result<Context, Failure> {
         match &self.participant {
-            Some(whose) if whose != label => {
-                Err(Failure::usage(format!("this is the hand-out of {label}, not of {whose}: leave out --as {whose}")))
-            }
+            Some(whose) if whose != label => Err(Failure::usage(format!(
+                "this is the hand-out of {label}, not of {whose}: leave out --as {whose}"
+            ))),
             _ => Ok(Context { participant: Some(label.to_owned()), ..self.clone() }),
         }
     }

@@ -17,8 +17,8 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Handout, LessonEntry, Library, Mode, NewRun, RunError, Session,
-    Storage, Study, find_run, steady,
+    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Handout, LessonEntry, Library, Mode,
+    NewRun, RunError, Session, Storage, Study, find_run, steady,
 };
 
 /// Options of `play`.

@@ -294,9 +294,26 @@ fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
     assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
     assert_eq!(collection.findings, [ClassFinding::Missing { label: "S01".to_owned() }]);
 
+    // A lesson that was made easier, in a hand-out that was sealed anew: what comes of it names another digest.
+    let easier = Session::open(&own, Access::Read, false).expect("it opens").manifest().id.clone();
+    forge_all(&own, |at, line| {
+        if at == 0 {
+            line["lesson"]["digest"] = json!("0".repeat(64));
+        }
+    });
+    let label = "S02".to_owned();
+    let other = school.collect(std::slice::from_ref(&own)).findings;
+    assert!(other.contains(&ClassFinding::OtherLesson { label, run: easier }), "{other:?}");
+    forge_all(&own, |at, line| {
+        if at == 0 {
+            line["lesson"]["digest"] = json!(school.class.lesson.as_ref().expect("a lesson").digest);
+            line["lesson"]["part"] = json!(0);
+        }
+    });
+    let other = school.collect(std::slice::from_ref(&own)).findings;
+    assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
+
     // Somebody else's hand-out, with the own label in the first line.
-    let manifest = folder.join("run.toml");
-    replace_in(&manifest, "participant = \"S02\"", "participant = \"S01\"");
     forge_all(&folder, |at, line| {
         if at == 0 {
             line["participant"] = json!("S01");
@@ -330,6 +347,11 @@ fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
     assert_eq!((played.day(), played.manifest().seed), (35, 5));
     drop(played);
     let collection = school.collect(&[school.place.path().join("machines")]);
+    assert_eq!(
+        ClassCollection::read(&school.folder()).expect("kept"),
+        collection,
+        "quotas without limits are no numbers"
+    );
     let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);
     assert!(collection.findings.contains(&ClassFinding::Missing { label: "S03".to_owned() }));

@@ -47,7 +47,7 @@ fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &
 
 /// How many guesses among choices were right in a run.
 pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
-    let part = view.lesson.and_then(|lesson| lesson.plan.parts.get(run.evidence.part as usize - 1));
+    let part = view.part_of(run);
     let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();
     let is_choice = |step: &crate::session::LessonStep| {
         step.guess.as_ref().is_some_and(|guess| matches!(guess.form, GuessForm::Choice { .. }))

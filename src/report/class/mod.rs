@@ -18,7 +18,8 @@ pub use words::{collected_in_words, shown_in_words};
 
 use crate::notation::nearest;
 use crate::session::{
-    Class, ClassCollection, ClassRun, GoalBound, Lesson, RunVerdict, ranked_goal, share_of_good,
+    Class, ClassCollection, ClassRun, Evidence, GoalBound, Lesson, LessonPart, RunVerdict, ranked_goal,
+    share_of_good,
 };
 
 /// A class and what came back of it, as it is to be shown.
@@ -88,7 +89,7 @@ impl ClassView<'_> {
 
     /// Title of a part, where there are several; parts are counted from 1.
     fn part_title(&self, part: u32) -> Option<&str> {
-        let own = self.lesson?.plan.parts.get(part as usize - 1)?;
+        let own = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
         (self.parts() > 1).then_some(own.title.as_str())
     }
 
@@ -101,16 +102,21 @@ impl ClassView<'_> {
         }
     }
 
+    /// The part that a run plays.
+    fn part_of(&self, run: &ClassRun) -> Option<&LessonPart> {
+        self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
+    }
+
     /// Value of a goal as a share of what the good play has on the same seed; steps and goals are counted from 0.
     fn share_of_goal(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
-        let value = |own: &crate::session::Evidence| own.steps.get(step)?.goals.get(goal)?.value;
-        let part = self.lesson?.plan.parts.get(run.evidence.part as usize - 1)?;
+        let value = |own: &Evidence| own.steps.get(step)?.goals.get(goal)?.value;
+        let part = self.part_of(run)?;
         let bound: GoalBound = part.steps.get(step)?.goals.get(goal)?.bound;
         share_of_good(Some(bound), value(&run.evidence)?, value(self.good(run)?)?)
     }
 
     /// The good play on the seed of a run.
-    fn good(&self, run: &ClassRun) -> Option<&crate::session::Evidence> {
+    fn good(&self, run: &ClassRun) -> Option<&Evidence> {
         let of = &run.evidence;
         let all = self.collection.references.iter().map(|reference| &reference.evidence);
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
@@ -119,7 +125,7 @@ impl ClassView<'_> {
     /// The lesson's measure of a run that is over, as a share of what the good play has on the same seed: its last goal, or
     /// cash where it has none.
     fn share(&self, run: &ClassRun) -> Option<f64> {
-        let part = self.lesson?.plan.parts.get(run.evidence.part as usize - 1)?;
+        let part = self.part_of(run)?;
         match ranked_goal(part) {
             Some((step, goal)) => self.share_of_goal(run, step, goal),
             None => share_of_good(None, run.evidence.cash.last()?.1, self.good(run)?.cash.last()?.1),
@@ -131,7 +137,7 @@ impl ClassView<'_> {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };
-        let of_part = |part: &crate::session::LessonPart| match ranked_goal(part) {
+        let of_part = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => lesson.filled(&part.steps[step].goals[goal].text),
             None => "cash at the end".to_owned(),
         };

@@ -69,7 +69,7 @@ pub fn rows(view: &ClassView<'_>) -> Vec<Vec<String>> {
 fn row(view: &ClassView<'_>, run: &ClassRun) -> Vec<String> {
     let own = &run.evidence;
     let goals_of = |step: &StepEvidence| step.goals.iter().filter(|goal| goal.met).count();
-    let part = view.lesson.and_then(|lesson| lesson.plan.parts.get(own.part as usize - 1));
+    let part = view.part_of(run);
     let wanted: usize = part.map_or(0, |part| part.steps.iter().map(|step| step.goals.len()).sum());
     let always = [
         run.label.clone(),

@@ -18,7 +18,7 @@ use crate::session::trajectory::now;
 const CLASS_FILE: &str = "class.toml";
 
 /// Most students of a class.
-pub const MOST_STUDENTS: u32 = 999;
+const MOST_STUDENTS: u32 = 999;
 
 /// A class: what was handed out, and to whom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -87,7 +87,7 @@ impl Class {
     ///
     /// # Errors
     /// The folder holds a class already, or cannot be written; the number of students is not from 1 to
-    /// [`MOST_STUDENTS`]; the run cannot be handed out.
+    /// 999; the run cannot be handed out.
     pub fn create(folder: &Path, what: &ToHandOut, students: u32) -> Result<Class, RunError> {
         if !(1..=MOST_STUDENTS).contains(&students) {
             let message = format!("a class has from 1 to {MOST_STUDENTS} students, not {students}");

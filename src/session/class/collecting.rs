@@ -13,6 +13,7 @@ use super::handout::{ENDING, HandedOut, Handout};
 use super::reference::{ClassReference, references};
 use crate::session::archive::Workshop;
 use crate::session::error::RunError;
+use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::{Manifest, write_whole};
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::lesson::reference::AnswersCompanies;
@@ -58,7 +59,13 @@ impl ClassCollection {
     ) -> Result<ClassCollection, RunError> {
         let lesson = sources.class.lesson_kept(sources.folder)?;
         let workshop = Workshop::within(sources.folder)?;
-        let gathered = gather(sources.places, workshop.path(), workshop.path(), None);
+        let mut gathered = gather(sources.places, workshop.path(), workshop.path(), None);
+        for found in gathered.runs.iter_mut().chain(gathered.conflicts.values_mut().flatten()) {
+            // What `run.toml` says otherwise than the first line does not count.
+            if let Ok(derived) = Derived::of(&found.folder) {
+                found.manifest = derived.manifest;
+            }
+        }
         let mut returned =
             Returned { sources, lesson: lesson.as_ref(), runs: Vec::new(), findings: Vec::new(), others: 0 };
         let mut superseded = 0;

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use crate::database::{Location, Projector};
 use crate::session::error::RunError;
 use crate::session::figures::setting::values;
-use crate::session::folder::manifest::Manifest;
 use crate::session::lesson::definition::GuessForm;
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::lesson::measurement::Measurement;
@@ -77,8 +76,15 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
     let (origin, trajectory) = read(folder)?;
     let Origin { path, manifest, params, .. } = origin;
     Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)?;
-    let part = part_of(&manifest);
-    let lesson = lesson.filter(|lesson| manifest.lesson.is_some() && part < lesson.plan.parts.len());
+    let stamp = manifest.lesson.as_ref();
+    // By another lesson nothing of this one can be measured.
+    let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
+    let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
+    if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
+        let message =
+            format!("its first line names no part of the lesson, which has {}", lesson.plan.parts.len());
+        return Err(RunError::NotPossible(message));
+    }
     let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));
     let asks = lesson.is_some_and(|lesson| lesson.asks_database());
     let projector =
@@ -91,10 +97,6 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
         replay.look(&path, line)?;
     }
     Ok(Evidence { is_over: trajectory.end().is_some(), ..replay.evidence(manifest.seed) })
-}
-
-fn part_of(manifest: &Manifest) -> usize {
-    manifest.lesson.as_ref().map_or(0, |stamp| (stamp.part as usize).saturating_sub(1))
 }
 
 /// A run that is simulated again, and what was seen of it.
@@ -159,8 +161,9 @@ impl Replay {
 
     fn evidence(self, seed: u64) -> Evidence {
         let Replay { session, standing, decisions, weeks } = self;
-        let decisions =
-            decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1)))).collect();
+        let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
+        // A quota without a limit is no number.
+        let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
         Evidence { decisions, ..evidence_of(&session, standing.as_ref(), seed) }
     }
 }

@@ -1,6 +1,6 @@
 //! `novamind lesson`: the lessons, and whether they hold what they promise.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, Subcommand};
@@ -8,7 +8,10 @@ use clap::{Args, Subcommand};
 use super::{Context, Failure, print};
 use crate::lab::{LessonCheck, PlayResult, SEEDS, check_lesson};
 use crate::notation::compact;
-use crate::session::{Configuration, Lesson};
+use crate::report::debrief::in_words;
+use crate::report::{debrief_as_html, debrief_as_markdown};
+use crate::rules::answers_to_companies;
+use crate::session::{Access, Configuration, Lesson, Session, find_run_to_read};
 
 /// Options of `lesson`.
 #[derive(Debug, Args)]
@@ -34,6 +37,17 @@ enum LessonCommand {
         #[command(flatten)]
         play: Box<super::play::Options>,
     },
+    /// Tell what came of a part of a lesson that is over, beside the good and the bad play.
+    Debrief {
+        /// Run, or `latest`: the newest.
+        run: String,
+        /// Write it to this file as one page for a browser.
+        #[arg(long, value_name = "FILE", conflicts_with = "markdown")]
+        html: Option<PathBuf>,
+        /// Write it to this file as Markdown.
+        #[arg(long, value_name = "FILE")]
+        markdown: Option<PathBuf>,
+    },
     /// Play the reference plays of lessons on six seeds: the good one reaches every goal, the bad one meets its pitfall, and
     /// the figures that texts name hold.
     Check {
@@ -49,6 +63,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         LessonCommand::Play { name, play } => {
             super::play::run(super::play::Options::of_lesson(name, *play), context)
         }
+        LessonCommand::Debrief { run, html, markdown } => debrief(&run, html, markdown, context),
         LessonCommand::List => list(configuration),
         LessonCommand::Show { lesson } => print(&shown(&lesson_of(&lesson, configuration)?)),
         LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson], configuration),
@@ -77,6 +92,26 @@ fn list(configuration: &Configuration) -> Result<(), Failure> {
     }
     print(&text)?;
     if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
+}
+
+/// Tells the debrief of a run, or writes it to a file; nothing of the run is changed.
+fn debrief(
+    run: &str,
+    html: Option<PathBuf>,
+    markdown: Option<PathBuf>,
+    context: &Context,
+) -> Result<(), Failure> {
+    let folder = find_run_to_read(&context.runs()?, run)?;
+    let session = Session::open(&folder, Access::Read, true)?;
+    let played = session.played_part().map_err(|refusal| Failure::failed(refusal.message))?;
+    let debrief = played.debrief(answers_to_companies);
+    let (path, text) = match (html, markdown) {
+        (Some(path), _) => (path, debrief_as_html(&debrief)),
+        (None, Some(path)) => (path, debrief_as_markdown(&debrief)),
+        (None, None) => return print(&(in_words(&debrief).join("\n") + "\n")),
+    };
+    std::fs::write(&path, text).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    print(&format!("written: {}\n", path.display()))
 }
 
 /// A lesson for its instructor.

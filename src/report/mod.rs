@@ -13,6 +13,7 @@ pub mod class;
 pub(crate) mod collection;
 pub(crate) mod curve;
 pub(crate) mod deals;
+pub(crate) mod debrief;
 pub(crate) mod fit;
 pub(crate) mod funnel;
 pub(crate) mod highlights;
@@ -48,6 +49,8 @@ pub(crate) mod why;
 mod words;
 pub(crate) mod xray;
 
+use crate::session::Debrief;
+
 pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
@@ -61,6 +64,16 @@ pub fn as_markdown(story: &Story) -> String {
 /// The report of a run as one page for a browser, without scripts and without other files.
 pub fn as_html(story: &Story) -> String {
     html::write(&outline::page_of(story))
+}
+
+/// The debrief of a lesson as Markdown.
+pub fn debrief_as_markdown(own: &Debrief) -> String {
+    markdown::write(&debrief::page_of(own))
+}
+
+/// The debrief of a lesson as one page for a browser, without scripts and without other files.
+pub fn debrief_as_html(own: &Debrief) -> String {
+    html::write(&debrief::page_of(own))
 }
 
 /// The card of a run, as text of 80 columns.

@@ -80,6 +80,10 @@ pub use folder::world_log::{
     WORLDS, WorldLine, WorldLog, list_world, list_worlds_as_experimenter, list_worlds_in,
 };
 pub use lesson::conduct::LessonEntry;
+pub use lesson::debrief::{
+    Debrief, DebriefStep, DecisionComparison, Parting, PartingEffect, PlayedPart, ReferenceCurve, RulesAnswer,
+};
+pub use lesson::decisions::{DecisionContrast, PartedDecision};
 pub use lesson::definition::{
     CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
     LessonPlan, LessonStep, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked, ReferencePlay,

@@ -1,12 +1,17 @@
-//! `lesson`, `guess`, `hint` and `again`: a lesson line by line.
+//! `lesson`, `guess`, `hint`, `again` and `debrief`: a lesson line by line.
 
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
+use crate::report::debrief::in_words;
 use crate::report::lesson::page_in_words;
-use crate::session::{LessonPage, Refusal, Session};
+use crate::rules::answers_to_companies;
+use crate::session::{
+    Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision, ReferenceCurve, Refusal,
+    Session,
+};
 
 impl Interpreter {
     /// `lesson`, `lesson next`
@@ -74,6 +79,17 @@ impl Interpreter {
         Ok(self.go_to_lesson("again", again))
     }
 
+    /// `debrief`
+    pub(super) fn debrief(&mut self) -> Answer {
+        match self.session.played_part() {
+            Ok(played) => {
+                let debrief = played.debrief(answers_to_companies);
+                Answer::done("debrief", in_words(&debrief).join("\n"), debrief_as_data(&debrief))
+            }
+            Err(refusal) => Answer::refused("debrief", refusal),
+        }
+    }
+
     fn go_to_lesson(&mut self, command: &str, begun: Result<Session, Refusal>) -> Answer {
         match begun {
             Ok(session) => {
@@ -90,20 +106,8 @@ fn no_lesson() -> Refusal {
 }
 
 fn as_data(page: &LessonPage) -> Value {
-    let goals: Vec<Value> = page
-        .goals
-        .iter()
-        .map(|goal| json!({ "text": goal.text, "value": goal.value, "bound": goal.bound, "met": goal.met }))
-        .collect();
-    let question = page.question.as_ref().map(|question| {
-        json!({
-            "text": question.text,
-            "choices": question.choices,
-            "unit": question.unit,
-            "guess": question.guess,
-            "outcome": question.outcome,
-        })
-    });
+    let goals: Vec<Value> = page.goals.iter().map(goal_as_data).collect();
+    let question = page.question.as_ref().map(question_as_data);
     json!({
         "title": page.title,
         "part": page.part,
@@ -121,4 +125,66 @@ fn as_data(page: &LessonPage) -> Value {
         "over": page.is_over,
         "next_part": page.next_part,
     })
+}
+
+fn goal_as_data(goal: &GoalPage) -> Value {
+    json!({ "text": goal.text, "value": goal.value, "bound": goal.bound, "met": goal.met })
+}
+
+fn question_as_data(question: &LessonQuestion) -> Value {
+    json!({
+        "text": question.text,
+        "choices": question.choices,
+        "unit": question.unit,
+        "guess": question.guess,
+        "outcome": question.outcome,
+    })
+}
+
+fn debrief_as_data(own: &Debrief) -> Value {
+    let curve = |curve: &ReferenceCurve| json!({ "text": curve.text, "cash_by_day": curve.cash_by_day });
+    let steps = own.steps.iter().map(|step| {
+        json!({
+            "title": step.title,
+            "tries": step.tries,
+            "hints": { "used": step.hints.0, "of": step.hints.1 },
+            "question": step.question.as_ref().map(question_as_data),
+            "goals": step.goals.iter().map(goal_as_data).collect::<Vec<Value>>(),
+        })
+    });
+    let parting = match &own.comparison {
+        DecisionComparison::Parted(parting) => {
+            let effect = parting
+                .effect
+                .map(|effect| json!({ "day": effect.day, "own": effect.own, "with": effect.with }));
+            let decisions: Vec<Value> = parting.decisions.iter().map(decision_as_data).collect();
+            json!({ "week": parting.week, "day": parting.day, "decisions": decisions, "effect": effect })
+        }
+        DecisionComparison::Same | DecisionComparison::Unknown => Value::Null,
+    };
+    json!({
+        "title": own.title,
+        "part": own.part,
+        "seed": own.seed,
+        "own": own.own,
+        "good": own.good.as_ref().map(curve),
+        "bad": own.bad.as_ref().map(curve),
+        "same_decisions": matches!(own.comparison, DecisionComparison::Same),
+        "parting": parting,
+        "steps": steps.collect::<Vec<Value>>(),
+        "pitfalls": own.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
+        "text": own.text,
+    })
+}
+
+fn decision_as_data(decision: &PartedDecision) -> Value {
+    match &decision.difference {
+        DecisionContrast::Settings(all) => {
+            let one = |(name, own, good): &(String, Value, Value)| json!({ "name": name, "own": own, "good": good });
+            json!({ "tool": decision.tool.name(), "settings": all.iter().map(one).collect::<Vec<Value>>() })
+        }
+        DecisionContrast::Calls(own, good) => {
+            json!({ "tool": decision.tool.name(), "own": own, "good": good })
+        }
+    }
 }

@@ -6,6 +6,8 @@
 
 mod again;
 pub(in crate::session) mod conduct;
+pub(in crate::session) mod debrief;
+pub(in crate::session) mod decisions;
 pub(in crate::session) mod definition;
 pub(in crate::session) mod lesson_call;
 pub(in crate::session) mod lesson_file;

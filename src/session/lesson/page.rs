@@ -1,9 +1,10 @@
 //! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
 
-use super::definition::{GoalBound, GuessForm};
+use super::definition::{ForecastsAsked, GoalBound, GuessForm, RationaleAsked};
 use super::standing::LessonStanding;
 use crate::session::state::Session;
 use crate::session::trajectory::record::LessonNote;
+use crate::tools::ToolId;
 
 /// What a student sees of a lesson.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +41,10 @@ pub struct LessonPage {
     pub next_part: Option<u32>,
     /// Names of the screens that the lesson has besides the Overview; all where none are named.
     pub screens: Option<Vec<String>>,
+    /// The tools that the lesson has; all where none are named.
+    pub tools: Option<Vec<ToolId>>,
+    /// Whether a week runs without forecasts and rationale of the student.
+    pub runs_at_once: bool,
 }
 
 /// The question of a step.
@@ -102,6 +107,9 @@ impl Session {
             is_over: going.is_none(),
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
+            tools: plan.access.tools.clone(),
+            runs_at_once: plan.access.forecasts == ForecastsAsked::Naive
+                && plan.access.rationale == RationaleAsked::Off,
         })
     }
 
@@ -138,7 +146,7 @@ impl Session {
     }
 }
 
-fn question(standing: &LessonStanding, step: usize) -> Option<LessonQuestion> {
+pub(super) fn question(standing: &LessonStanding, step: usize) -> Option<LessonQuestion> {
     let guess = standing.step(step)?.guess.as_ref()?;
     let (choices, unit) = match &guess.form {
         GuessForm::Number { unit, .. } => (Vec::new(), unit.clone()),
@@ -148,7 +156,7 @@ fn question(standing: &LessonStanding, step: usize) -> Option<LessonQuestion> {
     Some(LessonQuestion { text: guess.question.clone(), choices, unit, guess: standing.guess(step), outcome })
 }
 
-fn pitfalls(standing: &LessonStanding) -> Vec<(u32, String)> {
+pub(super) fn pitfalls(standing: &LessonStanding) -> Vec<(u32, String)> {
     let said = |(day, note): &(u32, LessonNote)| {
         let name = note.name.as_deref()?;
         let pitfall = standing.lesson.plan.pitfalls.iter().find(|own| own.name == name)?;

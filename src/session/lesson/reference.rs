@@ -44,7 +44,7 @@ pub struct PartPlay<'a> {
 /// # Errors
 /// The part cannot begin, or a call is refused.
 pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies<'_>) -> Result<Session, RunError> {
-    play_part_telling(play, answers, &mut |_, _| Ok(()))
+    play_through(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
 }
 
 /// The same, and tells after each week how many weeks of the company have passed.
@@ -54,6 +54,27 @@ pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies<'_>) -> Result<S
 pub fn play_part_telling(
     play: &PartPlay<'_>,
     answers: AnswersCompanies<'_>,
+    tell: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
+) -> Result<Session, RunError> {
+    play_through(play, answers, &mut |_| {}, tell)
+}
+
+/// The same; `watch` sees the company of every week when all is decided, before the week runs.
+///
+/// # Errors
+/// The part cannot begin, or a call is refused.
+pub(super) fn play_part_watched(
+    play: &PartPlay<'_>,
+    answers: AnswersCompanies<'_>,
+    watch: &mut dyn FnMut(&Session),
+) -> Result<Session, RunError> {
+    play_through(play, answers, watch, &mut |_, _| Ok(()))
+}
+
+fn play_through(
+    play: &PartPlay<'_>,
+    answers: AnswersCompanies<'_>,
+    watch: &mut dyn FnMut(&Session),
     tell: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
     let part = &play.lesson.plan.parts[play.part];
@@ -71,7 +92,7 @@ pub fn play_part_telling(
         if session.ended().is_some() {
             break;
         }
-        let made = play_week(&mut session, play, week, answers);
+        let made = play_week(&mut session, play, week, answers, watch);
         made.map_err(|refusal| {
             let name = &play.lesson.name;
             RunError::NotPossible(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
@@ -86,6 +107,7 @@ fn play_week(
     play: &PartPlay<'_>,
     week: u32,
     answers: AnswersCompanies<'_>,
+    watch: &mut dyn FnMut(&Session),
 ) -> Result<(), Refusal> {
     let due = play.plays.iter().filter(|own| own.are_due(play.part, week));
     for call in due.flat_map(|own| &own.calls) {
@@ -100,6 +122,7 @@ fn play_week(
             }
         }
     }
+    watch(session);
     let asked =
         session.lesson_step().is_some_and(|step| session.lesson().is_some_and(|own| own.awaits_guess(step)));
     if asked {

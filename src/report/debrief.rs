@@ -1,0 +1,294 @@
+//! The debrief of a lesson in words, and as a page.
+
+use serde_json::Value;
+
+use super::lesson::{goal_in_words, guess_in_words, question_in_words};
+use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
+use super::words::{count, money};
+use crate::glossary::{Term, terms};
+use crate::notation::{compact, grouped, signed_dollars};
+use crate::session::{
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, Parting, PartedDecision, ReferenceCurve,
+};
+
+/// Most settings of a tool that are named one by one.
+const MOST_SETTINGS: usize = 6;
+
+/// What the part came to, in a sentence.
+pub fn headline(own: &Debrief) -> String {
+    let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
+    let day = own.own.len().saturating_sub(1);
+    let end = match own.ended {
+        Some(Ended::Bankruptcy) => format!("You went bankrupt on day {day}"),
+        _ => format!("You had {} on day {day}", last(&own.own)),
+    };
+    let other = |curve: &Option<ReferenceCurve>, name: &str| {
+        curve.as_ref().map(|curve| format!("the {name} play {}", last(&curve.cash_by_day)))
+    };
+    let others: Vec<String> = [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect();
+    match others.is_empty() {
+        true => format!("{end}."),
+        false => format!("{end}; {}.", others.join(", ")),
+    }
+}
+
+/// The debrief as paragraphs.
+pub fn in_words(own: &Debrief) -> Vec<String> {
+    let part = own.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
+    let mut lines = vec![format!("{}{part}", own.title), headline(own), String::new()];
+    lines.extend(comparison_in_words(own));
+    for step in &own.steps {
+        lines.push(String::new());
+        lines.extend(step_in_words(step));
+    }
+    if !own.pitfalls.is_empty() {
+        lines.push(String::new());
+        lines.extend(own.pitfalls.iter().map(|(day, say)| format!("Day {day}: {say}")));
+    }
+    if let Some(text) = &own.text {
+        lines.extend(paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
+        lines.push(String::new());
+        lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
+    }
+    lines
+}
+
+/// Where the own decisions parted from those of the good play, and what that was worth.
+pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
+    let good = own.good.as_ref().map(|good| good.text.as_str()).unwrap_or_default();
+    match &own.comparison {
+        DecisionComparison::Same => vec!["You decided as the good play does, week by week.".to_owned()],
+        DecisionComparison::Unknown => {
+            vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
+        }
+        DecisionComparison::Parted(parting) => {
+            let mut lines = vec![
+                format!("The good play: {good}"),
+                format!("Week {}, day {}, is the first in which you decided otherwise:", parting.week, parting.day),
+            ];
+            lines.extend(parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))));
+            lines.push(effect_in_words(parting));
+            lines
+        }
+    }
+}
+
+/// What one tool did in both plays.
+fn decision_in_words(decision: &PartedDecision) -> String {
+    let said = match &decision.difference {
+        DecisionContrast::Settings(all) => {
+            let one = |(name, own, good): &(String, Value, Value)| {
+                format!("{name} {}, the good play {}", written(own), written(good))
+            };
+            let more = match all.len().saturating_sub(MOST_SETTINGS) {
+                0 => String::new(),
+                more => format!("; {more} more"),
+            };
+            all.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
+        }
+        DecisionContrast::Calls(own, good) => {
+            format!("{}, the good play {}", count(own.len() as u32, "call"), count(good.len() as u32, "call"))
+        }
+    };
+    format!("{}: {said}", decision.tool.name())
+}
+
+fn written(value: &Value) -> String {
+    match value {
+        Value::Null => "nothing".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) => {
+            let value = number.as_f64().unwrap_or(0.0);
+            grouped(value, if value.fract() == 0.0 { 0 } else { 2 })
+        }
+        other => other.to_string(),
+    }
+}
+
+fn effect_in_words(parting: &Parting) -> String {
+    match parting.effect {
+        Some(effect) => format!(
+            "Simulated again with what the good play decided in week {}, and everything else as you decided it: {} on \
+             day {} instead of {} ({}).",
+            parting.week,
+            money(effect.with),
+            effect.day,
+            money(effect.own),
+            signed_dollars(effect.with - effect.own)
+        ),
+        None => "The calls of the good play are refused in your run, so their effect was not simulated.".to_owned(),
+    }
+}
+
+fn step_in_words(step: &DebriefStep) -> Vec<String> {
+    let mut lines = vec![format!("{} · {}", step.title, effort(step))];
+    lines.extend(step.question.iter().flat_map(question_in_words));
+    lines.extend(step.goals.iter().map(goal_in_words));
+    lines
+}
+
+/// Tries and hints of a step.
+fn effort(step: &DebriefStep) -> String {
+    let (used, all) = step.hints;
+    let tries = if step.tries == 1 { "1 try".to_owned() } else { format!("{} tries", step.tries) };
+    format!("{tries}, {used} of {}", count(all as u32, "hint"))
+}
+
+/// The paragraphs of a text in Markdown, without its marks.
+fn paragraphs(text: &str) -> Vec<String> {
+    let plain = |paragraph: &str| {
+        let words: Vec<&str> = paragraph.split_whitespace().collect();
+        words.join(" ").replace(['*', '`'], "")
+    };
+    text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
+}
+
+/// Terms of the glossary that a text in Markdown emphasises, each once.
+pub fn named_terms(text: &str) -> Vec<&'static Term> {
+    let mut found: Vec<&'static Term> = Vec::new();
+    let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for word in flat.split('*').skip(1).step_by(2) {
+        let named = |term: &&Term| {
+            let mut names = std::iter::once(&term.title).chain(&term.aka);
+            names.any(|name| name.eq_ignore_ascii_case(word.trim()))
+        };
+        if let Some(term) = terms().iter().find(named)
+            && !found.contains(&term)
+        {
+            found.push(term);
+        }
+    }
+    found
+}
+
+/// The page of a debrief.
+pub(super) fn page_of(own: &Debrief) -> Page {
+    let mut blocks = vec![Block::Facts(facts(own))];
+    blocks.push(Block::Heading("Cash"));
+    blocks.push(Block::Chart(cash(own)));
+    blocks.push(Block::Heading("Beside the good play"));
+    blocks.extend(comparison_in_words(own).into_iter().map(|line| Block::Text(line.trim().to_owned())));
+    blocks.extend(guesses(own));
+    blocks.extend(goals(own));
+    if !own.pitfalls.is_empty() {
+        blocks.push(Block::Heading("Pitfalls"));
+        let row = |(day, say): &(u32, String)| vec![day.to_string(), say.clone()];
+        blocks.push(Block::Table(Table {
+            columns: vec![("day", true), ("what was said", false)],
+            rows: own.pitfalls.iter().map(row).collect(),
+        }));
+    }
+    if let Some(text) = &own.text {
+        blocks.push(Block::Heading("The mechanism"));
+        blocks.extend(paragraphs(text).into_iter().map(Block::Text));
+        let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
+        let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
+        if !rows.is_empty() {
+            blocks.push(Block::Table(Table { columns: vec![("term", false), ("what it is", false)], rows }));
+        }
+    }
+    let mut tags = vec![format!("run {}", own.run), format!("seed {}", own.seed)];
+    tags.extend(own.part.iter().cloned());
+    tags.extend(own.participant.iter().map(|who| format!("played by {who}")));
+    Page {
+        title: format!("Debrief · {}", own.title),
+        headline: headline(own),
+        tags,
+        blocks,
+        foot: format!(
+            "Recorded by NovaMind console {}. The good and the bad play were simulated on the seed of the run.",
+            env!("CARGO_PKG_VERSION")
+        ),
+    }
+}
+
+fn facts(own: &Debrief) -> Vec<Fact> {
+    let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
+    let day = format!("day {}", own.own.len().saturating_sub(1));
+    let mut facts = vec![Fact::new("You", last(&own.own), day)];
+    for (name, curve) in [("Good play", &own.good), ("Bad play", &own.bad)] {
+        let told = |curve: &ReferenceCurve| Fact::new(name, last(&curve.cash_by_day), curve.text.clone());
+        facts.extend(curve.as_ref().map(told));
+    }
+    facts
+}
+
+fn cash(own: &Debrief) -> Chart {
+    let curve = |name: &str, cash: &[f64]| Curve {
+        name: name.to_owned(),
+        points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
+    };
+    let references = [("good play", &own.good), ("bad play", &own.bad)];
+    let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
+    Chart {
+        title: "Cash by day".to_owned(),
+        summary: headline(own),
+        across: "day",
+        dollars: true,
+        within: None,
+        plot: Plot::Lines { curves: std::iter::once(curve("you", &own.own)).chain(others).collect(), band: None },
+    }
+}
+
+fn guesses(own: &Debrief) -> Vec<Block> {
+    let asked = own.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
+    let rows: Vec<Vec<String>> = asked
+        .map(|(step, question)| {
+            let said = |value: Option<f64>| value.map_or("–".to_owned(), |value| guess_in_words(question, value));
+            vec![step.title.clone(), question.text.clone(), said(question.guess), said(question.outcome)]
+        })
+        .collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let columns = vec![("step", false), ("question", false), ("your guess", false), ("outcome", false)];
+    vec![Block::Heading("Guesses"), Block::Table(Table { columns, rows })]
+}
+
+fn goals(own: &Debrief) -> Vec<Block> {
+    let row = |step: &DebriefStep| {
+        let met = |met| match met {
+            Some(true) => "reached",
+            Some(false) => "missed",
+            None => "not judged",
+        };
+        let number = |value: Option<f64>| value.map_or("–".to_owned(), compact);
+        let one = |goal: &crate::session::GoalPage| {
+            vec![
+                step.title.clone(),
+                goal.text.clone(),
+                number(goal.value),
+                number(goal.bound),
+                met(goal.met).to_owned(),
+                effort(step),
+            ]
+        };
+        step.goals.iter().map(one).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = own.steps.iter().flat_map(row).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let columns = vec![
+        ("step", false),
+        ("goal", false),
+        ("value", true),
+        ("bound", true),
+        ("", false),
+        ("tries and hints", false),
+    ];
+    vec![Block::Heading("Goals"), Block::Table(Table { columns, rows })]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn emphasised_words_are_looked_up_and_marks_do_not_stay() {
+        let text = "People *churn* if `a < b`.\n\nGlossary: *churn*, *model\ntier*, *no such thing*.";
+        let names: Vec<&str> = named_terms(text).iter().map(|term| term.id.as_str()).collect();
+        assert_eq!(names, ["churn", "model-tier"]);
+        assert_eq!(paragraphs(text)[0], "People churn if a < b.");
+    }
+}

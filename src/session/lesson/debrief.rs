@@ -1,0 +1,311 @@
+//! The debrief of a part of a lesson: what was played beside the reference plays, and the decision that parted them.
+//!
+//! All plays begin as the part does and go through the same doors, in memory. What was played is played once more, too: a
+//! difference is told only where that comes to the recorded cash of every day.
+
+use std::thread;
+
+use super::decisions::{PartedDecision, WeekDecisions, parted};
+use super::definition::{CapacityMover, GoalBound, ScheduledCalls};
+use super::lesson_call::LessonCall;
+use super::page::{GoalPage, LessonQuestion, pitfalls, question};
+use super::reference::{PartPlay, play_part_watched};
+use super::standing::LessonStanding;
+use crate::session::figures::journal::JournalEntry;
+use crate::session::folder::configuration::Configuration;
+use crate::session::state::Session;
+use crate::session::trajectory::record::Ended;
+use crate::tools::{Refusal, ToolId};
+
+/// What rules would have the companies that wait be told, from any thread.
+pub type RulesAnswer = fn(&str, &mut Session) -> Result<Vec<(ToolId, serde_json::Value)>, Refusal>;
+
+/// A part of a lesson that was played: what its debrief is found from.
+#[derive(Debug, Clone)]
+pub struct PlayedPart {
+    standing: LessonStanding,
+    run: String,
+    participant: Option<String>,
+    seed: u64,
+    cash_by_day: Vec<f64>,
+    days_per_week: u32,
+    ended: Option<Ended>,
+    own: Vec<ScheduledCalls>,
+}
+
+/// What a part came to, beside the reference plays on the same seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Debrief {
+    /// Title of the lesson.
+    pub title: String,
+    /// What the student can do, or knows, now.
+    pub learning_goal: String,
+    /// Title of the part, where there are several.
+    pub part: Option<String>,
+    /// The run.
+    pub run: String,
+    /// Who played, where that is known.
+    pub participant: Option<String>,
+    /// Seed of the run.
+    pub seed: u64,
+    /// How the run ended.
+    pub ended: Option<Ended>,
+    /// First day of which the student decided.
+    pub first_day: u32,
+    /// Cash at the end of each day, day 0 first, dollars.
+    pub own: Vec<f64>,
+    /// The same of the good play; none where it cannot be played.
+    pub good: Option<ReferenceCurve>,
+    /// The same of the bad play.
+    pub bad: Option<ReferenceCurve>,
+    /// Where the own decisions parted from those of the good play.
+    pub comparison: DecisionComparison,
+    /// What was asked and what was to be reached, by step.
+    pub steps: Vec<DebriefStep>,
+    /// What was said of the pitfalls that were met, with the day.
+    pub pitfalls: Vec<(u32, String)>,
+    /// The mechanism, in the words of the lesson, in Markdown; none while a part of the lesson is to come.
+    pub text: Option<String>,
+}
+
+/// A reference play.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceCurve {
+    /// What it does, in words.
+    pub text: String,
+    /// Cash at the end of each day, day 0 first, dollars.
+    pub cash_by_day: Vec<f64>,
+}
+
+/// The own decisions beside those of the good play.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DecisionComparison {
+    /// They part.
+    Parted(Parting),
+    /// They are the same all the way.
+    Same,
+    /// That cannot be told: one of the two cannot be played again, or comes to something else then.
+    Unknown,
+}
+
+/// The first week in which other decisions held than in the good play.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parting {
+    /// The week of the company, counted from 1.
+    pub week: u32,
+    /// The day on which it begins.
+    pub day: u32,
+    /// What was decided otherwise.
+    pub decisions: Vec<PartedDecision>,
+    /// What these decisions of the good play would have come to; none where they cannot be made.
+    pub effect: Option<PartingEffect>,
+}
+
+/// What the run would have come to with the decisions of the good play in one week, and all others as they were.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartingEffect {
+    /// The last day of both.
+    pub day: u32,
+    /// Cash as it was, dollars.
+    pub own: f64,
+    /// Cash with the decisions of the good play, dollars.
+    pub with: f64,
+}
+
+/// What was asked in a step, and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DebriefStep {
+    /// Its title.
+    pub title: String,
+    /// How often it was tried.
+    pub tries: u32,
+    /// Hints that were taken, and how many there are.
+    pub hints: (usize, usize),
+    /// The question, what was guessed and what came of it.
+    pub question: Option<LessonQuestion>,
+    /// What was to be reached.
+    pub goals: Vec<GoalPage>,
+}
+
+impl Session {
+    /// What the debrief of a part that is over is found from.
+    ///
+    /// # Errors
+    /// `not_in_a_lesson`, `lesson_not_over`.
+    pub fn played_part(&self) -> Result<PlayedPart, Refusal> {
+        let Some(standing) = self.lesson() else {
+            let message = "this run belongs to no lesson; novamind lesson list names them";
+            return Err(Refusal::new("not_in_a_lesson", message));
+        };
+        if self.lesson_step().is_some() {
+            let message = "the debrief comes once this part of the lesson is over; lesson shows the task";
+            return Err(Refusal::new("lesson_not_over", message));
+        }
+        Ok(PlayedPart {
+            standing: standing.clone(),
+            run: self.manifest.id.clone(),
+            participant: self.manifest.participant.clone(),
+            seed: self.manifest.seed,
+            cash_by_day: self.cash_by_day().to_vec(),
+            days_per_week: self.params().run.days_per_week,
+            ended: self.ended(),
+            own: self.own_calls(standing),
+        })
+    }
+
+    /// What the student called, by week: every call but those of the start and of the lesson itself.
+    fn own_calls(&self, standing: &LessonStanding) -> Vec<ScheduledCalls> {
+        let part = standing.own_part();
+        let follows = part.capacity == CapacityMover::FollowsUsage;
+        let of_lesson = |tool: ToolId| follows && tool == ToolId::SetCapacityTier;
+        let starts = part.start.iter().flat_map(|own| &own.calls);
+        let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
+        let days = self.params().run.days_per_week;
+        let calls = self.journal().iter().filter_map(|entry| match entry {
+            JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => Some((*day, *tool, args.clone())),
+            _ => None,
+        });
+        let scheduled = |(day, tool, args)| ScheduledCalls {
+            part: standing.part,
+            week: day / days,
+            every: None,
+            until: None,
+            calls: vec![LessonCall::Tool(tool, args)],
+        };
+        calls.skip(starts).map(scheduled).collect()
+    }
+}
+
+/// A play of the part: cash by day, and what was decided in each week.
+struct Played {
+    cash_by_day: Vec<f64>,
+    weeks: Vec<WeekDecisions>,
+}
+
+impl PlayedPart {
+    /// The debrief. The part is played again four times, in memory; companies are answered by rules where a reference play
+    /// says so.
+    pub fn debrief(&self, answers: RulesAnswer) -> Debrief {
+        let plan = &self.standing.lesson.plan;
+        let [good, bad, own] = thread::scope(|scope| {
+            let plays = [&plan.good.plays, &plan.bad.plays, &self.own];
+            let begun = plays.map(|calls| scope.spawn(move || self.play(calls, answers)));
+            begun.map(|play| play.join().ok().flatten())
+        });
+        let both = good.as_ref().zip(own.as_ref());
+        let comparison = both
+            .map_or(DecisionComparison::Unknown, |(good, own)| self.compared(good, own, answers));
+        let curve = |played: Option<Played>, text: &str| {
+            played.map(|own| ReferenceCurve { text: text.to_owned(), cash_by_day: own.cash_by_day })
+        };
+        let part = self.standing.own_part();
+        let is_last = self.standing.part + 1 == plan.parts.len();
+        Debrief {
+            title: plan.title.clone(),
+            learning_goal: plan.learning_goal.clone(),
+            part: (plan.parts.len() > 1).then(|| part.title.clone()),
+            run: self.run.clone(),
+            participant: self.participant.clone(),
+            seed: self.seed,
+            ended: self.ended,
+            first_day: part.start_weeks * self.days_per_week,
+            own: self.cash_by_day.clone(),
+            good: curve(good, &plan.good.text),
+            bad: curve(bad, &plan.bad.text),
+            comparison,
+            steps: self.steps(),
+            pitfalls: pitfalls(&self.standing),
+            text: is_last.then(|| self.standing.lesson.filled(&self.standing.lesson.debrief)),
+        }
+    }
+
+    fn play(&self, calls: &[ScheduledCalls], answers: RulesAnswer) -> Option<Played> {
+        let play = PartPlay {
+            lesson: &self.standing.lesson,
+            part: self.standing.part,
+            seed: Some(self.seed),
+            plays: calls,
+            weeks: Some((self.cash_by_day.len() as u32).saturating_sub(1).div_ceil(self.days_per_week)),
+            is_judged: false,
+        };
+        let mut weeks = Vec::new();
+        let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
+        let played = play_part_watched(&play, &Configuration::shipped(), &answers, &mut watch).ok()?;
+        Some(Played { cash_by_day: played.cash_by_day().to_vec(), weeks })
+    }
+
+    /// The own decisions beside those of the good play.
+    fn compared(&self, good: &Played, own: &Played, answers: RulesAnswer) -> DecisionComparison {
+        if own.cash_by_day != self.cash_by_day {
+            return DecisionComparison::Unknown;
+        }
+        let both = own.weeks.iter().zip(&good.weeks);
+        let mut parts = both.map(|(own, good)| parted(own, good)).enumerate();
+        let Some((at, decisions)) = parts.find(|(_, parted)| !parted.is_empty()) else {
+            return DecisionComparison::Same;
+        };
+        let before = self.standing.own_part().start_weeks + at as u32;
+        let with = self.with_decisions(before, &decisions, &good.weeks[at]);
+        let effect = self.play(&with, answers).and_then(|played| {
+            let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
+            Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with })
+        });
+        let day = before * self.days_per_week;
+        DecisionComparison::Parted(Parting { week: before + 1, day, decisions, effect })
+    }
+
+    /// The own calls, with those of the good play in one week where they differ.
+    fn with_decisions(
+        &self,
+        week: u32,
+        decisions: &[PartedDecision],
+        good: &WeekDecisions,
+    ) -> Vec<ScheduledCalls> {
+        let differs = |tool: &ToolId| decisions.iter().any(|decision| decision.tool == *tool);
+        let is_other = |own: &&ScheduledCalls| {
+            let call = own.calls.first();
+            own.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
+        };
+        let mut calls: Vec<ScheduledCalls> =
+            self.own.iter().filter(|own| !is_other(own)).cloned().collect();
+        let made = good.calls_of(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
+        calls.push(ScheduledCalls {
+            part: self.standing.part,
+            week,
+            every: None,
+            until: None,
+            calls: made.collect(),
+        });
+        calls
+    }
+
+    fn steps(&self) -> Vec<DebriefStep> {
+        let standing = &self.standing;
+        let part = standing.own_part();
+        let begun = part.steps.iter().enumerate().filter(|(at, _)| standing.has_begun(*at));
+        let step = |(at, own): (usize, &super::definition::LessonStep)| DebriefStep {
+            title: own.title.clone(),
+            tries: standing.tries(at),
+            hints: (standing.hints(at), own.hints.len()),
+            question: question(standing, at),
+            goals: self.goals(at),
+        };
+        begun.map(step).collect()
+    }
+
+    fn goals(&self, step: usize) -> Vec<GoalPage> {
+        let judged = self.standing.goals(step);
+        let goals = self.standing.step(step).map(|own| own.goals.as_slice()).unwrap_or_default();
+        let page = |(at, goal): (usize, &super::definition::LessonGoal)| {
+            let note = judged.get(at);
+            GoalPage {
+                text: self.standing.lesson.filled(&goal.text),
+                value: note.and_then(|note| note.value),
+                bound: note.and_then(|note| note.bound),
+                wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
+                met: note.and_then(|note| note.met),
+            }
+        };
+        goals.iter().enumerate().map(page).collect()
+    }
+}

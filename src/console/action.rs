@@ -47,6 +47,8 @@ pub enum Scope {
     Branches,
     /// A participation curve beside the plans.
     Curve,
+    /// The page of a lesson.
+    Lesson,
     /// Hidden state of the run.
     Xray,
     /// The offer of texts that were typed and not sent.
@@ -77,6 +79,7 @@ impl Scope {
         Scope::Dialog,
         Scope::Menu,
         Scope::Final,
+        Scope::Lesson,
         Scope::Viewer,
         Scope::Decisions,
         Scope::Branches,
@@ -110,6 +113,7 @@ impl Scope {
             Scope::Decisions => "decisions",
             Scope::Branches => "branches",
             Scope::Curve => "curve",
+            Scope::Lesson => "lesson",
             Scope::Xray => "xray",
             Scope::Unsent => "unsent",
             Scope::Cover => "cover",
@@ -141,6 +145,7 @@ impl Scope {
             Scope::Decisions => "What if: decisions",
             Scope::Branches => "What if: figures",
             Scope::Curve => "Participation curve",
+            Scope::Lesson => "Lesson",
             Scope::Xray => "X-ray",
             Scope::Unsent => "Unsent text",
             Scope::Cover => "While the clock is stopped",
@@ -218,6 +223,8 @@ actions! {
         Branches "branches" "what if" "Simulate the run again from a week on under other decisions, in memory. Not in an unfinished baseline run."
         Curves "curves" "participation curve" "Show the quality that a group requires at a price, drag prices and qualities of the plans, and see what leads would do. Nothing is set."
         Glossary "glossary" "glossary" "Look up any term."
+        Lesson "lesson" "lesson" "In a lesson: show or hide the task beside the screen; in a small window, open it as a page."
+        LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
         Tour "tour" "tour" "Resume the tour of a practice run; the start menu begins it."
         TourSkip "tour-skip" "skip" "Skip this step of the tour."
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
@@ -382,6 +389,15 @@ actions! {
         ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
         WhatIf "what-if" "what if" "Go back to the last decision in a replay; you can branch from any week of it."
         StayInRun "stay" "look around" "Close this page and look at the run."
+    }
+    Lesson {
+        LessonOn "lesson-on" "go on" "Answer the open question; where the part is over, begin the next one or open the debrief."
+        AnswerQuestion "answer" "guess" "Answer the question of the step."
+        NextHint "next-hint" "hint" "Take the next hint of the step; that it was taken is recorded."
+        TryAgain "try-again" "try again" "Try the step again from its beginning, after confirmation, in a run of its own."
+        NextPart "next-part" "next part" "Begin the next part of the lesson, once this one is over."
+        Debrief "debrief" "debrief" "Show what came of a part that is over, beside the good and the bad play."
+        LessonWeek "lesson-week" "next week" "Close the page and let the next week come."
     }
     Viewer {
         WeekBack "week-back" "week back" "Go to the end of the week before."

@@ -6,6 +6,7 @@ mod curve;
 mod guide;
 mod input;
 mod leaving;
+mod lesson;
 mod limits;
 mod news;
 mod orders;
@@ -160,6 +161,8 @@ pub struct Run {
     pub tour: Option<Tour>,
     /// The run is a recorded one that is played again.
     pub viewer: Option<Viewer>,
+    /// What the person has of the lesson it belongs to.
+    pub lesson: lesson::LessonView,
     /// Time that is left to each limit of the rules.
     pub time_left: Vec<TimeLeft>,
     /// Why the database is behind, while it is.
@@ -398,6 +401,9 @@ impl App {
 
     /// Shows a screen.
     fn show(&mut self, screen: ScreenId) {
+        if self.is_kept_shut(screen) {
+            return;
+        }
         let Stage::Run(run) = &mut self.stage else { return };
         if run.here != screen {
             run.before.push(run.here);

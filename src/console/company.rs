@@ -13,7 +13,7 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode, Numbers,
     Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
 };
 use crate::tools::{
@@ -95,6 +95,8 @@ pub struct Company {
     pub rules: SessionRules,
     /// The study it belongs to.
     pub study: Option<StudyStamp>,
+    /// Where the person stands in the lesson it belongs to.
+    pub lesson: Option<LessonPage>,
 }
 
 impl Company {
@@ -142,7 +144,25 @@ impl Company {
             may_look_inside: session.may_look_inside(),
             rules: session.rules(),
             study: session.manifest().study.clone(),
+            lesson: None,
         }
+    }
+
+    /// The same of a run that may belong to a lesson: what it stands at is measured.
+    pub fn in_lesson(session: &mut Session, before: Option<&Company>) -> Company {
+        let lesson = session.lesson_page();
+        Company { lesson, ..Company::after(session, before) }
+    }
+
+    /// The lesson, as long as it says what the person may do.
+    pub fn running_lesson(&self) -> Option<&LessonPage> {
+        self.lesson.as_ref().filter(|_| self.is_running() && !self.replayed)
+    }
+
+    /// Whether the person has a tool: a lesson has some of them.
+    pub fn has_tool(&self, tool: ToolId) -> bool {
+        let tools = self.running_lesson().and_then(|lesson| lesson.tools.as_ref());
+        !tool.spec().kind.acts() || tool == ToolId::NextWeek || tools.is_none_or(|tools| tools.contains(&tool))
     }
 
     /// Whether time can still pass.

@@ -141,6 +141,10 @@ pub enum Effect {
         /// What they mean.
         text: String,
     },
+    /// Ask once before a step of the lesson, counted from 0, is tried again.
+    TryStepAgain(usize),
+    /// Open what came of the lesson.
+    ShowDebrief,
     /// Explain something over what is open.
     Explain(Subject),
     /// Start a run for practice with the tour in it.

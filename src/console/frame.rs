@@ -110,12 +110,17 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let look = Look { company: &run.company, keys: &app.keys, page: app.page };
     canvas.zoomed = run.zoomed;
     let beside = run.viewer.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
+    let lesson = run.lesson_beside(area.width);
+    let beside = if lesson.is_some() { super::lesson::COLUMNS } else { beside };
     let screen = Rect { width: body.width - beside, ..body };
     canvas.stale = is_stale(run);
     canvas.path = run.path(&look);
     run.screens.get(run.here).draw(canvas, screen, &look);
     canvas.stale = false;
     canvas.path.clear();
+    if let Some(page) = lesson {
+        super::lesson::draw_beside(canvas, Rect { x: screen.right(), width: beside, ..body }, page, &look);
+    }
     if let Some(viewer) = &run.viewer {
         // A list beside the screen is not what paging goes by.
         let page = canvas.page;

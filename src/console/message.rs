@@ -12,7 +12,7 @@ use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, CurveExplorer, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition, Preview,
+    Change, CurveExplorer, Debrief, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition, Preview,
     Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
@@ -123,6 +123,10 @@ pub enum News {
     WhyProgress(u64, WhyProgress),
     /// It was answered.
     Why(u64, Box<Result<Why, Refusal>>),
+    /// The question of a lesson was answered, or a hint was taken: what was refused, if something was.
+    InLesson(Option<Refusal>, Arc<Company>),
+    /// What came of a part of a lesson.
+    Debriefed(Arc<Result<Debrief, Refusal>>),
     /// The notes were kept.
     MemoKept(Result<(), Refusal>, Arc<Company>),
     /// A query was saved: a sentence and all queries, or what went wrong.

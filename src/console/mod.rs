@@ -19,6 +19,7 @@ mod fuzzy;
 pub mod glyphs;
 pub mod headless;
 pub mod keys;
+mod lesson;
 mod look_inside;
 pub(crate) mod manual;
 pub mod message;

@@ -68,8 +68,25 @@ pub enum Request {
     TellStory,
     /// Put the report of the run into words.
     WriteReport,
+    /// Do something in the lesson of the run.
+    Lesson(LessonRequest),
     /// Lead a participant through a study.
     Visit(VisitRequest),
+}
+
+/// What a person asks of a lesson. Steps and parts are counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LessonRequest {
+    /// The answer to the question of the step.
+    Guess(f64),
+    /// The next hint.
+    Hint,
+    /// A step again from its beginning.
+    TryAgain(usize),
+    /// Another part.
+    BeginPart(usize),
+    /// What came of a part that is over.
+    Debrief,
 }
 
 /// What a participant's way through a study asks for.
@@ -139,7 +156,8 @@ impl Request {
 
     /// Whether it is refused while a week runs: it was meant for the company as it was before.
     pub fn waits_for_week(&self) -> bool {
-        matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
+        let of_lesson = matches!(self, Request::Lesson(asked) if *asked != LessonRequest::Debrief);
+        of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
     /// Whether participants of a study cannot ask for it: it reaches beyond their own run.
@@ -156,6 +174,7 @@ impl Request {
             | Request::TakeOver(_)
             | Request::AdoptBranch { .. }
             | Request::RunDays(_)
+            | Request::Lesson(_)
             | Request::WriteReport => true,
             Request::Call { .. }
             | Request::Undo
@@ -176,6 +195,8 @@ impl Request {
             Request::Replay { .. } => "opening the record",
             Request::TakeOver(_) => "starting a run from here",
             Request::AdoptBranch { .. } => "playing the branch",
+            Request::Lesson(LessonRequest::TryAgain(_)) => "going back to the beginning of the step",
+            Request::Lesson(LessonRequest::BeginPart(_)) => "starting the next part",
             Request::Advance { .. } => "the week runs",
             Request::RunDays(_) => "simulating",
             Request::Visit(VisitRequest::Play) => "opening the run",

@@ -11,6 +11,7 @@ mod desk;
 mod folder;
 mod inside;
 mod kin;
+mod lesson;
 mod limits;
 mod mending;
 mod player;
@@ -377,6 +378,7 @@ impl SessionThread {
             Request::SetMemo(text) => self.with_run(|run| run.set_memo(&text)),
             Request::TellStory => self.with_run(|run| run.tell_story()),
             Request::WriteReport => self.with_run(|run| run.write_report()),
+            Request::Lesson(asked) => self.in_lesson(asked),
             Request::Visit(request) => self.lead(request),
         }
     }

@@ -87,7 +87,7 @@ pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
 }
 
 /// A guess or an outcome in words.
-pub(super) fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
+pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
     match question.choices.get((value - 1.0).max(0.0) as usize) {
         Some(choice) => choice.clone(),
         None if question.unit == "$" => short_dollars(value),

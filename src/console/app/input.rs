@@ -292,6 +292,8 @@ impl App {
             Action::Breakpoints => self.show_breakpoints(),
             Action::Curves => self.show_curve(None),
             Action::Glossary => self.show_glossary(),
+            Action::Lesson => self.toggle_lesson(),
+            Action::LessonPage => self.show_lesson(),
             Action::Tour => self.show_tour(),
             Action::Forward => self.forward(),
             Action::Zoom => self.zoom(),
@@ -444,6 +446,10 @@ impl App {
         if !run.company.is_running() {
             return self.show_end();
         }
+        if self.files_in_lesson() {
+            return;
+        }
+        let Stage::Run(run) = &mut self.stage else { return };
         run.filing.reopen(run.screens.tools.unsent(), run.company.is_baseline());
         self.lay(Layer::Filing);
     }

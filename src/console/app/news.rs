@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::lesson::LessonView;
 use super::{App, Layer, Order, Run, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
@@ -106,6 +107,8 @@ impl App {
             News::Reported(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
             }
+            News::InLesson(refused, company) => self.heard_in_lesson(refused, company),
+            News::Debriefed(found) => self.debriefed(found),
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
             News::Visit(news) => self.visited(news),
@@ -231,6 +234,11 @@ impl App {
                 self.say(format!("replay: nothing is changed; {help} shows the keys"));
             }
             Some(remark) => self.say(remark.clone()),
+            None if company.lesson.is_some() => {
+                let key = |action| self.keys.label(action).unwrap_or_default();
+                let (task, week) = (key(Action::LessonPage), key(Action::NextWeek));
+                self.say(format!("{task} shows the task, {week} runs a week"));
+            }
             None if company.seen.day == 0 => {
                 self.say("a new company: 8 shows the forms, n runs a week, ? explains the keys")
             }
@@ -254,6 +262,7 @@ impl App {
             asked: BTreeMap::new(),
             tour,
             viewer,
+            lesson: LessonView::default(),
             time_left: Vec::new(),
             behind: None,
         }));
@@ -268,10 +277,14 @@ impl App {
         if over && !self.leads_participant() {
             self.show_end();
         }
+        self.open_lesson();
     }
 
     /// Shows the final page; what it tells of the books comes when they were read.
     pub(super) fn show_end(&mut self) {
+        if self.ends_lesson() {
+            return;
+        }
         let Stage::Run(run) = &self.stage else { return };
         let story = run.story.clone();
         if story.is_none() {
@@ -335,6 +348,7 @@ impl App {
     fn advanced(&mut self, week: Result<Box<Week>, Refusal>, company: Arc<Company>) {
         self.busy = None;
         let now = self.stopwatch.now();
+        let before = self.run().and_then(|run| run.company.lesson.clone());
         if let Stage::Run(run) = &mut self.stage {
             run.look_again(now);
         }
@@ -360,12 +374,14 @@ impl App {
         if let Stage::Run(run) = &mut self.stage {
             run.filing = FilingDialog::default();
         }
+        let ended = week.ended;
         let unfiled = self.end_limit_of_week();
         let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
-        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(week.ended));
+        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended));
         self.say(if hides_result { "the run is over".to_owned() } else { text });
-        match week.ended {
+        match ended {
             Some(_) => self.show_end(),
+            None if self.tells_week_of_lesson(before.as_ref()) => {}
             None => {
                 let remark = (!remark.is_empty()).then_some(remark);
                 self.lay(Layer::Dialog(Box::new(Report::new(remark))));

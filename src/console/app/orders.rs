@@ -155,6 +155,8 @@ impl App {
                 self.lay(Layer::Dialog(Box::new(confirm)));
             }
             Effect::Explain(subject) => self.explain_subject(subject),
+            Effect::TryStepAgain(step) => self.ask_to_try_again(step),
+            Effect::ShowDebrief => self.show_debrief(),
             Effect::StartTour => self.start_tour(),
             Effect::Receive(study) => self.receive(study),
             Effect::SettleOffer(restore) => self.settle_offer(restore),

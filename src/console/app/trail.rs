@@ -47,6 +47,9 @@ impl Run {
 impl App {
     /// Shows a place on a screen that was opened from where one is.
     pub(super) fn lead_to(&mut self, screen: ScreenId, prepare: impl FnOnce(&mut Run)) {
+        if self.is_kept_shut(screen) {
+            return;
+        }
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };

@@ -3,11 +3,13 @@
 pub mod branches;
 pub mod confirm;
 pub mod curve;
+pub mod debrief;
 pub mod explain;
 pub mod filing;
 pub mod final_page;
 pub mod glossary;
 pub mod help;
+pub mod lesson;
 pub mod palette;
 pub mod pause;
 pub mod reader;
@@ -30,6 +32,7 @@ use super::effect::Effect;
 use super::message::News;
 use super::screens::Look;
 use crate::report::Story;
+use crate::session::{Debrief, Refusal};
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -120,6 +123,9 @@ pub trait Dialog {
 
     /// Takes the story of the run, which was told meanwhile.
     fn take_story(&mut self, _: &Arc<Story>) {}
+
+    /// Takes the debrief of the lesson, which was found meanwhile.
+    fn take_debrief(&mut self, _: &Arc<Result<Debrief, Refusal>>) {}
 
     /// A row was clicked.
     fn click(&mut self, _: usize, _: &Look<'_>) -> Outcome {

@@ -10,7 +10,8 @@ use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::fuzzy::{self, Found};
 use crate::console::keys::Keys;
-use crate::console::screens::Look;
+use crate::console::lesson::why_closed;
+use crate::console::screens::{Look, ScreenId};
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
@@ -222,10 +223,23 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     }
 }
 
+/// Whether a tool or a screen is not in the lesson that is played.
+fn is_outside_lesson(effect: &Effect, company: &Company) -> bool {
+    let screen = |action: Action| ScreenId::ALL.into_iter().find(|screen| screen.action() == action);
+    match effect {
+        Effect::ShowTool(tool) => !company.has_tool(*tool),
+        Effect::Do(action) => screen(*action).is_some_and(|screen| why_closed(screen, company).is_some()),
+        _ => false,
+    }
+}
+
 fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntry> {
     let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
-    let hidden =
-        |action: Action| !company.may_look_inside && matches!(action, Action::Xray | Action::Breakpoints);
+    let hidden = |action: Action| match action {
+        Action::Xray | Action::Breakpoints => !company.may_look_inside,
+        Action::Lesson | Action::LessonPage => company.lesson.is_none(),
+        _ => false,
+    };
     let commands = ACTIONS
         .iter()
         .filter(|entry| everywhere(entry.scope) && entry.action != Action::Palette && !hidden(entry.action));
@@ -284,7 +298,9 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
         effect: Effect::Explain(Subject::Term(term)),
     }));
     for entry in &mut list {
-        if let Some(why) = why_not(&entry.effect, company) {
+        if is_outside_lesson(&entry.effect, company) {
+            entry.doc = format!("not in this lesson: {}", entry.doc);
+        } else if let Some(why) = why_not(&entry.effect, company) {
             entry.doc = format!("not now, {why}: {}", entry.doc);
         }
     }

@@ -115,7 +115,7 @@ impl SessionThread {
 
     /// Shows a run that was opened, with a remark; if it does not open, what can be done instead.
     pub(super) fn take(&mut self, opened: Result<Session, RunError>, id: &str, remark: Option<String>) {
-        let session = match opened {
+        let mut session = match opened {
             Ok(session) => session,
             Err(problem) => {
                 let instead = match &problem {
@@ -130,7 +130,7 @@ impl SessionThread {
         };
         let interrupt = self.queries.connect(&session);
         (self.mending, self.inside) = (None, None);
-        let mut company = Company::of(&session);
+        let mut company = Company::in_lesson(&mut session, None);
         company.remarks.extend(remark);
         let company = Arc::new(company);
         self.company = Some(company.clone());

@@ -28,7 +28,7 @@ pub(super) struct OpenRun<'a> {
 impl OpenRun<'_> {
     /// The company as it is now.
     pub(super) fn company(&mut self) -> Arc<Company> {
-        let company = Arc::new(Company::after(self.session, self.shown.as_deref()));
+        let company = Arc::new(Company::in_lesson(self.session, self.shown.as_deref()));
         *self.shown = Some(company.clone());
         company
     }

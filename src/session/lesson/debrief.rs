@@ -6,7 +6,7 @@
 use std::thread;
 
 use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::definition::{CapacityMover, GoalBound, ScheduledCalls};
+use super::definition::{CapacityMover, GoalBound, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
@@ -281,31 +281,32 @@ impl PlayedPart {
 
     fn steps(&self) -> Vec<DebriefStep> {
         let standing = &self.standing;
-        let part = standing.own_part();
-        let begun = part.steps.iter().enumerate().filter(|(at, _)| standing.has_begun(*at));
-        let step = |(at, own): (usize, &super::definition::LessonStep)| DebriefStep {
-            title: own.title.clone(),
-            tries: standing.tries(at),
-            hints: (standing.hints(at), own.hints.len()),
-            question: question(standing, at),
-            goals: self.goals(at),
-        };
-        begun.map(step).collect()
+        let begun = (0..standing.own_part().steps.len()).filter(|step| standing.has_begun(*step));
+        begun.filter_map(|step| standing.came_to(step)).collect()
     }
+}
 
-    fn goals(&self, step: usize) -> Vec<GoalPage> {
-        let judged = self.standing.goals(step);
-        let goals = self.standing.step(step).map(|own| own.goals.as_slice()).unwrap_or_default();
-        let page = |(at, goal): (usize, &super::definition::LessonGoal)| {
+impl LessonStanding {
+    /// What was asked in a step, and what came of it; none where there is no such step.
+    pub(super) fn came_to(&self, step: usize) -> Option<DebriefStep> {
+        let own = self.step(step)?;
+        let judged = self.goals(step);
+        let page = |(at, goal): (usize, &LessonGoal)| {
             let note = judged.get(at);
             GoalPage {
-                text: self.standing.lesson.filled(&goal.text),
+                text: self.lesson.filled(&goal.text),
                 value: note.and_then(|note| note.value),
                 bound: note.and_then(|note| note.bound),
                 wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
                 met: note.and_then(|note| note.met),
             }
         };
-        goals.iter().enumerate().map(page).collect()
+        Some(DebriefStep {
+            title: own.title.clone(),
+            tries: self.tries(step),
+            hints: (self.hints(step), own.hints.len()),
+            question: question(self, step),
+            goals: own.goals.iter().enumerate().map(page).collect(),
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
 
+use super::debrief::DebriefStep;
 use super::definition::{ForecastsAsked, GoalBound, GuessForm, RationaleAsked};
 use super::standing::LessonStanding;
 use crate::session::state::Session;
@@ -35,6 +36,8 @@ pub struct LessonPage {
     pub hints_in_all: usize,
     /// What was said of the pitfalls that were met, with the day.
     pub pitfalls: Vec<(u32, String)>,
+    /// What the step before came to, until a week of this one has passed.
+    pub before: Option<DebriefStep>,
     /// Whether the part is over.
     pub is_over: bool,
     /// Number of the next part, counted from 1, once this one is over and there is one.
@@ -104,6 +107,7 @@ impl Session {
             hints: own.hints.iter().take(standing.hints(step)).map(filled).collect(),
             hints_in_all: own.hints.len(),
             pitfalls: pitfalls(&standing),
+            before: step.checked_sub(1).filter(|_| passed == 0).and_then(|before| standing.came_to(before)),
             is_over: going.is_none(),
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),

@@ -16,6 +16,7 @@ pub(super) enum HomeEntry {
     Continue,
     Tour,
     New,
+    Lessons,
     Runs,
     Compare,
     Paper,
@@ -47,6 +48,7 @@ impl Menu {
             choices.push(tour.clone());
         }
         choices.push((HomeEntry::New, "New run", "500 days from one million dollars".to_owned()));
+        choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
         if count > 0 {
             let text =
                 if count == 1 { "1 on this machine".to_owned() } else { format!("{count} on this machine") };

@@ -3,6 +3,7 @@
 mod compare;
 mod form;
 mod home;
+mod lessons;
 mod paper;
 mod runs;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use crate::console::widgets::Table;
 use crate::session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use form::{ROWS, RunForm};
 use home::HomeEntry;
+use lessons::MenuLesson;
 use runs::Asked;
 
 /// Rows of a page, to walk over.
@@ -48,6 +50,8 @@ pub struct Menu {
     asked: Option<Asked>,
     /// What was to be done on the first page before the runs were known: what it offers depends on them.
     early: Vec<Action>,
+    /// Lessons, as they were read when their page was opened.
+    lessons: Vec<MenuLesson>,
     configuration: Configuration,
 }
 
@@ -55,6 +59,7 @@ pub struct Menu {
 enum MenuPage {
     Home,
     NewRun,
+    Lessons,
     Runs,
     Compare,
     Paper,
@@ -73,6 +78,7 @@ impl Menu {
             previews: Previews::new(),
             asked: None,
             early: Vec::new(),
+            lessons: Vec::new(),
             configuration: configuration.clone(),
         }
     }
@@ -160,6 +166,7 @@ impl Menu {
             MenuPage::Home => self.choices().len(),
             MenuPage::NewRun => ROWS.len(),
             MenuPage::Paper => paper::ranked(self.list()).len(),
+            MenuPage::Lessons => self.lessons.len(),
             MenuPage::Runs | MenuPage::Compare => 1,
         };
         rows.saturating_sub(1)
@@ -172,7 +179,7 @@ impl Menu {
             _ if self.asked.is_some() => vec![Scope::Dialog],
             MenuPage::Runs if self.table.is_typing() => vec![Scope::Field],
             MenuPage::NewRun if self.form.is_typing() => vec![Scope::Field],
-            MenuPage::NewRun | MenuPage::Compare | MenuPage::Paper => vec![Scope::List],
+            MenuPage::NewRun | MenuPage::Lessons | MenuPage::Compare | MenuPage::Paper => vec![Scope::List],
             MenuPage::Home | MenuPage::Runs => vec![Scope::Menu, Scope::List],
         }
     }
@@ -198,6 +205,7 @@ impl Menu {
                 Action::Filter,
                 Action::Sort,
             ],
+            MenuPage::Lessons => vec![Action::Open, Action::Up, Action::Down, Action::Close],
             MenuPage::Compare | MenuPage::Paper => vec![Action::Close, Action::Quit],
         }
     }
@@ -232,6 +240,7 @@ impl Menu {
             }
             (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.enter(),
             (Action::Open, MenuPage::Home) => return self.choose(),
+            (Action::Open, MenuPage::Lessons) => return self.begin_lesson(),
             _ => self.walk(action),
         }
         Vec::new()
@@ -271,6 +280,7 @@ impl Menu {
             Some(HomeEntry::Continue) => return self.open_latest(),
             Some(HomeEntry::Tour) => return vec![Effect::StartTour],
             Some(HomeEntry::New) => self.open_form(),
+            Some(HomeEntry::Lessons) => self.open_lessons(),
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
@@ -351,6 +361,7 @@ impl Menu {
         match self.page {
             MenuPage::Home => self.draw_home(canvas, body),
             MenuPage::NewRun => self.form.draw(canvas, body),
+            MenuPage::Lessons => self.draw_lessons(canvas, body),
             MenuPage::Runs => self.draw_runs(canvas, body),
             MenuPage::Compare => self.draw_compare(canvas, body),
             MenuPage::Paper => self.draw_paper(canvas, body),

@@ -141,7 +141,9 @@ struct Laid {
 fn lay_out(tools: &Tools, form: &Form, area: Rect, look: &Look<'_>) -> Laid {
     let (width, values) = (area.width as usize, form_lines(form).len());
     let lines = |text: &str, role: Role| wrapped(text, width).into_iter().map(move |line| (line, role));
-    let summary: Vec<_> = lines(&format!("{}.", form.spec.summary), Role::Strong).collect();
+    let has = look.company.has_tool(form.spec.id);
+    let locked = if has { "" } else { "Not in this lesson. " };
+    let summary: Vec<_> = lines(&format!("{locked}{}.", form.spec.summary), Role::Strong).collect();
     let terms = terms(form.spec, &look.company.numbers, look.company.seen.day);
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();

@@ -117,7 +117,9 @@ impl Pane<Tools> for ToolListPane {
             match line {
                 ListLine::Module(module) => canvas.text(row, module.id(), Role::Header),
                 ListLine::Tool(place, spec) => {
-                    draw_tool(tools, canvas, row, spec, (place == tools.selected).then_some(seat.focused));
+                    let has = look.company.has_tool(spec.id);
+                    let selected = (place == tools.selected).then_some(seat.focused);
+                    draw_tool(tools, canvas, row, (spec, has), selected);
                     canvas.click(row, Click::Row(seat.number, place));
                 }
             }
@@ -150,11 +152,18 @@ fn lines_of(tools: &Tools) -> Vec<ListLine> {
     lines
 }
 
-/// Draws a tool; one that is selected says whether the list has the focus.
-fn draw_tool(tools: &Tools, canvas: &mut Canvas<'_>, row: Rect, spec: &Spec, selected: Option<bool>) {
+/// Draws a tool, and whether the lesson has it; one that is selected says whether the list has the focus.
+fn draw_tool(
+    tools: &Tools,
+    canvas: &mut Canvas<'_>,
+    row: Rect,
+    (spec, has): (&Spec, bool),
+    selected: Option<bool>,
+) {
     let role = match selected {
         Some(true) => Role::Selection,
         Some(false) => Role::SelectionIdle,
+        None if !has => Role::Dim,
         None => Role::Text,
     };
     let draft =
@@ -163,5 +172,6 @@ fn draw_tool(tools: &Tools, canvas: &mut Canvas<'_>, row: Rect, spec: &Spec, sel
     let names = row.width.saturating_sub(9) as usize;
     let mark = if draft { '*' } else { ' ' };
     canvas.text(row, &format!(" {mark}{:<names$}", fit(spec.name(), names)), role);
-    canvas.aligned(Rect { width: row.width.saturating_sub(1), ..row }, spec.code, role, Align::Right);
+    let code = if has { spec.code } else { "locked" };
+    canvas.aligned(Rect { width: row.width.saturating_sub(1), ..row }, code, role, Align::Right);
 }

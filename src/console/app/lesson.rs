@@ -1,0 +1,163 @@
+//! A lesson on the screen: the task beside it or as a page, weeks that run at once, what is not open, the debrief.
+
+use std::sync::Arc;
+
+use super::{App, Layer, Run, Stage};
+use crate::console::company::Company;
+use crate::console::dialogs::confirm::Confirm;
+use crate::console::dialogs::debrief::DebriefPage;
+use crate::console::dialogs::lesson::LessonDialog;
+use crate::console::effect::Effect;
+use crate::console::lesson::{WIDE, why_closed};
+use crate::console::request::{LessonRequest, Request};
+use crate::console::screens::ScreenId;
+use crate::session::{Debrief, LessonPage, Refusal};
+
+/// The rationale of a week for which the lesson asks for none.
+const NO_RATIONALE: &str = "the lesson asks for none";
+/// Said where there is no lesson.
+const NO_LESSON: &str = "this run belongs to no lesson; the start menu lists lessons";
+
+/// What the person has of the lesson of a run.
+#[derive(Default)]
+pub struct LessonView {
+    /// The task is not shown beside the screen.
+    pub hidden: bool,
+    /// What came of it, once it was found.
+    pub debrief: Option<Arc<Result<Debrief, Refusal>>>,
+}
+
+impl Run {
+    /// The lesson, where its task stands beside the screen of a window of so many columns.
+    pub fn lesson_beside(&self, columns: u16) -> Option<&LessonPage> {
+        let fits = columns >= WIDE && !self.zoomed && !self.lesson.hidden && self.viewer.is_none();
+        self.company.lesson.as_ref().filter(|_| fits)
+    }
+}
+
+impl App {
+    fn lesson_page(&self) -> Option<&LessonPage> {
+        self.run()?.company.lesson.as_ref()
+    }
+
+    /// Shows the task beside the screen, or hides it; where there is no room, opens it as a page.
+    pub(super) fn toggle_lesson(&mut self) {
+        if self.lesson_page().is_none() {
+            return self.complain(NO_LESSON);
+        }
+        if self.window.0 < WIDE {
+            return self.open(LessonDialog::default());
+        }
+        if let Stage::Run(run) = &mut self.stage {
+            run.lesson.hidden = !run.lesson.hidden;
+        }
+    }
+
+    /// Opens the whole task.
+    pub(super) fn show_lesson(&mut self) {
+        match self.lesson_page() {
+            Some(_) => self.open(LessonDialog::default()),
+            None => self.complain(NO_LESSON),
+        }
+    }
+
+    /// Opens the task of a lesson that was opened, where it does not stand beside the screen.
+    pub(super) fn open_lesson(&mut self) {
+        let Some(page) = self.lesson_page() else { return };
+        if page.is_over {
+            return;
+        }
+        let begins = page.weeks.0 == 0;
+        if begins && self.window.0 < WIDE {
+            self.open(LessonDialog::default());
+        }
+    }
+
+    /// What the key of the next week does in a lesson, if that is something of its own.
+    pub(super) fn files_in_lesson(&mut self) -> bool {
+        let Some(run) = self.run() else { return false };
+        let Some(page) = run.company.running_lesson() else { return false };
+        let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
+        let at_once = page.runs_at_once;
+        let forecasts = crate::session::Forecasts { filled_naively: [true; 4], ..run.company.naive };
+        if open {
+            self.open(LessonDialog::asking());
+            return true;
+        }
+        if at_once {
+            let rationale = NO_RATIONALE.to_owned();
+            self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
+        }
+        at_once
+    }
+
+    /// After a week of a lesson that runs at once: what is new of it. True if that takes the place of the report.
+    pub(super) fn tells_week_of_lesson(&mut self, before: Option<&LessonPage>) -> bool {
+        let Some(page) = self.lesson_page().cloned() else { return false };
+        let pitfalls = before.map_or(0, |before| before.pitfalls.len());
+        let step_is_over = before.is_some_and(|before| before.step != page.step);
+        let is_news = step_is_over || page.pitfalls.len() > pitfalls;
+        let beside = self.run().is_some_and(|run| run.lesson_beside(self.window.0).is_some());
+        if is_news && !beside {
+            self.open(LessonDialog::default());
+        }
+        page.runs_at_once || (is_news && !beside)
+    }
+
+    /// Says how an answer or a hint was taken.
+    pub(super) fn heard_in_lesson(&mut self, refused: Option<Refusal>, company: Arc<Company>) {
+        self.changed(company);
+        match refused {
+            Some(refusal) => self.complain(refusal.to_string()),
+            None => self.say("recorded"),
+        }
+    }
+
+    /// Asks once before a step is tried again.
+    pub(super) fn ask_to_try_again(&mut self, step: usize) {
+        let text = format!(
+            "Step {} begins again, in a run of its own; the tries are counted. This run stays as it is. Try again?",
+            step + 1
+        );
+        let again = Effect::Request(Request::Lesson(LessonRequest::TryAgain(step)));
+        self.open(Confirm::new("Try again", text, vec![Effect::CloseDialogs, again]));
+    }
+
+    /// Opens what came of the lesson; it is found once.
+    pub(super) fn show_debrief(&mut self) {
+        let Some(run) = self.run() else { return };
+        let found = run.lesson.debrief.clone();
+        if found.is_none() {
+            self.follow(vec![Effect::Request(Request::Lesson(LessonRequest::Debrief))]);
+        }
+        self.open(DebriefPage::of(found));
+    }
+
+    /// The end of a lesson: where another part follows, the page that leads there, else the debrief. True if it is one.
+    pub(super) fn ends_lesson(&mut self) -> bool {
+        let Some(page) = self.lesson_page() else { return false };
+        match page.next_part {
+            Some(_) => self.open(LessonDialog::default()),
+            None => self.show_debrief(),
+        }
+        true
+    }
+
+    /// The debrief was found.
+    pub(super) fn debriefed(&mut self, found: Arc<Result<Debrief, Refusal>>) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.lesson.debrief = Some(found.clone());
+        }
+        for layer in self.layers.iter_mut() {
+            if let Layer::Dialog(dialog) = layer {
+                dialog.take_debrief(&found);
+            }
+        }
+    }
+
+    /// Says so where a screen is not in the lesson that is played.
+    pub(super) fn is_kept_shut(&mut self, screen: ScreenId) -> bool {
+        let why = self.run().and_then(|run| why_closed(screen, &run.company));
+        why.map(|why| self.complain(why)).is_some()
+    }
+}

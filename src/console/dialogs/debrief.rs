@@ -1,0 +1,170 @@
+//! The page at the end of a lesson: the own curve of cash beside the good and the bad play, where they parted, what was guessed.
+
+use std::cell::Cell;
+use std::sync::Arc;
+
+use ratatui::layout::Rect;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, centered};
+use crate::console::effect::Effect;
+use crate::console::lesson::{draw_lines, step_to_try};
+use crate::console::request::{LessonRequest, Request};
+use crate::console::screens::Look;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::{Axis, Line, Side, Unit, chart};
+use crate::report::debrief::{headline, in_words};
+use crate::report::{debrief_as_html, debrief_as_markdown};
+use crate::session::{Debrief, Refusal};
+
+/// Widest page that reads well.
+const WIDEST: u16 = 160;
+/// Columns and rows from which the curves stand beside the words.
+const BESIDE: (u16, u16) = (104, 20);
+
+/// The page.
+#[derive(Default)]
+pub struct DebriefPage {
+    found: Option<Arc<Result<Debrief, Refusal>>>,
+    /// First line that is shown.
+    from: usize,
+    /// The same as it was drawn: never beyond the end.
+    shown_from: Cell<usize>,
+}
+
+impl DebriefPage {
+    /// The page of a debrief that was found already.
+    pub fn of(found: Option<Arc<Result<Debrief, Refusal>>>) -> DebriefPage {
+        DebriefPage { found, ..DebriefPage::default() }
+    }
+
+    fn debrief(&self) -> Option<&Debrief> {
+        self.found.as_ref()?.as_ref().as_ref().ok()
+    }
+
+    /// Writes the debrief into the run's folder.
+    fn written(&self) -> Outcome {
+        let Some(debrief) = self.debrief() else {
+            return Outcome::with(vec![Effect::Complain("the debrief is still being found".to_owned())]);
+        };
+        let files = [
+            ("debrief.md", debrief_as_markdown(debrief)),
+            ("debrief.html", debrief_as_html(debrief)),
+        ];
+        Outcome::with(files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec())
+    }
+}
+
+/// What one does here.
+const KEYS: [Action; 5] =
+    [Action::ToMenu, Action::TryAgain, Action::NextPart, Action::ReportOfRun, Action::StayInRun];
+
+impl Dialog for DebriefPage {
+    fn what(&self) -> String {
+        "debrief".to_owned()
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::Final, Scope::List, Scope::Lesson]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        KEYS.to_vec()
+    }
+
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        let page = look.company.lesson.as_ref();
+        let from = self.shown_from.get();
+        match action {
+            Action::ToMenu => return Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
+            Action::StayInRun | Action::Close => return Outcome::close(),
+            Action::ReportOfRun => return self.written(),
+            Action::TryAgain => {
+                return Outcome::with(page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect());
+            }
+            Action::NextPart => {
+                if let Some(part) = page.and_then(|page| page.next_part) {
+                    let asked = LessonRequest::BeginPart(part.saturating_sub(1) as usize);
+                    return Outcome::close_with(vec![Effect::Request(Request::Lesson(asked))]);
+                }
+                let text = "this was the last part of the lesson".to_owned();
+                return Outcome::with(vec![Effect::Complain(text)]);
+            }
+            Action::Up => self.from = from.saturating_sub(1),
+            Action::Down => self.from = from + 1,
+            Action::PageUp => self.from = from.saturating_sub(look.page as usize),
+            Action::PageDown => self.from = from + look.page as usize,
+            Action::First => self.from = 0,
+            Action::Last => self.from = usize::MAX,
+            _ => {}
+        }
+        Outcome::stay()
+    }
+
+    fn take_debrief(&mut self, found: &Arc<Result<Debrief, Refusal>>) {
+        self.found = Some(found.clone());
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, WIDEST.min(area.width), 50.min(area.height));
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, "Debrief", "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let has_next = look.company.lesson.as_ref().is_some_and(|page| page.next_part.is_some());
+        let keys: Vec<Action> =
+            KEYS.into_iter().filter(|action| has_next || *action != Action::NextPart).collect();
+        canvas.pane_keys(own, &look.hints(&keys));
+        let debrief = match self.found.as_ref().map(|found| found.as_ref().as_ref()) {
+            None => return canvas.text(inside, "simulating the good and the bad play …", Role::Warning),
+            Some(Err(refusal)) => return canvas.text(inside, &refusal.message, Role::Bad),
+            Some(Ok(debrief)) => debrief,
+        };
+        let beside = inside.width >= BESIDE.0 && inside.height >= BESIDE.1;
+        let (words, curves) = if beside {
+            let left = inside.width * 11 / 20;
+            let right = Rect { x: inside.x + left + 2, width: inside.width - left - 2, ..inside };
+            (Rect { width: left, ..inside }, right)
+        } else {
+            let above = (inside.height * 2 / 5).max(4).min(inside.height);
+            let below = Rect { y: inside.y + above, height: inside.height - above, ..inside };
+            (below, Rect { height: above, ..inside })
+        };
+        draw_curves(canvas, curves, debrief);
+        let lines = lines_of(debrief, words.width as usize);
+        let from = self.from.min(lines.len().saturating_sub(words.height as usize));
+        self.shown_from.set(from);
+        canvas.page = words.height.max(1);
+        draw_lines(canvas, words, &lines, from);
+    }
+}
+
+/// The debrief in lines of a width.
+fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
+    let said = headline(debrief);
+    let paragraphs = in_words(debrief).into_iter().enumerate().flat_map(|(at, text)| {
+        let role = match at {
+            0 => Role::Title,
+            _ if text == said => Role::Strong,
+            _ => Role::Text,
+        };
+        let lines = if text.is_empty() { vec![String::new()] } else { wrapped(&text, width) };
+        lines.into_iter().map(move |line| (line, role))
+    });
+    paragraphs.collect()
+}
+
+fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
+    let from = debrief.first_day as usize;
+    let curve = |cash: &[f64], role, name| {
+        let points = cash.iter().enumerate().skip(from).map(|(day, cash)| (day as f64, *cash)).collect();
+        Line::through(points, role).named(name)
+    };
+    let mut lines = Vec::new();
+    lines.extend(debrief.bad.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(debrief.good.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
+    lines.push(curve(&debrief.own, Role::Series(0), "you"));
+    let write = |day: f64| format!("day {day:.0}");
+    chart(canvas, area, &lines, &Axis { write: &write, holds: &[] }, &Side { unit: Unit::Dollars, holds: &[0.0] });
+}

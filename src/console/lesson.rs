@@ -1,0 +1,231 @@
+//! The task of a lesson beside the screen: what is asked, where the goals stand, hints, pitfalls, what is locked.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::action::Action;
+use super::canvas::Canvas;
+use super::company::Company;
+use super::screens::{Look, ScreenId};
+use super::text::wrapped;
+use super::theme::Role;
+use super::widgets::spark::bar;
+use crate::notation::compact;
+use crate::report::lesson::guess_in_words;
+use crate::session::{GoalPage, LessonPage, LessonQuestion, ToolId};
+
+/// Columns of the task beside the screen.
+pub const COLUMNS: u16 = 38;
+/// Columns of the window from which the task has room beside the screen.
+pub const WIDE: u16 = 118;
+
+/// Screens that every lesson has: where things stand, how to decide, what was decided.
+const ALWAYS: [ScreenId; 3] = [ScreenId::Overview, ScreenId::Tools, ScreenId::Journal];
+
+/// Why a screen is not open in the lesson that is played; none where it is.
+pub fn why_closed(screen: ScreenId, company: &Company) -> Option<String> {
+    let lesson = company.running_lesson()?;
+    let screens = lesson.screens.as_ref()?;
+    let queries = lesson.tools.as_ref().is_none_or(|tools| tools.contains(&ToolId::Query));
+    let open = |own: ScreenId| {
+        let asks = own == ScreenId::Sql && queries;
+        asks || ALWAYS.contains(&own) || screens.iter().any(|name| name.eq_ignore_ascii_case(own.id()))
+    };
+    // Hidden state has rules of its own.
+    if screen == ScreenId::Xray || open(screen) {
+        return None;
+    }
+    let title = |own: ScreenId| own.action().entry().title;
+    let all: Vec<&str> = ScreenId::ALL.into_iter().filter(|own| open(*own)).map(title).collect();
+    Some(format!("{} is not in this lesson; it has {}", title(screen), all.join(", ")))
+}
+
+/// Draws the task into an area beside the screen; more of it than fits is on the page.
+pub fn draw_beside(canvas: &mut Canvas<'_>, area: Rect, page: &LessonPage, look: &Look<'_>) {
+    canvas.clear(area, Role::Text);
+    let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
+    let inside = canvas.pane(area, "Lesson", &note, false);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let lines = lines_of(page, look, inside.width as usize);
+    let cut = lines.len() > inside.height as usize;
+    draw_lines(canvas, inside, &lines, 0);
+    let keys = match cut {
+        true => format!("{} for all of it", look.hint(Action::LessonPage)),
+        false => look.hints(&[Action::LessonPage, Action::Lesson]),
+    };
+    canvas.pane_keys(area, &keys);
+}
+
+/// Writes lines from one of them on.
+pub fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, lines: &[(String, Role)], from: usize) {
+    let shown = lines.iter().skip(from).take(area.height as usize);
+    let shown: Vec<Line<'_>> =
+        shown.map(|(text, role)| Line::from(canvas.span(text.as_str(), *role))).collect();
+    canvas.lines(area, &shown);
+}
+
+/// Lines that are collected for a width.
+struct Lines {
+    width: usize,
+    all: Vec<(String, Role)>,
+}
+
+impl Lines {
+    fn say(&mut self, text: &str, role: Role) {
+        self.all.extend(wrapped(text, self.width).into_iter().map(|line| (line, role)));
+    }
+
+    fn gap(&mut self) {
+        if self.all.last().is_some_and(|(text, _)| !text.is_empty()) {
+            self.all.push((String::new(), Role::Text));
+        }
+    }
+}
+
+/// The task in lines of a width.
+pub fn lines_of(page: &LessonPage, look: &Look<'_>, width: usize) -> Vec<(String, Role)> {
+    let mut lines = Lines { width, all: Vec::new() };
+    lines.say(&page.title, Role::Title);
+    if let Some(part) = &page.part {
+        lines.say(part, Role::Dim);
+    }
+    if let Some(before) = &page.before {
+        lines.gap();
+        lines.say(&format!("{}, which is over", before.title), Role::Header);
+        say_outcome(&mut lines, before.question.as_ref(), &before.goals);
+    }
+    lines.gap();
+    let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
+    let step = format!("Step {} of {}: {}{again}", page.step + 1, page.steps, page.step_title);
+    lines.say(&step, Role::Strong);
+    if page.is_over {
+        lines.gap();
+        say_outcome(&mut lines, page.question.as_ref(), &page.goals);
+        say_pitfalls(&mut lines, page);
+        lines.gap();
+        lines.say(&what_follows(page, look), Role::Key);
+        return lines.all;
+    }
+    lines.say(&unwrapped(&page.text), Role::Text);
+    if let Some(question) = &page.question {
+        lines.gap();
+        say_question(&mut lines, question, look);
+    }
+    for goal in &page.goals {
+        lines.gap();
+        say_goal(&mut lines, goal);
+    }
+    say_pitfalls(&mut lines, page);
+    say_hints(&mut lines, page, look);
+    say_locked(&mut lines, look);
+    lines.all
+}
+
+/// What can be done once a part is over.
+pub fn what_follows(page: &LessonPage, look: &Look<'_>) -> String {
+    let again = look.hint(Action::TryAgain);
+    let debrief = look.hint(Action::Debrief);
+    match page.next_part {
+        Some(_) => format!("This part is over: {}, {again}, {debrief}.", look.hint(Action::NextPart)),
+        None => format!("The lesson is over: {debrief}, {again}."),
+    }
+}
+
+/// The step that would be tried again, counted from 0: the one that goes on, or the one that is just over.
+pub fn step_to_try(page: &LessonPage) -> usize {
+    page.step - usize::from(page.before.is_some())
+}
+
+/// Paragraphs whose lines were broken for the file.
+fn unwrapped(text: &str) -> String {
+    let paragraphs = text.trim().split("\n\n");
+    let joined = paragraphs.map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
+    joined.collect::<Vec<_>>().join("\n\n")
+}
+
+fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
+    lines.say(&format!("Your guess: {}", question.text), Role::Strong);
+    match question.guess {
+        Some(guess) => lines.say(&format!("You guessed {}.", guess_in_words(question, guess)), Role::Text),
+        None => {
+            for (at, choice) in question.choices.iter().enumerate() {
+                lines.say(&format!("{} {choice}", at + 1), Role::Text);
+            }
+            lines.say(&format!("{} asks for it", look.hint(Action::NextWeek)), Role::Key);
+        }
+    }
+}
+
+/// The guess beside the outcome, and the goals that were reached or missed.
+fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
+    if let Some(question) = question {
+        let said = |value: Option<f64>| value.map_or("nothing".to_owned(), |value| guess_in_words(question, value));
+        lines.say(&question.text, Role::Dim);
+        lines.say(&format!("You guessed {}.", said(question.guess)), Role::Text);
+        lines.say(&format!("It was {}.", said(question.outcome)), Role::Strong);
+    }
+    for goal in goals {
+        say_goal(lines, goal);
+    }
+}
+
+/// A goal with a bar of how far it has come.
+fn say_goal(lines: &mut Lines, goal: &GoalPage) {
+    let (mark, role) = match goal.met {
+        Some(true) => ("reached: ", Role::Good),
+        Some(false) => ("missed: ", Role::Bad),
+        None => ("Goal: ", Role::Strong),
+    };
+    lines.say(&format!("{mark}{}", goal.text), role);
+    let Some(value) = goal.value else { return };
+    let Some(bound) = goal.bound else {
+        return lines.say(&format!("now {}; the good play decides", compact(value)), Role::Text);
+    };
+    let of = if goal.wants_least { "at most" } else { "of" };
+    let numbers = format!("{} {of} {}", compact(value), compact(bound));
+    let room = lines.width.saturating_sub(numbers.len() + 1).min(16);
+    if bound > 0.0 && room > 3 {
+        lines.say(&format!("{} {numbers}", bar(value / bound, room)), Role::Text);
+    } else {
+        lines.say(&numbers, Role::Text);
+    }
+}
+
+fn say_pitfalls(lines: &mut Lines, page: &LessonPage) {
+    for (day, say) in &page.pitfalls {
+        lines.gap();
+        lines.say(&format!("! Day {day}: {say}"), Role::Warning);
+    }
+}
+
+fn say_hints(lines: &mut Lines, page: &LessonPage, look: &Look<'_>) {
+    lines.gap();
+    for (at, hint) in page.hints.iter().enumerate() {
+        lines.say(&format!("Hint {}: {hint}", at + 1), Role::Text);
+    }
+    let count = format!("hints {}/{}", page.hints.len(), page.hints_in_all);
+    let more = page.hints.len() < page.hints_in_all;
+    let keys = || {
+        let key = |action| look.keys.label(action).unwrap_or_default();
+        format!("; {} {} takes one", key(Action::LessonPage), key(Action::NextHint))
+    };
+    lines.say(&if more { count + &keys() } else { count }, Role::Dim);
+}
+
+/// What of the program the lesson has.
+fn say_locked(lines: &mut Lines, look: &Look<'_>) {
+    let Some(lesson) = look.company.running_lesson() else { return };
+    lines.gap();
+    if let Some(tools) = &lesson.tools {
+        let names: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
+        lines.say(&format!("Tools: {}; the others are not in this lesson.", names.join(", ")), Role::Dim);
+    }
+    if lesson.screens.is_some() {
+        let is_closed = |screen: &ScreenId| why_closed(*screen, look.company).is_some();
+        let closed = ScreenId::ALL.into_iter().filter(is_closed);
+        let closed: Vec<&str> = closed.map(|screen| screen.action().entry().title).collect();
+        if !closed.is_empty() {
+            lines.say(&format!("Not in this lesson: {}.", closed.join(", ")), Role::Dim);
+        }
+    }
+}

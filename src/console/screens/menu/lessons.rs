@@ -1,0 +1,102 @@
+//! The lessons: minutes and titles, what one learns beside them; enter begins one.
+
+use std::sync::Arc;
+
+use ratatui::layout::Rect;
+
+use super::{Menu, MenuPage};
+use crate::console::canvas::{Canvas, Click, rows_of};
+use crate::console::effect::Effect;
+use crate::console::request::Request;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::table::first_row;
+use crate::report::count;
+use crate::session::{Lesson, LessonEntry, Mode, NewRun};
+
+/// Width from which what one learns stands beside the list.
+const WIDE: u16 = 76;
+
+/// A lesson of the list: its name, and the lesson or what is wrong with its file.
+pub(super) struct MenuLesson {
+    name: String,
+    lesson: Result<Arc<Lesson>, String>,
+}
+
+impl Menu {
+    /// Reads the lessons and shows them.
+    pub(super) fn open_lessons(&mut self) {
+        let read = |name: String| {
+            let lesson = self.configuration.lesson(&name).map(Arc::new).map_err(|error| error.to_string());
+            MenuLesson { name, lesson }
+        };
+        self.lessons = self.configuration.lessons().into_iter().map(read).collect();
+        (self.page, self.selected) = (MenuPage::Lessons, 0);
+    }
+
+    /// Begins the selected lesson.
+    pub(super) fn begin_lesson(&self) -> Vec<Effect> {
+        match self.lessons.get(self.selected).map(|own| &own.lesson) {
+            Some(Ok(lesson)) => {
+                let entry = LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true };
+                let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
+                vec![Effect::Request(Request::Create(Box::new(new)))]
+            }
+            Some(Err(problem)) => vec![Effect::Complain(problem.clone())],
+            None => Vec::new(),
+        }
+    }
+
+    pub(super) fn draw_lessons(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let beside = area.width >= WIDE;
+        let (above, below) = if beside {
+            let left = Rect { width: area.width / 2, ..area };
+            (left, Rect { x: left.right() + 1, width: area.width - left.width - 1, ..area })
+        } else {
+            let rows = (self.lessons.len() as u16 + 2).min(area.height);
+            let left = Rect { height: rows, ..area };
+            (left, Rect { y: left.bottom(), height: area.height - rows, ..area })
+        };
+        let inside = canvas.pane(above, "Lessons", &count(self.lessons.len() as u32, "lesson"), true);
+        let from = first_row(self.selected, inside.height as usize, self.lessons.len());
+        for (row, (at, own)) in rows_of(inside).zip(self.lessons.iter().enumerate().skip(from)) {
+            let here = at == self.selected;
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let (minutes, title) = match &own.lesson {
+                Ok(lesson) => (format!("{:>2} min", lesson.plan.minutes), lesson.plan.title.as_str()),
+                Err(_) => ("  –".to_owned(), own.name.as_str()),
+            };
+            let mark = if here { "›" } else { " " };
+            canvas.text(row, &format!("{mark} {minutes:<6}  {title}"), if here { Role::Selection } else { Role::Text });
+            canvas.click(row, Click::Row(0, at));
+        }
+        if let Some(own) = self.lessons.get(self.selected) {
+            draw_lesson(canvas, below, own);
+        }
+    }
+}
+
+/// What one learns in a lesson.
+fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &MenuLesson) {
+    if area.height < 3 {
+        return;
+    }
+    let inside = canvas.pane(area, &own.name, "", false);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let (text, role) = match &own.lesson {
+        Ok(lesson) => {
+            let plan = &lesson.plan;
+            let parts = match plan.parts.len() {
+                1 => count(plan.parts[0].steps.len() as u32, "step"),
+                parts => count(parts as u32, "part"),
+            };
+            (format!("{}\n\n{}\n\n{} minutes, {parts}.", plan.title, plan.learning_goal, plan.minutes), Role::Text)
+        }
+        Err(problem) => (format!("! {problem}"), Role::Bad),
+    };
+    for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
+        canvas.text(row, &line, role);
+    }
+}

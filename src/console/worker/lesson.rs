@@ -1,0 +1,58 @@
+//! The session's thread with the lesson of a run: answers, hints, other tries and parts, the debrief.
+
+use std::sync::Arc;
+
+use super::{Open, SessionThread};
+use crate::console::message::{Message, News};
+use crate::console::request::LessonRequest;
+use crate::rules::answers_to_companies;
+use crate::session::record::LeavingCause;
+use crate::session::{Refusal, Session};
+
+impl SessionThread {
+    /// Does what a person asks of a lesson.
+    pub(super) fn in_lesson(&mut self, asked: LessonRequest) {
+        match asked {
+            LessonRequest::Guess(value) => {
+                self.with_run(|run| {
+                    let refused = run.session.guess_in_lesson(value).err();
+                    Some(News::InLesson(refused, run.company()))
+                });
+            }
+            LessonRequest::Hint => self.with_run(|run| {
+                let refused = run.session.hint_in_lesson().err();
+                Some(News::InLesson(refused, run.company()))
+            }),
+            LessonRequest::TryAgain(step) => self.go_to(
+                |session| session.try_step_again(step),
+                &format!("step {} again; the run before is unchanged", step + 1),
+            ),
+            LessonRequest::BeginPart(part) => {
+                self.go_to(|session| session.begin_part(part), &format!("part {} begins", part + 1));
+            }
+            LessonRequest::Debrief => self.find_debrief(),
+        }
+    }
+
+    /// Goes on in another run of the lesson.
+    fn go_to(&mut self, begin: impl FnOnce(&Session) -> Result<Session, Refusal>, remark: &str) {
+        let Some(Open::Played(session)) = &self.open else { return };
+        match begin(session) {
+            Ok(begun) => {
+                let _ = self.put_down(LeavingCause::Quit);
+                self.take(Ok(begun), "", Some(remark.to_owned()));
+            }
+            Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
+        }
+    }
+
+    /// Finds what came of the lesson on a thread of its own: its plays are simulated.
+    fn find_debrief(&mut self) {
+        let Some(open) = &mut self.open else { return };
+        let (played, news) = (open.session().played_part(), self.news.clone());
+        std::thread::spawn(move || {
+            let debrief = played.map(|played| played.debrief(answers_to_companies));
+            let _ = news.send(Message::News(News::Debriefed(Arc::new(debrief))));
+        });
+    }
+}

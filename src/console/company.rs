@@ -13,8 +13,8 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode, Numbers,
-    Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode,
+    Numbers, Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -162,7 +162,9 @@ impl Company {
     /// Whether the person has a tool: a lesson has some of them.
     pub fn has_tool(&self, tool: ToolId) -> bool {
         let tools = self.running_lesson().and_then(|lesson| lesson.tools.as_ref());
-        !tool.spec().kind.acts() || tool == ToolId::NextWeek || tools.is_none_or(|tools| tools.contains(&tool))
+        !tool.spec().kind.acts()
+            || tool == ToolId::NextWeek
+            || tools.is_none_or(|tools| tools.contains(&tool))
     }
 
     /// Whether time can still pass.

@@ -159,7 +159,8 @@ fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
 /// The guess beside the outcome, and the goals that were reached or missed.
 fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
     if let Some(question) = question {
-        let said = |value: Option<f64>| value.map_or("nothing".to_owned(), |value| guess_in_words(question, value));
+        let said =
+            |value: Option<f64>| value.map_or("nothing".to_owned(), |value| guess_in_words(question, value));
         lines.say(&question.text, Role::Dim);
         lines.say(&format!("You guessed {}.", said(question.guess)), Role::Text);
         lines.say(&format!("It was {}.", said(question.outcome)), Role::Strong);

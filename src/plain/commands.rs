@@ -135,7 +135,10 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     ("guess", "guess ANSWER             lessons: answer the question of the step"),
     ("hint", "hint                     lessons: the next hint of the step"),
-    ("debrief", "debrief                  lessons: what came of a part that is over, beside the good and the bad play"),
+    (
+        "debrief",
+        "debrief                  lessons: what came of a part that is over, beside the good and the bad play",
+    ),
     ("again", "again [STEP]             lessons: try a step again from its beginning"),
     ("set", "set KEY VALUE [from DAY] debug: set a parameter; set alone lists what differs"),
     ("help", "help [NAME]              this list, or help on one command, tool or table"),

@@ -8,7 +8,8 @@ use super::words::{count, money};
 use crate::glossary::{Term, terms};
 use crate::notation::{compact, grouped, signed_dollars};
 use crate::session::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, Parting, PartedDecision, ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, PartedDecision, Parting,
+    ReferenceCurve,
 };
 
 /// Most settings of a tool that are named one by one.
@@ -25,7 +26,8 @@ pub fn headline(own: &Debrief) -> String {
     let other = |curve: &Option<ReferenceCurve>, name: &str| {
         curve.as_ref().map(|curve| format!("the {name} play {}", last(&curve.cash_by_day)))
     };
-    let others: Vec<String> = [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect();
+    let others: Vec<String> =
+        [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect();
     match others.is_empty() {
         true => format!("{end}."),
         false => format!("{end}; {}.", others.join(", ")),
@@ -55,18 +57,22 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
 
 /// Where the own decisions parted from those of the good play, and what that was worth.
 pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
-    let good = own.good.as_ref().map(|good| good.text.as_str()).unwrap_or_default();
     match &own.comparison {
         DecisionComparison::Same => vec!["You decided as the good play does, week by week.".to_owned()],
         DecisionComparison::Unknown => {
             vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
         }
         DecisionComparison::Parted(parting) => {
-            let mut lines = vec![
-                format!("The good play: {good}"),
-                format!("Week {}, day {}, is the first in which you decided otherwise:", parting.week, parting.day),
-            ];
-            lines.extend(parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))));
+            let good = own.good.as_ref().and_then(|good| good.text.as_ref());
+            let mut lines: Vec<String> =
+                good.map(|good| format!("The good play: {good}")).into_iter().collect();
+            lines.push(format!(
+                "Week {}, day {}, is the first in which you decided otherwise:",
+                parting.week, parting.day
+            ));
+            lines.extend(
+                parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))),
+            );
             lines.push(effect_in_words(parting));
             lines
         }
@@ -116,7 +122,8 @@ fn effect_in_words(parting: &Parting) -> String {
             money(effect.own),
             signed_dollars(effect.with - effect.own)
         ),
-        None => "The calls of the good play are refused in your run, so their effect was not simulated.".to_owned(),
+        None => "The calls of the good play are refused in your run, so their effect was not simulated."
+            .to_owned(),
     }
 }
 
@@ -207,7 +214,7 @@ fn facts(own: &Debrief) -> Vec<Fact> {
     let day = format!("day {}", own.own.len().saturating_sub(1));
     let mut facts = vec![Fact::new("You", last(&own.own), day)];
     for (name, curve) in [("Good play", &own.good), ("Bad play", &own.bad)] {
-        let told = |curve: &ReferenceCurve| Fact::new(name, last(&curve.cash_by_day), curve.text.clone());
+        let told = |curve: &ReferenceCurve| Fact::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default());
         facts.extend(curve.as_ref().map(told));
     }
     facts
@@ -219,14 +226,18 @@ fn cash(own: &Debrief) -> Chart {
         points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
     };
     let references = [("good play", &own.good), ("bad play", &own.bad)];
-    let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
+    let others =
+        references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
     Chart {
         title: "Cash by day".to_owned(),
         summary: headline(own),
         across: "day",
         dollars: true,
         within: None,
-        plot: Plot::Lines { curves: std::iter::once(curve("you", &own.own)).chain(others).collect(), band: None },
+        plot: Plot::Lines {
+            curves: std::iter::once(curve("you", &own.own)).chain(others).collect(),
+            band: None,
+        },
     }
 }
 
@@ -234,7 +245,8 @@ fn guesses(own: &Debrief) -> Vec<Block> {
     let asked = own.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
     let rows: Vec<Vec<String>> = asked
         .map(|(step, question)| {
-            let said = |value: Option<f64>| value.map_or("–".to_owned(), |value| guess_in_words(question, value));
+            let said =
+                |value: Option<f64>| value.map_or("–".to_owned(), |value| guess_in_words(question, value));
             vec![step.title.clone(), question.text.clone(), said(question.guess), said(question.outcome)]
         })
         .collect();

@@ -1,6 +1,6 @@
 //! What happened in a lesson, in words.
 
-use crate::notation::{compact, short_dollars};
+use crate::notation::{compact, percent, short_dollars};
 use crate::session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
 
 /// The word of an event, as lines write it.
@@ -86,10 +86,16 @@ pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
     lines
 }
 
+/// Whether a number is asked for that is a part of a whole, from 0 to 1.
+pub fn is_share(question: &LessonQuestion) -> bool {
+    question.unit.starts_with("share")
+}
+
 /// A guess or an outcome in words.
 pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
     match question.choices.get((value - 1.0).max(0.0) as usize) {
         Some(choice) => choice.clone(),
+        None if is_share(question) => percent(value, 0),
         None if question.unit == "$" => short_dollars(value),
         None if question.unit == "%" => format!("{value:.0}%"),
         None if question.unit.is_empty() => compact(value),

@@ -8,6 +8,7 @@ mod focus;
 mod guide;
 mod harness;
 mod kin;
+mod lessons;
 mod looks;
 mod monkey;
 mod pictures;

@@ -4,6 +4,7 @@ mod battery;
 mod breakpoints;
 mod curve;
 mod classes;
+mod debriefs;
 mod difference;
 mod durability;
 mod enterprise;

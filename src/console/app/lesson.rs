@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{App, Layer, Run, Stage};
+use crate::console::action::Action;
 use crate::console::company::Company;
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::debrief::DebriefPage;
@@ -84,11 +85,22 @@ impl App {
             self.open(LessonDialog::asking());
             return true;
         }
-        if at_once {
-            let rationale = NO_RATIONALE.to_owned();
-            self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
+        if !at_once {
+            return false;
         }
-        at_once
+        let unsent: Vec<&str> = run.screens.tools.unsent().iter().map(|tool| tool.name()).collect();
+        let week = Effect::Request(Request::Advance { rationale: NO_RATIONALE.to_owned(), forecasts });
+        if unsent.is_empty() {
+            self.follow(vec![week]);
+            return true;
+        }
+        let apply = self.keys.label(Action::Apply).unwrap_or_default();
+        let text = format!(
+            "The form of {} holds values that were not sent; {apply} in it sends them. Run the week without them?",
+            unsent.join(", ")
+        );
+        self.open(Confirm::new("Next week", text, vec![week]));
+        true
     }
 
     /// After a week of a lesson that runs at once: what is new of it. True if that takes the place of the report.
@@ -109,6 +121,10 @@ impl App {
         self.changed(company);
         match refused {
             Some(refusal) => self.complain(refusal.to_string()),
+            None if self.layers.is_empty() => {
+                let key = self.keys.label(Action::NextWeek).unwrap_or_default();
+                self.say(format!("your guess is recorded: {key} runs the week"));
+            }
             None => self.say("recorded"),
         }
     }
@@ -145,9 +161,12 @@ impl App {
 
     /// The debrief was found.
     pub(super) fn debriefed(&mut self, found: Arc<Result<Debrief, Refusal>>) {
-        if let Stage::Run(run) = &mut self.stage {
-            run.lesson.debrief = Some(found.clone());
+        let Stage::Run(run) = &mut self.stage else { return };
+        // It may be that of a run which was left meanwhile.
+        if found.as_ref().as_ref().is_ok_and(|debrief| debrief.run != run.company.seen.run) {
+            return;
         }
+        run.lesson.debrief = Some(found.clone());
         for layer in self.layers.iter_mut() {
             if let Layer::Dialog(dialog) = layer {
                 dialog.take_debrief(&found);

@@ -49,10 +49,8 @@ impl DebriefPage {
         let Some(debrief) = self.debrief() else {
             return Outcome::with(vec![Effect::Complain("the debrief is still being found".to_owned())]);
         };
-        let files = [
-            ("debrief.md", debrief_as_markdown(debrief)),
-            ("debrief.html", debrief_as_html(debrief)),
-        ];
+        let files =
+            [("debrief.md", debrief_as_markdown(debrief)), ("debrief.html", debrief_as_html(debrief))];
         Outcome::with(files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec())
     }
 }
@@ -71,7 +69,7 @@ impl Dialog for DebriefPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        KEYS.to_vec()
+        vec![Action::ToMenu, Action::TryAgain, Action::ReportOfRun, Action::StayInRun, Action::Down]
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
@@ -82,7 +80,9 @@ impl Dialog for DebriefPage {
             Action::StayInRun | Action::Close => return Outcome::close(),
             Action::ReportOfRun => return self.written(),
             Action::TryAgain => {
-                return Outcome::with(page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect());
+                return Outcome::with(
+                    page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect(),
+                );
             }
             Action::NextPart => {
                 if let Some(part) = page.and_then(|page| page.next_part) {
@@ -166,5 +166,11 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     lines.extend(debrief.good.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
     lines.push(curve(&debrief.own, Role::Series(0), "you"));
     let write = |day: f64| format!("day {day:.0}");
-    chart(canvas, area, &lines, &Axis { write: &write, holds: &[] }, &Side { unit: Unit::Dollars, holds: &[0.0] });
+    chart(
+        canvas,
+        area,
+        &lines,
+        &Axis { write: &write, holds: &[] },
+        &Side { unit: Unit::Dollars, holds: &[] },
+    );
 }

@@ -15,6 +15,8 @@ use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
+use crate::console::widgets::field::parse_number;
+use crate::report::lesson::is_share;
 use crate::session::{LessonPage, LessonQuestion};
 
 /// Widest page that reads well.
@@ -76,7 +78,7 @@ impl LessonDialog {
         let Some(answer) = &mut self.answer else { return Outcome::stay() };
         let value = match question.choices.is_empty() {
             false => Some(answer.choice as f64 + 1.0),
-            true => number(answer.number.text()),
+            true => number(question, answer.number.text()),
         };
         let Some(value) = value else {
             answer.problem = Some("type a number".to_owned());
@@ -94,7 +96,9 @@ impl LessonDialog {
         match action {
             Action::Commit | Action::Open | Action::LessonOn => return self.answered(question),
             Action::Up | Action::CommitPrevious => answer.choice = answer.choice.saturating_sub(1),
-            Action::Down | Action::CommitDown | Action::CommitNext => answer.choice = (answer.choice + 1).min(last),
+            Action::Down | Action::CommitDown | Action::CommitNext => {
+                answer.choice = (answer.choice + 1).min(last)
+            }
             Action::Discard | Action::Close | Action::Cancel if self.only_asks => return Outcome::close(),
             Action::Discard | Action::Close | Action::Cancel => self.answer = None,
             _ => {}
@@ -120,7 +124,10 @@ impl LessonDialog {
         let width = WIDEST.min(area.width);
         let inner = width.saturating_sub(4) as usize;
         let text = wrapped(&question.text, inner);
-        let choices: Vec<(usize, Vec<String>)> = question.choices.iter().enumerate()
+        let choices: Vec<(usize, Vec<String>)> = question
+            .choices
+            .iter()
+            .enumerate()
             .map(|(at, choice)| (at, wrapped(&format!("{} {choice}", at + 1), inner.saturating_sub(2))))
             .collect();
         let rows = choices.iter().map(|(_, lines)| lines.len()).sum::<usize>().max(1);
@@ -156,10 +163,13 @@ impl LessonDialog {
     }
 }
 
-/// A number as people type it.
-fn number(text: &str) -> Option<f64> {
-    let bare = text.trim().trim_start_matches('$').trim_end_matches('%').replace(',', "");
-    bare.parse().ok().filter(|value: &f64| value.is_finite())
+/// A number as people type it; what is asked for as a share from 0 to 1 may be typed in hundredths.
+fn number(question: &LessonQuestion, text: &str) -> Option<f64> {
+    match text.trim().strip_suffix('%') {
+        Some(bare) if is_share(question) => parse_number(bare).map(|value| value / 100.0),
+        Some(bare) => parse_number(bare),
+        None => parse_number(text),
+    }
 }
 
 fn begin_part(part: u32) -> Outcome {
@@ -199,6 +209,9 @@ impl Dialog for LessonDialog {
             Action::NextHint if offered => {
                 self.from = usize::MAX;
                 return Outcome::with(vec![Effect::Request(Request::Lesson(LessonRequest::Hint))]);
+            }
+            Action::NextHint => {
+                return Outcome::with(vec![Effect::Complain("there is no further hint".to_owned())]);
             }
             Action::NextPart => {
                 return match page.next_part {
@@ -285,7 +298,9 @@ impl Dialog for LessonDialog {
         let from = self.from.min(lines.len().saturating_sub(inside.height as usize));
         self.shown_from.set(from);
         draw_lines(canvas, inside, &lines, from);
-        canvas.pane_keys(own, &look.hints(&self.keys(page)));
+        let cut = lines.len() > inside.height as usize;
+        let keys = self.keys(page).into_iter().filter(|action| cut || *action != Action::ScrollDown);
+        canvas.pane_keys(own, &look.hints(&keys.collect::<Vec<_>>()));
         if let Some(question) = self.asked(look) {
             self.draw_answer(canvas, area, question, look);
         }

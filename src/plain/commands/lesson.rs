@@ -6,11 +6,11 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::report::debrief::in_words;
-use crate::report::lesson::page_in_words;
+use crate::report::lesson::{is_share, page_in_words};
 use crate::rules::answers_to_companies;
 use crate::session::{
-    Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision, ReferenceCurve, Refusal,
-    Session,
+    Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision,
+    ReferenceCurve, Refusal, Session,
 };
 
 impl Interpreter {
@@ -48,8 +48,11 @@ impl Interpreter {
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
         let bare = written.trim_start_matches('$').trim_end_matches('%').replace(',', "");
-        let value: f64 =
+        let number: f64 =
             bare.parse().map_err(|_| problem(arguments, "a guess is a number, or the number of a choice"))?;
+        let question = self.session.lesson_page().and_then(|page| page.question);
+        let hundredths = written.ends_with('%') && question.is_some_and(|question| is_share(&question));
+        let value = if hundredths { number / 100.0 } else { number };
         Ok(match self.session.guess_in_lesson(value) {
             Ok(()) => self.lesson_page("guess"),
             Err(refusal) => Answer::refused("guess", refusal),

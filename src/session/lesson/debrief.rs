@@ -71,8 +71,8 @@ pub struct Debrief {
 /// A reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceCurve {
-    /// What it does, in words.
-    pub text: String,
+    /// What it does, in words; none while a part of the lesson is to come, which they would give away.
+    pub text: Option<String>,
     /// Cash at the end of each day, day 0 first, dollars.
     pub cash_by_day: Vec<f64>,
 }
@@ -159,10 +159,13 @@ impl Session {
         let follows = part.capacity == CapacityMover::FollowsUsage;
         let of_lesson = |tool: ToolId| follows && tool == ToolId::SetCapacityTier;
         let starts = part.start.iter().flat_map(|own| &own.calls);
-        let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
+        let starts =
+            starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
         let days = self.params().run.days_per_week;
         let calls = self.journal().iter().filter_map(|entry| match entry {
-            JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => Some((*day, *tool, args.clone())),
+            JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => {
+                Some((*day, *tool, args.clone()))
+            }
             _ => None,
         });
         let scheduled = |(day, tool, args)| ScheduledCalls {
@@ -193,13 +196,14 @@ impl PlayedPart {
             begun.map(|play| play.join().ok().flatten())
         });
         let both = good.as_ref().zip(own.as_ref());
-        let comparison = both
-            .map_or(DecisionComparison::Unknown, |(good, own)| self.compared(good, own, answers));
+        let comparison =
+            both.map_or(DecisionComparison::Unknown, |(good, own)| self.compared(good, own, answers));
+        let is_last = self.standing.part + 1 == plan.parts.len();
         let curve = |played: Option<Played>, text: &str| {
-            played.map(|own| ReferenceCurve { text: text.to_owned(), cash_by_day: own.cash_by_day })
+            let text = is_last.then(|| text.to_owned());
+            played.map(|own| ReferenceCurve { text, cash_by_day: own.cash_by_day })
         };
         let part = self.standing.own_part();
-        let is_last = self.standing.part + 1 == plan.parts.len();
         Debrief {
             title: plan.title.clone(),
             learning_goal: plan.learning_goal.clone(),
@@ -266,8 +270,7 @@ impl PlayedPart {
             let call = own.calls.first();
             own.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
         };
-        let mut calls: Vec<ScheduledCalls> =
-            self.own.iter().filter(|own| !is_other(own)).cloned().collect();
+        let mut calls: Vec<ScheduledCalls> = self.own.iter().filter(|own| !is_other(own)).cloned().collect();
         let made = good.calls_of(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
         calls.push(ScheduledCalls {
             part: self.standing.part,

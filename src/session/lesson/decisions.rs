@@ -73,7 +73,8 @@ pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDec
         let other = good.settings.get(tool)?;
         let (own, good) = (leaves(settings), leaves(other));
         let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
-        let value = |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
+        let value =
+            |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
         let differing: Vec<(String, Value, Value)> = names
             .into_iter()
             .map(|name| (name.clone(), value(&own, name), value(&good, name)))
@@ -132,7 +133,8 @@ mod tests {
     fn plays_part_where_other_settings_hold_or_other_things_are_done() {
         let own = decided(&json!({"A": 12, "B": 20}), &[]);
         assert!(parted(&own, &decided(&json!({"A": 12.0, "B": 20}), &[])).is_empty());
-        let other = decided(&json!({"A": 12, "B": 30}), &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))]);
+        let other =
+            decided(&json!({"A": 12, "B": 30}), &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))]);
         let found = parted(&own, &other);
         let b = ("B".to_owned(), json!(20), json!(30));
         assert_eq!(found[0].difference, DecisionContrast::Settings(vec![b]));

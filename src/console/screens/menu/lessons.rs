@@ -69,7 +69,11 @@ impl Menu {
                 Err(_) => ("  –".to_owned(), own.name.as_str()),
             };
             let mark = if here { "›" } else { " " };
-            canvas.text(row, &format!("{mark} {minutes:<6}  {title}"), if here { Role::Selection } else { Role::Text });
+            canvas.text(
+                row,
+                &format!("{mark} {minutes:<6}  {title}"),
+                if here { Role::Selection } else { Role::Text },
+            );
             canvas.click(row, Click::Row(0, at));
         }
         if let Some(own) = self.lessons.get(self.selected) {
@@ -92,7 +96,10 @@ fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &MenuLesson) {
                 1 => count(plan.parts[0].steps.len() as u32, "step"),
                 parts => count(parts as u32, "part"),
             };
-            (format!("{}\n\n{}\n\n{} minutes, {parts}.", plan.title, plan.learning_goal, plan.minutes), Role::Text)
+            (
+                format!("{}\n\n{}\n\n{} minutes, {parts}.", plan.title, plan.learning_goal, plan.minutes),
+                Role::Text,
+            )
         }
         Err(problem) => (format!("! {problem}"), Role::Bad),
     };

@@ -1,0 +1,127 @@
+//! The debrief of a lesson: the own curve is the record's, the reference plays are those of the check, and the decision
+//! that parted them is worth what a play with it comes to.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use novamind::report::{debrief_as_html, debrief_as_markdown};
+use novamind::rules::answers_to_companies;
+use novamind::session::{
+    Access, Configuration, Debrief, DecisionComparison, Lesson, LessonEntry, Mode, NewRun, PartPlay,
+    ReferencePlay, Session, Storage, play_part,
+};
+use serde_json::json;
+
+use crate::support::company::{call, week};
+
+fn lesson() -> Arc<Lesson> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
+    Arc::new(Lesson::of_file(&path).expect("a lesson"))
+}
+
+/// A student at the beginning of the lesson, at another seed than its own.
+fn student(folder: &Path) -> Session {
+    let entry = LessonEntry { lesson: lesson(), part: 0, is_judged: true };
+    let storage = Storage::Runs(folder.to_owned());
+    let new = NewRun { mode: Mode::Lesson, seed: Some(3), lesson: Some(entry), storage, ..NewRun::default() };
+    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+}
+
+/// Plays the lesson to its end, with a price from some week on.
+fn played(folder: &Path, price: u32, from: u32) -> Session {
+    let mut session = student(folder);
+    for at in 0..2 {
+        session.guess_in_lesson(1.0).expect("a guess");
+        if at == from {
+            call(&mut session, "set_prices", json!({"A": price, "B": price, "C": price}));
+        }
+        week(&mut session);
+    }
+    session
+}
+
+fn debrief(session: &Session) -> Debrief {
+    session.played_part().expect("it is over").debrief(answers_to_companies)
+}
+
+fn reference(play: &ReferencePlay) -> Vec<f64> {
+    let lesson = lesson();
+    let own = PartPlay {
+        lesson: &lesson,
+        part: 0,
+        seed: Some(3),
+        plays: &play.plays,
+        weeks: None,
+        is_judged: true,
+    };
+    let session = play_part(&own, &Configuration::shipped(), &answers_to_companies).expect("a play");
+    session.cash_by_day().to_vec()
+}
+
+#[test]
+fn curves_are_the_record_and_the_plays_of_the_check() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = played(folder.path(), 30, 0);
+    let found = debrief(&session);
+    assert_eq!(found.own, session.cash_by_day());
+    let plan = &lesson().plan;
+    assert_eq!(found.good.as_ref().expect("a good play").cash_by_day, reference(&plan.good));
+    assert_eq!(found.bad.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
+    assert_eq!(found.steps.len(), 2);
+    assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
+    // From the disk it is the same.
+    let run = session.folder().expect("a folder").to_owned();
+    drop(session);
+    assert_eq!(debrief(&Session::open(&run, Access::Read, true).expect("it opens")), found);
+}
+
+#[test]
+fn the_first_other_decision_is_worth_what_a_play_with_it_comes_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = debrief(&played(folder.path(), 30, 0));
+    let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
+    assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
+    // The one decision makes the good play of it.
+    let effect = parting.effect.expect("an effect");
+    let good = found.good.as_ref().expect("a good play").cash_by_day.clone();
+    assert_eq!(Some(&effect.with), good.last());
+    assert_eq!(Some(&effect.own), found.own.last());
+    // A dearer second week is left as it was: the good play of the first week is not the whole good play.
+    let later = debrief(&played(folder.path(), 40, 1));
+    let DecisionComparison::Parted(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
+    assert_eq!(parting.week, 1);
+    assert_ne!(parting.effect.map(|effect| effect.with), good.last().copied());
+}
+
+#[test]
+fn whoever_plays_the_good_play_is_told_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = debrief(&played(folder.path(), 12, 0));
+    assert_eq!(found.comparison, DecisionComparison::Same);
+    assert_eq!(Some(&found.own), found.good.as_ref().map(|good| &good.cash_by_day));
+}
+
+#[test]
+fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = student(folder.path());
+    session.guess_in_lesson(0.5).expect("a guess");
+    week(&mut session);
+    assert_eq!(session.played_part().expect_err("it goes on").code, "lesson_not_over");
+    let other = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
+    assert_eq!(other.played_part().expect_err("no lesson").code, "not_in_a_lesson");
+}
+
+#[test]
+fn pages_tell_everything_and_stand_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = debrief(&played(folder.path(), 30, 0));
+    let (markdown, html) = (debrief_as_markdown(&found), debrief_as_html(&found));
+    for said in
+        ["good play", "set_prices", "Open the shop", "A billion in the bank", "Somebody bought", "Conversion"]
+    {
+        assert!(markdown.contains(said), "{said}:\n{markdown}");
+        assert!(html.contains(said), "{said}");
+    }
+    assert!(!html.contains("<script") && !html.contains("http"));
+}

@@ -8,7 +8,7 @@ use super::words::{count, money};
 use crate::glossary::{Term, terms};
 use crate::notation::{compact, grouped, signed_dollars};
 use crate::session::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, PartedDecision, Parting,
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FirstDifference, PartedDecision,
     ReferenceCurve,
 };
 
@@ -111,7 +111,7 @@ fn written(value: &Value) -> String {
     }
 }
 
-fn effect_in_words(parting: &Parting) -> String {
+fn effect_in_words(parting: &FirstDifference) -> String {
     match parting.effect {
         Some(effect) => format!(
             "Simulated again with what the good play decided in week {}, and everything else as you decided it: {} on \
@@ -214,7 +214,9 @@ fn facts(own: &Debrief) -> Vec<Fact> {
     let day = format!("day {}", own.own.len().saturating_sub(1));
     let mut facts = vec![Fact::new("You", last(&own.own), day)];
     for (name, curve) in [("Good play", &own.good), ("Bad play", &own.bad)] {
-        let told = |curve: &ReferenceCurve| Fact::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default());
+        let told = |curve: &ReferenceCurve| {
+            Fact::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
+        };
         facts.extend(curve.as_ref().map(told));
     }
     facts

@@ -191,7 +191,10 @@ fn a_part_leads_to_the_next_one() {
     console.shows("Debrief");
     assert!(!console.screen().contains("The good play:"));
     console.press("p");
-    assert_eq!(console.app.run().and_then(|run| run.company.lesson.clone()).and_then(|own| own.next_part), None);
+    assert_eq!(
+        console.app.run().and_then(|run| run.company.lesson.clone()).and_then(|own| own.next_part),
+        None
+    );
     console.shows("hints 0/3");
     assert_eq!(console.app.run().expect("a run").company.seen.day, 0);
 }

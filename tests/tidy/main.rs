@@ -161,14 +161,15 @@ fn may_use(house: &str) -> &'static [&'static str] {
         "world" => &[],
         "tools" | "database" | "voice" => &["world", "notation"],
         "session" => &["tools", "database", "voice", "world", "notation"],
-        "report" | "rules" => &["session", "world", "notation"],
+        "report" => &["session", "glossary", "world", "notation"],
+        "rules" => &["session", "world", "notation"],
         "glossary" => &["tools", "database", "notation"],
         "lab" => &["report", "rules", "session", "tools", "database", "world", "notation"],
         "console" | "plain" => {
             &["report", "rules", "session", "glossary", "tools", "database", "world", "notation"]
         }
         "cli" => &[
-            "console", "plain", "lab", "report", "session", "glossary", "tools", "database", "world",
+            "console", "plain", "lab", "report", "rules", "session", "glossary", "tools", "database", "world",
             "notation",
         ],
         other => panic!("{other} has no floor yet: say in this test and in src/lib.rs where it stands"),

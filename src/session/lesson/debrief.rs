@@ -81,7 +81,7 @@ pub struct ReferenceCurve {
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
     /// They part.
-    Parted(Parting),
+    Parted(FirstDifference),
     /// They are the same all the way.
     Same,
     /// That cannot be told: one of the two cannot be played again, or comes to something else then.
@@ -90,7 +90,7 @@ pub enum DecisionComparison {
 
 /// The first week in which other decisions held than in the good play.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parting {
+pub struct FirstDifference {
     /// The week of the company, counted from 1.
     pub week: u32,
     /// The day on which it begins.
@@ -255,7 +255,7 @@ impl PlayedPart {
             Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with })
         });
         let day = before * self.days_per_week;
-        DecisionComparison::Parted(Parting { week: before + 1, day, decisions, effect })
+        DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
     /// The own calls, with those of the good play in one week where they differ.

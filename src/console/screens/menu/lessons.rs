@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use super::{Menu, MenuPage};
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::effect::Effect;
 use crate::console::request::Request;
@@ -12,31 +11,41 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::report::count;
-use crate::session::{Lesson, LessonEntry, Mode, NewRun};
+use crate::session::{Configuration, Lesson, LessonEntry, Mode, NewRun};
 
 /// Width from which what one learns stands beside the list.
 const WIDE: u16 = 76;
 
+/// The lessons that a person has.
+#[derive(Default)]
+pub(super) struct LessonList {
+    lessons: Vec<ListedLesson>,
+}
+
 /// A lesson of the list: its name, and the lesson or what is wrong with its file.
-pub(super) struct MenuLesson {
+struct ListedLesson {
     name: String,
     lesson: Result<Arc<Lesson>, String>,
 }
 
-impl Menu {
-    /// Reads the lessons and shows them.
-    pub(super) fn open_lessons(&mut self) {
+impl LessonList {
+    /// Reads the lessons.
+    pub(super) fn of(configuration: &Configuration) -> LessonList {
         let read = |name: String| {
-            let lesson = self.configuration.lesson(&name).map(Arc::new).map_err(|error| error.to_string());
-            MenuLesson { name, lesson }
+            let lesson = configuration.lesson(&name).map(Arc::new).map_err(|error| error.to_string());
+            ListedLesson { name, lesson }
         };
-        self.lessons = self.configuration.lessons().into_iter().map(read).collect();
-        (self.page, self.selected) = (MenuPage::Lessons, 0);
+        LessonList { lessons: configuration.lessons().into_iter().map(read).collect() }
     }
 
-    /// Begins the selected lesson.
-    pub(super) fn begin_lesson(&self) -> Vec<Effect> {
-        match self.lessons.get(self.selected).map(|own| &own.lesson) {
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.lessons.len()
+    }
+
+    /// Begins one of them.
+    pub(super) fn begin(&self, selected: usize) -> Vec<Effect> {
+        match self.lessons.get(selected).map(|own| &own.lesson) {
             Some(Ok(lesson)) => {
                 let entry = LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true };
                 let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
@@ -47,7 +56,8 @@ impl Menu {
         }
     }
 
-    pub(super) fn draw_lessons(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    /// Draws the list, and what one learns in the selected one.
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, selected: usize) {
         let beside = area.width >= WIDE;
         let (above, below) = if beside {
             let left = Rect { width: area.width / 2, ..area };
@@ -58,9 +68,9 @@ impl Menu {
             (left, Rect { y: left.bottom(), height: area.height - rows, ..area })
         };
         let inside = canvas.pane(above, "Lessons", &count(self.lessons.len() as u32, "lesson"), true);
-        let from = first_row(self.selected, inside.height as usize, self.lessons.len());
+        let from = first_row(selected, inside.height as usize, self.lessons.len());
         for (row, (at, own)) in rows_of(inside).zip(self.lessons.iter().enumerate().skip(from)) {
-            let here = at == self.selected;
+            let here = at == selected;
             if here {
                 canvas.clear(row, Role::Selection);
             }
@@ -76,14 +86,14 @@ impl Menu {
             );
             canvas.click(row, Click::Row(0, at));
         }
-        if let Some(own) = self.lessons.get(self.selected) {
+        if let Some(own) = self.lessons.get(selected) {
             draw_lesson(canvas, below, own);
         }
     }
 }
 
 /// What one learns in a lesson.
-fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &MenuLesson) {
+fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
     if area.height < 3 {
         return;
     }

@@ -26,7 +26,7 @@ use crate::console::widgets::Table;
 use crate::session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use form::{ROWS, RunForm};
 use home::HomeEntry;
-use lessons::MenuLesson;
+use lessons::LessonList;
 use runs::Asked;
 
 /// Rows of a page, to walk over.
@@ -51,7 +51,7 @@ pub struct Menu {
     /// What was to be done on the first page before the runs were known: what it offers depends on them.
     early: Vec<Action>,
     /// Lessons, as they were read when their page was opened.
-    lessons: Vec<MenuLesson>,
+    lessons: LessonList,
     configuration: Configuration,
 }
 
@@ -78,7 +78,7 @@ impl Menu {
             previews: Previews::new(),
             asked: None,
             early: Vec::new(),
-            lessons: Vec::new(),
+            lessons: LessonList::default(),
             configuration: configuration.clone(),
         }
     }
@@ -166,7 +166,7 @@ impl Menu {
             MenuPage::Home => self.choices().len(),
             MenuPage::NewRun => ROWS.len(),
             MenuPage::Paper => paper::ranked(self.list()).len(),
-            MenuPage::Lessons => self.lessons.len(),
+            MenuPage::Lessons => self.lessons.count(),
             MenuPage::Runs | MenuPage::Compare => 1,
         };
         rows.saturating_sub(1)
@@ -240,7 +240,7 @@ impl Menu {
             }
             (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.enter(),
             (Action::Open, MenuPage::Home) => return self.choose(),
-            (Action::Open, MenuPage::Lessons) => return self.begin_lesson(),
+            (Action::Open, MenuPage::Lessons) => return self.lessons.begin(self.selected),
             _ => self.walk(action),
         }
         Vec::new()
@@ -280,7 +280,10 @@ impl Menu {
             Some(HomeEntry::Continue) => return self.open_latest(),
             Some(HomeEntry::Tour) => return vec![Effect::StartTour],
             Some(HomeEntry::New) => self.open_form(),
-            Some(HomeEntry::Lessons) => self.open_lessons(),
+            Some(HomeEntry::Lessons) => {
+                self.lessons = LessonList::of(&self.configuration);
+                (self.page, self.selected) = (MenuPage::Lessons, 0);
+            }
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
@@ -361,7 +364,7 @@ impl Menu {
         match self.page {
             MenuPage::Home => self.draw_home(canvas, body),
             MenuPage::NewRun => self.form.draw(canvas, body),
-            MenuPage::Lessons => self.draw_lessons(canvas, body),
+            MenuPage::Lessons => self.lessons.draw(canvas, body, self.selected),
             MenuPage::Runs => self.draw_runs(canvas, body),
             MenuPage::Compare => self.draw_compare(canvas, body),
             MenuPage::Paper => self.draw_paper(canvas, body),

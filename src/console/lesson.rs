@@ -208,7 +208,7 @@ fn say_hints(lines: &mut Lines, page: &LessonPage, look: &Look<'_>) {
     let more = page.hints.len() < page.hints_in_all;
     let keys = || {
         let key = |action| look.keys.label(action).unwrap_or_default();
-        format!("; {} {} takes one", key(Action::LessonPage), key(Action::NextHint))
+        format!(" · {} {} takes one", key(Action::LessonPage), key(Action::NextHint))
     };
     lines.say(&if more { count + &keys() } else { count }, Role::Dim);
 }

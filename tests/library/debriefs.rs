@@ -102,6 +102,27 @@ fn whoever_plays_the_good_play_is_told_so() {
 }
 
 #[test]
+fn another_try_begins_where_the_first_one_did() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = played(folder.path(), 30, 0);
+    let mut again = first.try_step_again(0).expect("another try");
+    let begun = student(&folder.path().join("other"));
+    assert_eq!(again.settings(), begun.settings());
+    assert_eq!(again.lesson().map(|own| (own.tries(0), own.guess(0))), Some((2, None)));
+    for _ in 0..2 {
+        again.guess_in_lesson(1.0).expect("a guess");
+        if again.day() == 0 {
+            call(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
+        }
+        week(&mut again);
+    }
+    assert_eq!(again.cash_by_day(), first.cash_by_day());
+    let (one, other) = (debrief(&first), debrief(&again));
+    assert_eq!(one.comparison, other.comparison);
+    assert_eq!(other.steps[0].tries, 2);
+}
+
+#[test]
 fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = student(folder.path());

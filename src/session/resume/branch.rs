@@ -9,7 +9,7 @@ use crate::session::folder::manifest::{FORMAT, Manifest};
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
 use crate::session::study::rules::SessionRules;
-use crate::session::trajectory::record::{Activity, Ended, Parent};
+use crate::session::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
 use crate::session::trajectory::{Line, Record, Trajectory, now};
 use crate::tools::Refusal;
 
@@ -121,9 +121,9 @@ pub(in crate::session) fn branch_of_lesson(
     day: u32,
 ) -> Result<Session, Refusal> {
     let lines = before(trajectory, day);
-    let is_of_lesson =
-        |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
-    let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).collect();
+    let is_of_lesson = |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
+    let start = start_of_lesson(&trajectory.lines[lines.len()..], day);
+    let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).chain(start).collect();
     let manifest = Manifest {
         id: new_id(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -133,6 +133,17 @@ pub(in crate::session) fn branch_of_lesson(
         ..parent.clone()
     };
     UnnamedBranch::write(folder, &manifest, &shared).and_then(UnnamedBranch::name).map_err(not_saved)
+}
+
+/// The calls of the lesson on the day on which its first step begins: they come before what the student decides.
+fn start_of_lesson(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
+    let begins = |line: &Line| match &line.record {
+        Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
+        _ => false,
+    };
+    let is_of_lesson =
+        |line: &&Line| line.record.accepted_call().is_some_and(|(call, _)| call.via == Via::Lesson);
+    lines.iter().take_while(move |line| line.day == day && !begins(line)).filter(is_of_lesson)
 }
 
 /// The lines before a decision day: those of the days before it and the week that ends on it, without what was

@@ -48,7 +48,6 @@ impl Menu {
             choices.push(tour.clone());
         }
         choices.push((HomeEntry::New, "New run", "500 days from one million dollars".to_owned()));
-        choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
         if count > 0 {
             let text =
                 if count == 1 { "1 on this machine".to_owned() } else { format!("{count} on this machine") };
@@ -61,6 +60,7 @@ impl Menu {
         if !newcomer {
             choices.push(tour);
         }
+        choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
         choices.push((HomeEntry::Quit, "Quit", "everything confirmed is saved".to_owned()));
         choices
     }

@@ -12,8 +12,8 @@ use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, CurveExplorer, Debrief, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition, Preview,
-    Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
+    Change, CurveExplorer, Debrief, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition,
+    Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
 

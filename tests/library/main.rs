@@ -2,8 +2,8 @@
 
 mod battery;
 mod breakpoints;
-mod curve;
 mod classes;
+mod curve;
 mod debriefs;
 mod difference;
 mod durability;

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
 use crate::session::error::RunError;
-use crate::session::folder::configuration::Configuration;
 use crate::session::lesson::definition::{GoalBound, LessonPart};
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::lesson::reference::{AnswersCompanies, PartPlay, play_part};
@@ -47,8 +46,9 @@ fn reference(
         plays: &lesson.plan.good.plays,
         weeks: None,
         is_judged: false,
+        asks_database: lesson.asks_database(),
     };
-    let session = play_part(&play, &Configuration::shipped(), answers)?;
+    let session = play_part(&play, answers)?;
     Ok(ClassReference { evidence: evidence_of(&session, session.lesson(), seed) })
 }
 

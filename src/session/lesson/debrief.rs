@@ -12,7 +12,6 @@ use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
 use crate::session::figures::journal::JournalEntry;
-use crate::session::folder::configuration::Configuration;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
 use crate::tools::{Refusal, ToolId};
@@ -231,10 +230,11 @@ impl PlayedPart {
             plays: calls,
             weeks: Some((self.cash_by_day.len() as u32).saturating_sub(1).div_ceil(self.days_per_week)),
             is_judged: false,
+            asks_database: false,
         };
         let mut weeks = Vec::new();
         let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
-        let played = play_part_watched(&play, &Configuration::shipped(), &answers, &mut watch).ok()?;
+        let played = play_part_watched(&play, &answers, &mut watch).ok()?;
         Some(Played { cash_by_day: played.cash_by_day().to_vec(), weeks })
     }
 

@@ -105,7 +105,11 @@ impl Lesson {
     ///
     /// # Errors
     /// The first thing that is wrong, with line and key.
-    pub(in crate::session) fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
+    pub(in crate::session) fn of_texts(
+        name: &str,
+        plan: ParameterSource,
+        texts: String,
+    ) -> Result<Lesson, RunError> {
         Ok(Lesson::read(name, plan, texts, false)?)
     }
 

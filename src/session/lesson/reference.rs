@@ -39,6 +39,14 @@ pub struct PartPlay<'a> {
     pub asks_database: bool,
 }
 
+impl PartPlay<'_> {
+    /// Whether rules answer companies in it: what waits is asked of the database.
+    fn answers_companies(&self) -> bool {
+        let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
+        self.plays.iter().any(|play| play.calls.iter().any(is_rules))
+    }
+}
+
 /// Plays a part in memory.
 ///
 /// # Errors
@@ -83,7 +91,7 @@ fn play_through(
         mode: Mode::Lesson,
         seed: play.seed,
         lesson: Some(entry),
-        projection: play.asks_database,
+        projection: play.asks_database || play.answers_companies(),
         ..NewRun::default()
     };
     let mut session = Session::create(new, &Configuration::shipped())?;

@@ -121,7 +121,8 @@ pub(in crate::session) fn branch_of_lesson(
     day: u32,
 ) -> Result<Session, Refusal> {
     let lines = before(trajectory, day);
-    let is_of_lesson = |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
+    let is_of_lesson =
+        |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
     let start = start_of_lesson(&trajectory.lines[lines.len()..], day);
     let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).chain(start).collect();
     let manifest = Manifest {

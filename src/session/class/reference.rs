@@ -45,7 +45,7 @@ fn reference(
         seed: Some(seed),
         plays: &lesson.plan.good.plays,
         weeks: None,
-        is_judged: false,
+        is_judged: true,
         asks_database: lesson.asks_database(),
     };
     let session = play_part(&play, answers)?;

@@ -316,7 +316,7 @@ mod tests {
         }
         let kinds: std::collections::BTreeSet<&str> =
             examples.iter().map(|(kind, _)| kind.as_str()).collect();
-        assert_eq!(kinds.len(), 23, "{kinds:?}");
+        assert_eq!(kinds.len(), 24, "{kinds:?}");
     }
 
     #[test]
@@ -344,6 +344,7 @@ mod tests {
                 "draft" => "typed",
                 "question" => "form",
                 "answer" => "id",
+                "lesson" => "step",
                 "look" => "command",
                 "xray" => "shown_day",
                 "advance" => "rationale",

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::shortest_if_any;
+
 /// Something that happened in a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LessonNote {
@@ -16,10 +18,10 @@ pub struct LessonNote {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// What was guessed or measured; of choices the number of the one taken, counted from 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// What was to be reached.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
     /// Whether it was reached, or guessed right.
     #[serde(default, skip_serializing_if = "Option::is_none")]

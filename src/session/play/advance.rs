@@ -249,16 +249,23 @@ impl Session {
     fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, state: StateHash) -> Week {
         let figures = self.settle_figures();
         let closing = self.closing(from, &figures, &state);
-        let mut problem = self.append_done(&kind(closing));
+        let record = kind(closing);
+        let is_week = matches!(record, Record::Week(_));
+        let mut problem = self.append_done(&record);
         self.simulation.facts_chain.close();
         problem = problem.or_else(|| self.close_if_over());
         self.closing_line.clone_from(&self.position.line_hash);
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
-        let unsaved = problem.map(|problem| {
-            format!("{problem}; the days are simulated again when the run is opened, with the same result")
-        });
+        // Before a week stands the line that lets it pass; before single days stands nothing.
+        let next = match is_week {
+            true => "the days are simulated again when the run is opened, with the same result",
+            false => {
+                "these days are lost if the program ends before the disk takes them: make room and step on"
+            }
+        };
+        let unsaved = problem.map(|problem| format!("{problem}; {next}"));
         let crowded = self.simulation.refuse_crowded_day().err().filter(|_| self.history.ended.is_none());
         let week = self.report(unsaved.or(crowded.map(|refusal| refusal.message)));
         // The database is written once everything is told: until then the processors are needed here.

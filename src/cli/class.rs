@@ -118,7 +118,7 @@ fn collect(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
     let sources =
         ClassSources { class: &class, folder, places: if places.is_empty() { &own } else { places } };
     let mut bar = None;
-    let collection = ClassCollection::collect(&sources, &answers_to_companies, &mut |done, all| {
+    let collection = ClassCollection::collect(&sources, answers_to_companies, &mut |done, all| {
         bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
     })?;
     if let Some(bar) = bar {

@@ -126,7 +126,7 @@ fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayR
             is_judged: true,
             asks_database: lesson.asks_database(),
         };
-        let session = play_part(&of_part, &answers_to_companies)?;
+        let session = play_part(&of_part, answers_to_companies)?;
         let Some(standing) = session.lesson() else { continue };
         for (step, own) in own.steps.iter().enumerate() {
             let judged = standing.goals(step);
@@ -204,6 +204,6 @@ fn values_of(
         }
         Ok(())
     };
-    play_part_telling(&play, &answers_to_companies, &mut measure)?;
+    play_part_telling(&play, answers_to_companies, &mut measure)?;
     Ok(values)
 }

@@ -82,7 +82,6 @@ pub use folder::world_log::{
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
     Debrief, DebriefStep, DecisionComparison, FirstDifference, PartingEffect, PlayedPart, ReferenceCurve,
-    RulesAnswer,
 };
 pub use lesson::decisions::{DecisionContrast, PartedDecision};
 pub use lesson::definition::{

@@ -58,7 +58,7 @@ impl School {
     fn collect(&self, places: &[PathBuf]) -> ClassCollection {
         let folder = self.folder();
         let sources = ClassSources { class: &self.class, folder: &folder, places };
-        ClassCollection::collect(&sources, &answers_to_companies, &mut |_, _| {}).expect("collected")
+        ClassCollection::collect(&sources, answers_to_companies, &mut |_, _| {}).expect("collected")
     }
 }
 

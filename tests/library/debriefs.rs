@@ -55,7 +55,7 @@ fn reference(play: &ReferencePlay) -> Vec<f64> {
         is_judged: true,
         asks_database: lesson.asks_database(),
     };
-    let session = play_part(&own, &answers_to_companies).expect("a play");
+    let session = play_part(&own, answers_to_companies).expect("a play");
     session.cash_by_day().to_vec()
 }
 

@@ -197,6 +197,68 @@ fn the_record_of_a_lesson_is_replayed_and_taken_up_again() {
 }
 
 #[test]
+fn a_company_that_goes_bankrupt_in_a_lesson_is_judged_before_the_end_and_once() {
+    for (operations, step) in [(100_000, 0), (45_000, 1)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut session = begin(folder.path());
+        let spend = json!({"operations": operations, "development": 0});
+        session.call("set_daily_spend", &spend, Via::Plain).expect("spending");
+        for own in 0..=step {
+            session.guess_in_lesson(1.0).expect("a guess");
+            for _ in 0..2 {
+                if session.ended().is_none() {
+                    week(&mut session).expect("a week");
+                }
+            }
+            assert_eq!(session.ended().is_some(), own == step, "{operations}");
+        }
+        assert_eq!(session.ended(), Some(Ended::Bankruptcy));
+        assert!(!session.day().is_multiple_of(7), "the cash runs out within a week");
+        let standing = session.lesson().expect("a lesson").clone();
+        let cash = session.weeks().last().expect("a week").cash;
+        assert_eq!(standing.outcome(step).expect("an outcome").met, (step == 1).then_some(false));
+        assert_eq!(standing.goals(step)[0].met, Some(false));
+        assert_eq!(standing.goals(step)[0].value, Some(cash));
+        assert_eq!(standing.pitfalls(), ["costly"]);
+        let (own, words) = (session.folder().expect("a folder").to_owned(), session.code_words());
+        drop(session);
+        let again = Session::open(&own, Access::Write, true).expect("it opens");
+        assert_eq!(again.lesson(), Some(&standing));
+        assert_eq!(again.code_words(), words);
+        assert!(!own.join("afterwards.jsonl").exists(), "nothing comes after the end");
+    }
+}
+
+#[test]
+fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path());
+    session.guess_in_lesson(1.0).expect("a guess");
+    week(&mut session).expect("a week");
+    week(&mut session).expect("a week");
+    let standing = session.lesson().expect("a lesson").clone();
+    let own = session.folder().expect("a folder").to_owned();
+    drop(session);
+    let path = own.join("trajectory.jsonl");
+    let text = std::fs::read_to_string(&path).expect("lines");
+    let lines: Vec<&str> = text.lines().collect();
+    let last_week = lines.iter().rposition(|line| line.contains("\"kind\":\"week\"")).expect("a week");
+    assert!(lines.len() - last_week > 3, "outcome, goal, a parameter and the next step follow");
+    for kept in last_week + 1..lines.len() {
+        std::fs::write(&path, lines[..kept].join("\n") + "\n").expect("written");
+        // The database had heard of the later lines only once they were there.
+        for entry in std::fs::read_dir(&own).expect("a folder").flatten() {
+            if entry.file_name().to_string_lossy().starts_with("world.db") {
+                std::fs::remove_file(entry.path()).expect("removed");
+            }
+        }
+        let again = Session::open(&own, Access::Write, true).expect("it opens");
+        assert_eq!(again.lesson(), Some(&standing), "{kept}");
+        assert_eq!(again.params().quality.base_product_quality, 0.4, "{kept}");
+    }
+}
+
+#[test]
 fn another_try_begins_where_the_step_began_and_is_counted() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path());

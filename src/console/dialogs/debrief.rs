@@ -1,20 +1,19 @@
 //! The page at the end of a lesson: the own curve of cash beside the good and the bad play, where they parted, what was guessed.
 
-use std::cell::Cell;
 use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
+use super::lesson::begin_part;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, centered};
 use crate::console::effect::Effect;
 use crate::console::lesson::{draw_lines, step_to_try};
-use crate::console::request::{LessonRequest, Request};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart};
+use crate::console::widgets::{Axis, Line, Scroll, Side, Unit, chart};
 use crate::report::debrief::{headline, in_words};
 use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::session::{Debrief, Refusal};
@@ -28,10 +27,7 @@ const BESIDE: (u16, u16) = (104, 20);
 #[derive(Default)]
 pub struct DebriefPage {
     found: Option<Arc<Result<Debrief, Refusal>>>,
-    /// First line that is shown.
-    from: usize,
-    /// The same as it was drawn: never beyond the end.
-    shown_from: Cell<usize>,
+    scroll: Scroll,
 }
 
 impl DebriefPage {
@@ -74,7 +70,6 @@ impl Dialog for DebriefPage {
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         let page = look.company.lesson.as_ref();
-        let from = self.shown_from.get();
         match action {
             Action::ToMenu => return Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::Close => return Outcome::close(),
@@ -86,19 +81,14 @@ impl Dialog for DebriefPage {
             }
             Action::NextPart => {
                 if let Some(part) = page.and_then(|page| page.next_part) {
-                    let asked = LessonRequest::BeginPart(part.saturating_sub(1) as usize);
-                    return Outcome::close_with(vec![Effect::Request(Request::Lesson(asked))]);
+                    return begin_part(part);
                 }
                 let text = "this was the last part of the lesson".to_owned();
                 return Outcome::with(vec![Effect::Complain(text)]);
             }
-            Action::Up => self.from = from.saturating_sub(1),
-            Action::Down => self.from = from + 1,
-            Action::PageUp => self.from = from.saturating_sub(look.page as usize),
-            Action::PageDown => self.from = from + look.page as usize,
-            Action::First => self.from = 0,
-            Action::Last => self.from = usize::MAX,
-            _ => {}
+            other => {
+                self.scroll.act(other, look.page as usize);
+            }
         }
         Outcome::stay()
     }
@@ -133,8 +123,7 @@ impl Dialog for DebriefPage {
         };
         draw_curves(canvas, curves, debrief);
         let lines = lines_of(debrief, words.width as usize);
-        let from = self.from.min(lines.len().saturating_sub(words.height as usize));
-        self.shown_from.set(from);
+        let from = self.scroll.within(lines.len().saturating_sub(words.height as usize));
         canvas.page = words.height.max(1);
         draw_lines(canvas, words, &lines, from);
     }

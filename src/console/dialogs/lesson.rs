@@ -1,7 +1,5 @@
 //! The page of a lesson: the whole task, the answer to its question, hints, another try.
 
-use std::cell::Cell;
-
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
@@ -14,8 +12,8 @@ use crate::console::request::{LessonRequest, Request};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::Field;
 use crate::console::widgets::field::parse_number;
+use crate::console::widgets::{Field, Scroll};
 use crate::report::lesson::is_share;
 use crate::session::{LessonPage, LessonQuestion};
 
@@ -25,10 +23,7 @@ const WIDEST: u16 = 84;
 /// The page.
 #[derive(Default)]
 pub struct LessonDialog {
-    /// First line that is shown.
-    from: usize,
-    /// The same as it was drawn: never beyond the end.
-    shown_from: Cell<usize>,
+    scroll: Scroll,
     /// The answer to the question, while it is given.
     answer: Option<AnswerField>,
     /// It was opened for the answer alone.
@@ -172,7 +167,7 @@ fn number(question: &LessonQuestion, text: &str) -> Option<f64> {
     }
 }
 
-fn begin_part(part: u32) -> Outcome {
+pub(super) fn begin_part(part: u32) -> Outcome {
     let asked = LessonRequest::BeginPart(part.saturating_sub(1) as usize);
     Outcome::close_with(vec![Effect::Request(Request::Lesson(asked))])
 }
@@ -202,12 +197,12 @@ impl Dialog for LessonDialog {
             return self.act_on_answer(action, question);
         }
         self.answer = None;
-        let (offered, from) = (self.keys(page).contains(&action), self.shown_from.get());
+        let offered = self.keys(page).contains(&action);
         match action {
             Action::LessonOn => return self.go_on(page),
             Action::AnswerQuestion if offered => self.answer = Some(AnswerField::default()),
             Action::NextHint if offered => {
-                self.from = usize::MAX;
+                self.scroll.show_end();
                 return Outcome::with(vec![Effect::Request(Request::Lesson(LessonRequest::Hint))]);
             }
             Action::NextHint => {
@@ -229,13 +224,9 @@ impl Dialog for LessonDialog {
             Action::TryAgain => return Outcome::with(vec![Effect::TryStepAgain(step_to_try(page))]),
             Action::LessonWeek => return Outcome::close_with(vec![Effect::Do(Action::NextWeek)]),
             Action::Cancel | Action::Close => return Outcome::close(),
-            Action::ScrollUp | Action::Up => self.from = from.saturating_sub(1),
-            Action::ScrollDown | Action::Down => self.from = from + 1,
-            Action::PageUp => self.from = from.saturating_sub(look.page as usize),
-            Action::PageDown => self.from = from + look.page as usize,
-            Action::First => self.from = 0,
-            Action::Last => self.from = usize::MAX,
-            _ => {}
+            other => {
+                self.scroll.act(other, look.page as usize);
+            }
         }
         Outcome::stay()
     }
@@ -295,8 +286,7 @@ impl Dialog for LessonDialog {
         let inside = canvas.pane(own, "Lesson", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.page = inside.height.max(1);
-        let from = self.from.min(lines.len().saturating_sub(inside.height as usize));
-        self.shown_from.set(from);
+        let from = self.scroll.within(lines.len().saturating_sub(inside.height as usize));
         draw_lines(canvas, inside, &lines, from);
         let cut = lines.len() > inside.height as usize;
         let keys = self.keys(page).into_iter().filter(|action| cut || *action != Action::ScrollDown);

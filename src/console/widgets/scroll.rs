@@ -15,17 +15,23 @@ pub struct Scroll {
 impl Scroll {
     /// Moves through the text by rows, by pages of so many rows, or to an end; true if the action does that.
     pub fn act(&mut self, action: Action, page: usize) -> bool {
+        let from = self.from.min(self.last.get());
         let to = match action {
-            Action::Up | Action::ScrollUp => self.from.saturating_sub(1),
-            Action::Down | Action::ScrollDown => self.from + 1,
-            Action::PageUp => self.from.saturating_sub(page),
-            Action::PageDown => self.from + page,
+            Action::Up | Action::ScrollUp => from.saturating_sub(1),
+            Action::Down | Action::ScrollDown => from + 1,
+            Action::PageUp => from.saturating_sub(page),
+            Action::PageDown => from + page,
             Action::First => 0,
             Action::Last => usize::MAX,
             _ => return false,
         };
         self.from = to.min(self.last.get());
         true
+    }
+
+    /// To the end, also of a text that is about to grow.
+    pub fn show_end(&mut self) {
+        self.from = usize::MAX;
     }
 
     /// The row to begin with where rows up to this one can stand first.
@@ -53,5 +59,9 @@ mod tests {
         assert!(!scroll.act(Action::Confirm, 8));
         scroll.act(Action::Last, 8);
         assert_eq!(scroll.within(3), 3, "the window has grown");
+        scroll.show_end();
+        assert_eq!(scroll.within(40), 40, "the text has grown");
+        scroll.act(Action::Up, 8);
+        assert_eq!(scroll.within(40), 39);
     }
 }

@@ -54,7 +54,7 @@ impl ClassCollection {
     /// The folder cannot be read or written, or the good play of the lesson cannot be played.
     pub fn collect(
         sources: &ClassSources<'_>,
-        answers: AnswersCompanies<'_>,
+        answers: AnswersCompanies,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<ClassCollection, RunError> {
         let lesson = sources.class.lesson_kept(sources.folder)?;

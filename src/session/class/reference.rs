@@ -25,7 +25,7 @@ pub struct ClassReference {
 pub(super) fn references(
     lesson: &Arc<Lesson>,
     runs: &[ClassRun],
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
 ) -> Result<Vec<ClassReference>, RunError> {
     let counted =
         runs.iter().filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
@@ -37,7 +37,7 @@ fn reference(
     lesson: &Arc<Lesson>,
     part: u32,
     seed: u64,
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
 ) -> Result<ClassReference, RunError> {
     let play = PartPlay {
         lesson,

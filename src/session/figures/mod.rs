@@ -5,6 +5,7 @@ pub(in crate::session) mod attendance;
 pub(in crate::session) mod attended_week;
 pub(in crate::session) mod best_channels;
 pub(in crate::session) mod booked;
+pub(in crate::session) mod capacity_by_usage;
 pub(in crate::session) mod changes;
 pub(in crate::session) mod churn;
 pub(in crate::session) mod dashboard;

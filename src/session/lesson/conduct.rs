@@ -52,9 +52,6 @@ impl LessonEntry {
     }
 }
 
-/// Share of the capacity that usage is to take where capacity follows it.
-const UTILISATION: f64 = 0.8;
-
 impl Session {
     /// Where the student stands in the lesson that this run belongs to; none where it belongs to none.
     pub fn lesson(&self) -> Option<&LessonStanding> {
@@ -67,7 +64,8 @@ impl Session {
         standing.own_part().step_after(self.weeks_passed()).filter(|_| self.history.ended.is_none())
     }
 
-    fn weeks_passed(&self) -> u32 {
+    /// Whole weeks that have passed.
+    pub(super) fn weeks_passed(&self) -> u32 {
         self.simulation.world.day / self.simulation.params.run.days_per_week
     }
 
@@ -101,7 +99,14 @@ impl Session {
             });
         }
         self.lesson = Some(Box::new(LessonStanding::of(Arc::new(lesson), part - 1, lines)));
-        if self.recorder.is_some() {
+        // The program may have ended between a week and what it came to.
+        let is_open = |line: &Line| {
+            matches!(
+                line.record,
+                Record::Week(_) | Record::Override(_) | Record::Activity(Activity::Lesson(_))
+            )
+        };
+        if self.recorder.is_some() && lines.last().is_some_and(is_open) {
             self.settle_lesson();
         }
         Ok(())
@@ -219,48 +224,33 @@ impl Session {
         self.call(ToolId::SetCapacityTier, &json!({ "tier": next }), Via::Lesson).map(|_| ())
     }
 
-    /// The capacity tier one step towards the smallest that holds the mean use of the last week.
-    pub fn capacity_towards_usage(&self) -> u8 {
-        let now = self.simulation.world.settings.core.capacity_tier;
-        let mean =
-            self.history.weeks.last().map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
-        let tiers = &self.simulation.params.capacity_tier;
-        let holds =
-            |tier: &&crate::world::params::CapacityTier| f64::from(tier.capacity_units) >= mean / UTILISATION;
-        let target = tiers.iter().find(holds).or(tiers.last()).map_or(now, |tier| tier.tier);
-        match now.cmp(&target) {
-            std::cmp::Ordering::Less => now + 1,
-            std::cmp::Ordering::Equal => now,
-            std::cmp::Ordering::Greater => now - 1,
-        }
-    }
-
-    /// Judges what a week came to, once. A step that is over is measured and the next begins; after the last one the run is
-    /// over.
+    /// Judges what a week came to, before the line that ends the run. A step that is over is measured and the next begins;
+    /// after the last one the run is over. What is judged already stays as it is.
     pub(in crate::session) fn settle_lesson(&mut self) {
-        let Some(standing) = self.lesson.as_deref().cloned() else { return };
-        let weeks = self.weeks_passed();
-        let ended = self.history.ended.is_some();
+        let is_open = self.history.ended.is_none();
+        let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
+        let is_over = self.simulation.world.is_over(&self.simulation.params);
+        // A week in which the cash ran out counts.
+        let weeks = self.simulation.world.day.div_ceil(self.simulation.params.run.days_per_week);
         let part = standing.own_part();
-        let Some(step) = part.step_after(weeks.saturating_sub(1)).filter(|step| standing.has_begun(*step))
+        let step = part.step_after(weeks.saturating_sub(1));
+        let Some(step) = step.filter(|step| standing.has_begun(*step) && !standing.has_begun(step + 1))
         else {
             return;
         };
         if standing.is_judged {
-            self.note_pitfalls(&standing, step);
+            // Statements are to see the week.
+            self.commit_projection();
+            self.note_pitfalls(&standing, step, weeks);
         }
         let (begin, end) = part.weeks_of(step);
-        if (weeks < end && !ended)
-            || standing.has_begun(step + 1)
-            || !standing.goals(step).is_empty()
-            || standing.outcome(step).is_some()
-        {
+        if weeks < end && !is_over {
             return;
         }
         if standing.is_judged {
             self.judge(&standing, step, begin);
         }
-        if self.history.ended.is_some() {
+        if is_over {
             return;
         }
         match part.steps.get(step + 1) {
@@ -269,17 +259,16 @@ impl Session {
             }
             None => {
                 self.close_run(Ended::Lesson);
-                self.commit_projection();
             }
         }
     }
 
-    fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize) {
+    fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize, weeks: u32) {
         let met = standing.pitfalls();
         let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
         let looked: Vec<_> = standing.lesson.plan.pitfalls.iter().filter(own).cloned().collect();
         let days = self.simulation.params.run.days_per_week;
-        let from = self.weeks_passed().saturating_sub(1) * days;
+        let from = weeks.saturating_sub(1) * days;
         for pitfall in looked {
             let Ok(Some(value)) = pitfall.measurement.of(self, from) else { continue };
             let (is_met, bound) = match pitfall.bound {
@@ -299,7 +288,7 @@ impl Session {
     fn judge(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
         let from = begin * self.simulation.params.run.days_per_week;
-        if let Some(guess) = &own.guess {
+        if let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(step).is_none()) {
             let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
             let note = match &guess.form {
                 GuessForm::Number { outcome, .. } => {
@@ -313,15 +302,14 @@ impl Session {
             };
             let _ = self.note_lesson(note);
         }
-        for (number, goal) in own.goals.iter().enumerate() {
+        let judged = standing.goals(step).len();
+        let good = self.good_play_values(standing, step);
+        for (number, goal) in own.goals.iter().enumerate().skip(judged) {
             let value = goal.measurement.of(self, from).ok().flatten();
             let (bound, most) = match goal.bound {
                 GoalBound::AtLeast(bound) => (Some(bound), false),
                 GoalBound::AtMost(bound) => (Some(bound), true),
-                GoalBound::OfGoodPlay(share) => {
-                    let good = self.good_play_value(standing, step, number);
-                    (good.map(|good| share * good), false)
-                }
+                GoalBound::OfGoodPlay(share) => (good[number].map(|good| share * good), false),
             };
             let reached = |value: f64, bound: f64| if most { value <= bound } else { value >= bound };
             let met = value.zip(bound).is_some_and(|(value, bound)| reached(value, bound));

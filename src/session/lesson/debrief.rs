@@ -6,18 +6,15 @@
 use std::thread;
 
 use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::definition::{CapacityMover, GoalBound, LessonGoal, ScheduledCalls};
+use super::definition::{CapacityMover, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
-use super::reference::{PartPlay, play_part_watched};
+use super::reference::{AnswersCompanies, PartPlay, play_part_watched};
 use super::standing::LessonStanding;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
 use crate::tools::{Refusal, ToolId};
-
-/// What rules would have the companies that wait be told, from any thread.
-pub type RulesAnswer = fn(&str, &mut Session) -> Result<Vec<(ToolId, serde_json::Value)>, Refusal>;
 
 /// A part of a lesson that was played: what its debrief is found from.
 #[derive(Debug, Clone)]
@@ -187,7 +184,7 @@ struct Played {
 impl PlayedPart {
     /// The debrief. The part is played again four times, in memory; companies are answered by rules where a reference play
     /// says so.
-    pub fn debrief(&self, answers: RulesAnswer) -> Debrief {
+    pub fn debrief(&self, answers: AnswersCompanies) -> Debrief {
         let plan = &self.standing.lesson.plan;
         let [good, bad, own] = thread::scope(|scope| {
             let plays = [&plan.good.plays, &plan.bad.plays, &self.own];
@@ -222,7 +219,7 @@ impl PlayedPart {
         }
     }
 
-    fn play(&self, calls: &[ScheduledCalls], answers: RulesAnswer) -> Option<Played> {
+    fn play(&self, calls: &[ScheduledCalls], answers: AnswersCompanies) -> Option<Played> {
         let play = PartPlay {
             lesson: &self.standing.lesson,
             part: self.standing.part,
@@ -234,12 +231,12 @@ impl PlayedPart {
         };
         let mut weeks = Vec::new();
         let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
-        let played = play_part_watched(&play, &answers, &mut watch).ok()?;
+        let played = play_part_watched(&play, answers, &mut watch).ok()?;
         Some(Played { cash_by_day: played.cash_by_day().to_vec(), weeks })
     }
 
     /// The own decisions beside those of the good play.
-    fn compared(&self, good: &Played, own: &Played, answers: RulesAnswer) -> DecisionComparison {
+    fn compared(&self, good: &Played, own: &Played, answers: AnswersCompanies) -> DecisionComparison {
         if own.cash_by_day != self.cash_by_day {
             return DecisionComparison::Unknown;
         }
@@ -294,16 +291,7 @@ impl LessonStanding {
     pub(super) fn came_to(&self, step: usize) -> Option<DebriefStep> {
         let own = self.step(step)?;
         let judged = self.goals(step);
-        let page = |(at, goal): (usize, &LessonGoal)| {
-            let note = judged.get(at);
-            GoalPage {
-                text: self.lesson.filled(&goal.text),
-                value: note.and_then(|note| note.value),
-                bound: note.and_then(|note| note.bound),
-                wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
-                met: note.and_then(|note| note.met),
-            }
-        };
+        let page = |(at, goal): (usize, &LessonGoal)| self.goal_page(goal, judged.get(at).copied());
         Some(DebriefStep {
             title: own.title.clone(),
             tries: self.tries(step),

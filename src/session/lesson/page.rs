@@ -1,7 +1,7 @@
 //! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
 
 use super::debrief::DebriefStep;
-use super::definition::{ForecastsAsked, GoalBound, GuessForm, RationaleAsked};
+use super::definition::{ForecastsAsked, GoalBound, GuessForm, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
 use crate::session::state::Session;
 use crate::session::trajectory::record::LessonNote;
@@ -89,7 +89,7 @@ impl Session {
         let step = going.unwrap_or_else(|| standing.last_begun());
         let own = part.steps.get(step)?;
         let (begin, end) = part.weeks_of(step);
-        let passed = (self.day() / self.params().run.days_per_week).clamp(begin, end) - begin;
+        let passed = self.weeks_passed().clamp(begin, end) - begin;
         let plan = &standing.lesson.plan;
         let filled = |text: &String| standing.lesson.filled(text);
         let next_part = (standing.part as u32 + 2, plan.parts.len() as u32);
@@ -126,27 +126,33 @@ impl Session {
     ) -> Vec<GoalPage> {
         let from = begin * self.params().run.days_per_week;
         let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
-        let judged: Vec<LessonNote> = standing.goals(step).into_iter().cloned().collect();
-        let page = |(at, goal): (usize, super::definition::LessonGoal)| {
-            let note = judged.get(at);
-            let value = match note {
-                Some(note) => note.value,
-                None if passed == 0 => None,
-                None => goal.measurement.of(self, from).ok().flatten(),
-            };
-            let bound = match goal.bound {
-                GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
-                GoalBound::OfGoodPlay(_) => note.and_then(|note| note.bound),
-            };
-            GoalPage {
-                text: standing.lesson.filled(&goal.text),
-                value,
-                bound,
-                wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
-                met: note.and_then(|note| note.met),
-            }
+        let judged = standing.goals(step);
+        let page = |(at, goal): (usize, LessonGoal)| {
+            let note = judged.get(at).copied();
+            let page = standing.goal_page(&goal, note);
+            // What is not judged yet stands where the weeks so far have brought it.
+            let is_open = note.is_none() && passed > 0;
+            let so_far = is_open.then(|| goal.measurement.of(self, from).ok().flatten()).flatten();
+            GoalPage { value: page.value.or(so_far), ..page }
         };
         goals.into_iter().enumerate().map(page).collect()
+    }
+}
+
+impl LessonStanding {
+    /// A goal, and what it came to if it is judged.
+    pub(super) fn goal_page(&self, goal: &LessonGoal, judged: Option<&LessonNote>) -> GoalPage {
+        let stated = match goal.bound {
+            GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
+            GoalBound::OfGoodPlay(_) => None,
+        };
+        GoalPage {
+            text: self.lesson.filled(&goal.text),
+            value: judged.and_then(|note| note.value),
+            bound: stated.or(judged.and_then(|note| note.bound)),
+            wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
+            met: judged.and_then(|note| note.met),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::conduct::LessonEntry;
-use super::definition::ScheduledCalls;
+use super::definition::{GoalBound, GuessForm, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
@@ -18,7 +18,7 @@ use crate::session::trajectory::record::Via;
 use crate::tools::{Refusal, ToolId};
 
 /// What rules would have the companies that wait be told.
-pub type AnswersCompanies<'a> = &'a dyn Fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
+pub type AnswersCompanies = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
 
 /// A play of a part that is done by its file.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +51,7 @@ impl PartPlay<'_> {
 ///
 /// # Errors
 /// The part cannot begin, or a call is refused.
-pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies<'_>) -> Result<Session, RunError> {
+pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies) -> Result<Session, RunError> {
     play_through(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
 }
 
@@ -61,7 +61,7 @@ pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies<'_>) -> Result<S
 /// The same, and those of the one who is told.
 pub fn play_part_telling(
     play: &PartPlay<'_>,
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
     tell: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
     play_through(play, answers, &mut |_| {}, tell)
@@ -73,7 +73,7 @@ pub fn play_part_telling(
 /// The part cannot begin, or a call is refused.
 pub(super) fn play_part_watched(
     play: &PartPlay<'_>,
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
     watch: &mut dyn FnMut(&Session),
 ) -> Result<Session, RunError> {
     play_through(play, answers, watch, &mut |_, _| Ok(()))
@@ -81,7 +81,7 @@ pub(super) fn play_part_watched(
 
 fn play_through(
     play: &PartPlay<'_>,
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
     watch: &mut dyn FnMut(&Session),
     tell: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
@@ -114,7 +114,7 @@ fn play_week(
     session: &mut Session,
     play: &PartPlay<'_>,
     week: u32,
-    answers: AnswersCompanies<'_>,
+    answers: AnswersCompanies,
     watch: &mut dyn FnMut(&Session),
 ) -> Result<(), Refusal> {
     let due = play.plays.iter().filter(|own| own.are_due(play.part, week));
@@ -146,8 +146,8 @@ impl Lesson {
         let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
         let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
         let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
-            super::definition::GuessForm::Number { outcome, .. } => Some(outcome),
-            super::definition::GuessForm::Choice { .. } => None,
+            GuessForm::Number { outcome, .. } => Some(outcome),
+            GuessForm::Choice { .. } => None,
         });
         let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
         goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
@@ -155,24 +155,30 @@ impl Lesson {
 }
 
 impl Session {
-    /// What the good play has for a goal of a step on the seed of this run; none where it cannot be played.
-    pub(super) fn good_play_value(&self, standing: &LessonStanding, step: usize, goal: usize) -> Option<f64> {
+    /// What the good play has on the seed of this run for the goals of a step that are relative to it; none for the others,
+    /// and where it cannot be played.
+    pub(super) fn good_play_values(&self, standing: &LessonStanding, step: usize) -> Vec<Option<f64>> {
         let part = standing.own_part();
-        let own = &standing.lesson.plan.good;
+        let relative = |goal: &LessonGoal| matches!(goal.bound, GoalBound::OfGoodPlay(_));
+        let goals = part.steps.get(step).map(|own| own.goals.as_slice()).unwrap_or_default();
         let (begin, end) = part.weeks_of(step);
         let play = PartPlay {
             lesson: &standing.lesson,
             part: standing.part,
             seed: Some(self.manifest.seed),
-            plays: &own.plays,
+            plays: &standing.lesson.plan.good.plays,
             weeks: Some(end),
             // Its own goals would ask for the good play again.
             is_judged: false,
-            asks_database: part.steps.get(step)?.goals.get(goal)?.measurement.needs_database(),
+            asks_database: goals.iter().any(|goal| relative(goal) && goal.measurement.needs_database()),
         };
-        let measurement = &part.steps.get(step)?.goals.get(goal)?.measurement;
         let refuses = |_: &str, _: &mut Session| Err(Refusal::new("not_possible", "no rules"));
-        let mut played = play_part(&play, &refuses).ok()?;
-        measurement.of(&mut played, begin * self.simulation.params.run.days_per_week).ok().flatten()
+        let mut played = goals.iter().any(relative).then(|| play_part(&play, refuses)).and_then(Result::ok);
+        let from = begin * self.simulation.params.run.days_per_week;
+        let mut value = |goal: &LessonGoal| {
+            let played = played.as_mut().filter(|_| relative(goal))?;
+            goal.measurement.of(played, from).ok().flatten()
+        };
+        goals.iter().map(&mut value).collect()
     }
 }

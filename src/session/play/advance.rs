@@ -127,9 +127,7 @@ impl Session {
         let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
         self.history.calculated = calculated;
         self.file(text, &forecasts, &at);
-        let week = self.run_week(progress);
-        self.settle_lesson();
-        Ok(Week { ended: self.history.ended, ..week })
+        Ok(self.run_week(progress))
     }
 
     /// Simulates single days of a debug run, at most to the end of the week.
@@ -253,8 +251,9 @@ impl Session {
         let is_week = matches!(record, Record::Week(_));
         let mut problem = self.append_done(&record);
         self.simulation.facts_chain.close();
-        problem = problem.or_else(|| self.close_if_over());
         self.closing_line.clone_from(&self.position.line_hash);
+        self.settle_lesson();
+        problem = problem.or_else(|| self.close_if_over());
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
@@ -291,7 +290,9 @@ impl Session {
     pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.history.ended = Some(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
-        self.append_done(&Record::End(end))
+        let problem = self.append_done(&Record::End(end));
+        self.closing_line.clone_from(&self.position.line_hash);
+        problem
     }
 
     /// What a line says that closes days: what a replay has to arrive at.

@@ -123,7 +123,7 @@ pub(in crate::session) fn branch_of_lesson(
     let lines = before(trajectory, day);
     let is_of_lesson =
         |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
-    let start = start_of_lesson(&trajectory.lines[lines.len()..], day);
+    let start = before_step(&trajectory.lines[lines.len()..], day);
     let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).chain(start).collect();
     let manifest = Manifest {
         id: new_id(),
@@ -136,14 +136,17 @@ pub(in crate::session) fn branch_of_lesson(
     UnnamedBranch::write(folder, &manifest, &shared).and_then(UnnamedBranch::name).map_err(not_saved)
 }
 
-/// The calls of the lesson on the day on which its first step begins: they come before what the student decides.
-fn start_of_lesson(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
+/// What the lesson does on the day on which a step begins, before it does: the calls of its start, and what the step before
+/// came to.
+fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
         _ => false,
     };
-    let is_of_lesson =
-        |line: &&Line| line.record.accepted_call().is_some_and(|(call, _)| call.via == Via::Lesson);
+    let is_of_lesson = |line: &&Line| match &line.record {
+        Record::Activity(Activity::Lesson(_)) => true,
+        record => record.accepted_call().is_some_and(|(call, _)| call.via == Via::Lesson),
+    };
     lines.iter().take_while(move |line| line.day == day && !begins(line)).filter(is_of_lesson)
 }
 

@@ -113,8 +113,8 @@ impl Session {
         session.clock = PersonalClock::of(&trajectory);
         session.viewed = trajectory.lines.iter().filter_map(view).collect();
         session.check_memo(&trajectory, access);
-        session.finish_week(&trajectory);
         session.resume_lesson(folder, &trajectory.lines)?;
+        session.finish_week(&trajectory);
         Ok(session)
     }
 

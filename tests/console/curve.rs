@@ -1,30 +1,17 @@
 //! The curve explorer: its pictures, what is dragged, and that only a look inside is recorded as one.
 
-use std::fmt::Write;
 use std::path::Path;
 
-use novamind::session::{
-    Activity, Configuration, Goal, Mode, NewRun, Record, Session, Storage, Trajectory, lines_afterwards,
-    verify,
-};
+use novamind::session::{Goal, Mode, Record, Session, lines_afterwards, verify};
 
 use super::harness::Console;
-use super::looks::cut_with_room;
+use super::looks::{SIZES, picture};
 use super::replay::replayed;
-use crate::support::company::{open_shop, weeks};
-
-/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
-const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
+use crate::support::company::{begin_run, open_shop, weeks};
+use crate::support::record::{folder_of, looks, recorded};
 
 fn run(runs: &Path, mode: Mode, count: usize) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(84),
-        mode,
-        storage: Storage::Runs(runs.to_owned()),
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = begin_run(runs, mode, 84);
     open_shop(&mut session);
     weeks(&mut session, count);
     session
@@ -33,38 +20,6 @@ fn run(runs: &Path, mode: Mode, count: usize) -> Session {
 fn in_run(runs: &Path, mode: Mode) -> Console {
     drop(run(runs, mode, 3));
     Console::in_latest_run(runs, SIZES[2])
-}
-
-fn folder_of(runs: &Path) -> std::path::PathBuf {
-    let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
-    folders.filter(|path| path.is_dir()).max().expect("a run")
-}
-
-/// What was looked at, in the order of the lines.
-fn looks(lines: &Trajectory) -> Vec<String> {
-    let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
-            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
-        }
-        _ => None,
-    };
-    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
-}
-
-fn recorded(folder: &Path) -> Trajectory {
-    Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines")
-}
-
-fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
-    let mut text = String::new();
-    for size in SIZES {
-        console.size = size;
-        let letters = console.screen();
-        complaints.extend(cut_with_room(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
-        writeln!(text, "{}×{}\n{letters}", size.0, size.1).expect("text");
-    }
-    console.size = SIZES[2];
-    text
 }
 
 #[test]

@@ -7,12 +7,9 @@ use novamind::session::{Goal, Mode, Session};
 use serde_json::json;
 
 use super::harness::Console;
-use super::looks::cut_with_room;
+use super::looks::{SIZES, cut_with_room};
 use super::replay::{played, replayed};
 use crate::support::company::{call, weeks};
-
-/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
-const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
 /// A run of four weeks, a branch that left in week 3 and was decided otherwise, and a branch of that one; their ids.
 fn family(runs: &Path) -> [String; 3] {

@@ -5,6 +5,7 @@ use std::path::Path;
 use novamind::session::{Access, Configuration, Session, find_run};
 
 use super::harness::Console;
+use super::looks;
 
 /// A window with the task beside the screen, and one in which it is a page.
 const WIDE: (u16, u16) = (120, 40);
@@ -150,19 +151,11 @@ fn a_guess_and_hints_outlive_the_program() {
     assert!(find_run(&runs, "latest").is_ok());
 }
 
-/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
-const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
-
 /// Takes a picture of what is shown, in windows of all sizes.
 fn picture(console: &mut Console, place: &str) {
-    let usual = console.size;
-    let mut text = String::new();
-    for size in SIZES {
-        console.size = size;
-        text += &format!("{}×{}\n{}\n", size.0, size.1, console.screen());
-    }
-    console.size = usual;
-    insta::assert_snapshot!(format!("lesson-{place}"), text);
+    let mut complaints = Vec::new();
+    insta::assert_snapshot!(format!("lesson-{place}"), looks::picture(console, &mut complaints));
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
 #[test]

@@ -1,5 +1,26 @@
 //! What can be checked of looks without eyes: words that are cut although there is room, halves that stay empty.
 
+use std::fmt::Write;
+
+use super::harness::Console;
+
+/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
+pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
+
+/// The screen in windows of these sizes; what is cut although there is room joins the complaints. Its own size stays.
+pub fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
+    let own = console.size;
+    let mut text = String::new();
+    for size in SIZES {
+        console.size = size;
+        let letters = console.screen();
+        complaints.extend(cut_with_room(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
+        writeln!(text, "{}×{}\n{letters}", size.0, size.1).expect("text");
+    }
+    console.size = own;
+    text
+}
+
 /// Blanks behind a cut word that are room, not the gap between two columns.
 const GAP: usize = 4;
 

@@ -3,22 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use novamind::console::request::Recorded;
-use novamind::session::{Configuration, Goal, Mode, NewRun, Session, Storage, Via, list_runs, verify};
+use novamind::session::{Goal, Mode, Session, Via, list_runs, verify};
 use serde_json::json;
 
 use super::harness::Console;
+use crate::support::company::begin_run;
 use crate::support::dice::Dice;
 
 /// A person plays some weeks of a short run; who has it open may go on.
 pub fn played(runs: &Path, mode: Mode, weeks: u32) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(84),
-        mode,
-        storage: Storage::Runs(runs.to_owned()),
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = begin_run(runs, mode, 84);
     let mut call = |tool: &str, args: serde_json::Value| {
         session.call(tool, &args, Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     };

@@ -2,22 +2,14 @@
 
 use std::path::Path;
 
-use novamind::session::{Configuration, Mode, NewRun, Session, Storage};
+use novamind::session::Mode;
 
 use super::harness::Console;
-use crate::support::company::{call, open_shop, week, weeks};
+use crate::support::company::{begin_run, call, open_shop, week, weeks};
 
 /// A console in a run of ten weeks, of which the last had dearer plans.
 fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(84),
-        mode,
-        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
-        storage: Storage::Runs(runs.to_owned()),
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = begin_run(runs, mode, 84);
     open_shop(&mut session);
     weeks(&mut session, 9);
     call(&mut session, "set_prices", serde_json::json!({"A": 30, "B": 60}));

@@ -1,33 +1,10 @@
 //! The curve explorer line by line: who is told what, and what a look leaves behind.
 
-use novamind::session::{
-    Activity, Configuration, Mode, NewRun, Record, Session, Storage, Trajectory, lines_afterwards,
-};
+use novamind::session::{Mode, Trajectory, lines_afterwards};
 use novamind::world::identifiers::Group;
 
-use crate::support::company::{open_shop, week};
-
-fn run_in(folder: &std::path::Path, mode: Mode) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(28),
-        mode,
-        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
-        storage: Storage::Runs(folder.to_owned()),
-        ..NewRun::default()
-    };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
-}
-
-fn looks(lines: &Trajectory) -> Vec<String> {
-    let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
-            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
-        }
-        _ => None,
-    };
-    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
-}
+use crate::support::company::{begin_run, open_shop, week};
+use crate::support::record::looks;
 
 #[test]
 fn unfinished_runs_are_told_of_studies_and_runs_that_are_over_of_the_truth() {
@@ -35,7 +12,7 @@ fn unfinished_runs_are_told_of_studies_and_runs_that_are_over_of_the_truth() {
     let s1 = Group::parse("S1").expect("a group");
     let unknown = Group::parse("D_S05").expect("a group");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
-        let mut session = run_in(folder.path(), mode);
+        let mut session = begin_run(folder.path(), mode, 28);
         open_shop(&mut session);
         week(&mut session);
         let place = session.folder().expect("a folder").to_owned();

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use novamind::session::{
-    Activity, Configuration, DrawnPart, Mode, NewRun, Record, Refusal, Session, Storage, Trajectory, Via,
-    lines_afterwards, verify,
+    Configuration, DrawnPart, Mode, NewRun, Refusal, Session, Storage, Trajectory, Via, lines_afterwards,
+    verify,
 };
 use novamind::world::identifiers::Group;
 use serde_json::json;
 
 use crate::support::company::{open_shop, week, weeks};
+use crate::support::record::looks;
 
 fn run_in(folder: &Path, mode: Mode) -> Session {
     let new = NewRun {
@@ -36,16 +37,6 @@ fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(),
         session.rival_state(day).map(drop),
         session.drift_state(day).map(drop),
     ]
-}
-
-fn looks(lines: &Trajectory) -> Vec<String> {
-    let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
-            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
-        }
-        _ => None,
-    };
-    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
 }
 
 #[test]

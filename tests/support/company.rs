@@ -1,6 +1,8 @@
 //! A company that is run through the library: calls, weeks, and what its database says.
 
-use novamind::session::{Cell, Session, Via, Week};
+use std::path::Path;
+
+use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Storage, Via, Week};
 use serde_json::{Value, json};
 
 /// Calls a tool that has to accept.
@@ -8,6 +10,20 @@ use serde_json::{Value, json};
 pub fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
     let answer = session.call(tool, &arguments, Via::Script);
     answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
+}
+
+/// Begins a run of seed 7 and of so many days in a folder of runs.
+#[track_caller]
+pub fn begin_run(runs: &Path, mode: Mode, days: u32) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(days),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the run begins")
 }
 
 /// Opens shop as a sensible beginner would.

@@ -6,3 +6,4 @@ pub mod dice;
 pub mod forging;
 pub mod home;
 pub mod python;
+pub mod record;

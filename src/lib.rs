@@ -15,7 +15,7 @@
 //!
 //! The simulator is a package of its own; the others are modules of this one.
 //!
-//! `notation` writes and reads numbers for all of them, `shipped` holds scenarios, lessons, themes and policies. Arrows point down only; houses on one floor never import each
+//! `notation` writes and reads numbers for all of them, `statistics` tells a few of them, `shipped` holds scenarios, lessons, themes and policies. Arrows point down only; houses on one floor never import each
 //! other; the upper floors use nothing of `world` but plain identifiers, except `lab`, which works on debug runs and
 //! reads the x-ray. `tests/tidy` holds this true.
 //!
@@ -57,6 +57,7 @@ pub mod report;
 pub mod rules;
 pub mod session;
 pub(crate) mod shipped;
+pub(crate) mod statistics;
 pub mod tools;
 pub mod voice;
 

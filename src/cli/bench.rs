@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use super::run::progress_bar;
 use super::{Context, Failure, print};
 use crate::lab::bench::{Bench, BenchFigure, CASES, Case, Samples, Unit, Verdict, calibrate};
-use crate::lab::median;
 use crate::notation::grouped;
+use crate::statistics::median;
 
 /// Options of `bench`.
 #[derive(Debug, Args)]

@@ -88,6 +88,19 @@ impl From<lab::GoldenError> for Failure {
     }
 }
 
+impl From<lab::experiment::ExperimentError> for Failure {
+    fn from(error: lab::experiment::ExperimentError) -> Failure {
+        use lab::experiment::ExperimentError::{Run, Stopped, Store};
+        let message = error.to_string();
+        match error {
+            Run { error, .. } => Failure { message, ..error.into() },
+            Store { .. } => Failure::failed(message),
+            // As a shell counts ctrl-c.
+            Stopped { .. } => Failure { code: 130, message },
+        }
+    }
+}
+
 impl From<lab::RunError> for Failure {
     fn from(error: lab::RunError) -> Failure {
         match error {

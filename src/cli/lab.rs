@@ -2,8 +2,10 @@
 
 mod comparison;
 mod difference;
+mod experiments;
 mod forecasts;
 mod metrics;
+mod output;
 
 use std::path::{Path, PathBuf};
 

@@ -265,6 +265,14 @@ impl Context {
         })
     }
 
+    /// Folder in which the laboratory keeps what it has played: beside the runs, where no list of runs shows it.
+    ///
+    /// # Errors
+    /// As [`Context::runs`].
+    pub fn laboratory(&self) -> Result<PathBuf, Failure> {
+        Ok(self.base_of_runs()?.join(".lab"))
+    }
+
     /// Folder of the runs.
     ///
     /// # Errors

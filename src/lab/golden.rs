@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::metrics::Figure;
-use super::statistics::{Sample, median};
+use crate::statistics::{Sample, median};
 
 /// A cell: figure, group, checkpoint day.
 type Cell = (String, String, u32);

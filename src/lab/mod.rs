@@ -8,6 +8,8 @@ pub mod bench;
 pub(crate) mod comparison;
 #[cfg(test)]
 mod example_tests;
+pub mod exhibit;
+pub mod experiment;
 mod forecasts;
 mod golden;
 mod lesson_check;
@@ -15,7 +17,6 @@ mod metrics;
 mod policy;
 mod routine;
 mod runner;
-mod statistics;
 mod symbols;
 
 pub use crate::rules::answers_to_companies;
@@ -28,4 +29,3 @@ pub use lesson_check::{
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
-pub use statistics::{Sample, median};

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::metrics::Collector;
@@ -12,7 +12,8 @@ use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
 use crate::session::{
-    Configuration, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via, WeekFigures,
+    Configuration, DayReport, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
+    WeekFigures,
 };
 use crate::tools::ToolId;
 
@@ -57,7 +58,7 @@ impl RunSpec {
 }
 
 /// How a run of a policy ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunEnd {
     /// On its last day.
@@ -185,14 +186,31 @@ pub(super) fn play_session(
     configuration: &Configuration,
     collector: &mut Collector,
 ) -> Result<Session, RunError> {
-    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
-    let until = spec.until.unwrap_or(u32::MAX);
-    while session.ended().is_none() && session.day() < until {
-        decide(policy, spec.seed, &mut session)?;
-        advance(policy, spec.seed, until, &mut session, collector)?;
-    }
+    let mut watch = |report: &DayReport<'_>| collector.day(report);
+    let mut session = play_while(&|| true, policy, spec, configuration, &mut watch)?;
     session.save().map_err(RunError::Start)?;
     Ok(session)
+}
+
+/// The same, seen day by day and as long as it is to go on after a week; it is not saved.
+pub(super) fn play_while(
+    goes_on: &dyn Fn() -> bool,
+    policy: &Policy,
+    spec: &RunSpec,
+    configuration: &Configuration,
+    watch: &mut dyn FnMut(&DayReport<'_>),
+) -> Result<Session, RunError> {
+    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
+    while !is_over(&session, spec) && goes_on() {
+        decide(policy, spec.seed, &mut session)?;
+        advance(policy, spec.seed, spec.until.unwrap_or(u32::MAX), &mut session, watch)?;
+    }
+    Ok(session)
+}
+
+/// Whether a run is where it was to end.
+pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
+    session.ended().is_some() || spec.until.is_some_and(|until| session.day() >= until)
 }
 
 /// The run a policy asks for.
@@ -267,15 +285,14 @@ fn advance(
     seed: u64,
     until: u32,
     session: &mut Session,
-    collector: &mut Collector,
+    watch: &mut dyn FnMut(&DayReport<'_>),
 ) -> Result<(), RunError> {
     let day = session.day();
-    let mut watch = |report: &crate::session::DayReport<'_>| collector.day(report);
     let ran = if until < session.next_decision_day() {
-        session.step(until - day, &mut watch)
+        session.step(until - day, watch)
     } else {
         let forecasts = session.naive_forecasts();
-        session.advance(&format!("policy {}", policy.name), &forecasts, Via::Policy, &mut watch)
+        session.advance(&format!("policy {}", policy.name), &forecasts, Via::Policy, watch)
     };
     ran.map(|_| ()).map_err(|refusal| RunError::Refused {
         seed,
@@ -285,7 +302,8 @@ fn advance(
     })
 }
 
-fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
+/// What became of a run that took so long.
+pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
     let seen = session.observe();
     Outcome {
         seed,

@@ -1,9 +1,10 @@
-//! Charts as SVG that stands inside a page: colours come from the page's style, names and summaries are part of it.
+//! Charts as SVG: inside a page, whose style gives the colours, or as a file that stands alone. Names and summaries are part of it.
 
 use std::fmt::Write;
 
 use super::html::escaped;
 use super::page::{Band, Chart, Curve, Part, Plot};
+use super::plot::AxisScale;
 use super::words::{dollar_tick, money, tick, whole};
 
 const WIDTH: f64 = 760.0;
@@ -16,11 +17,32 @@ const LEGEND_ROW: f64 = 20.0;
 /// About the width of a letter of the legend.
 const LETTER: f64 = 6.6;
 
-/// A range of values with round steps.
+/// How the values of a chart are placed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axes {
+    /// On the axis below.
+    pub across: AxisScale,
+    /// On the axis to the left.
+    pub up: AxisScale,
+}
+
+/// What the charts of reports have: weeks or days across.
+const OF_REPORTS: Axes = Axes { across: AxisScale::Whole, up: AxisScale::Linear };
+
+/// A chart of a drawing that stands alone.
+pub struct ChartPart {
+    /// The chart.
+    pub chart: Chart,
+    /// Its axes.
+    pub axes: Axes,
+}
+
+/// A range of values with round steps; on a logarithmic axis, of their logarithms.
 pub(super) struct Scale {
     pub(super) from: f64,
     pub(super) to: f64,
     step: f64,
+    kind: AxisScale,
 }
 
 impl Scale {
@@ -39,17 +61,45 @@ impl Scale {
         if round_ends {
             (from, to) = ((from / step + 1e-9).floor() * step, (to / step - 1e-9).ceil() * step);
         }
-        Scale { from, to, step }
+        Scale { from, to, step, kind: AxisScale::Linear }
+    }
+
+    /// The same on an axis of a kind.
+    fn of_kind(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
+        let own = Scale::of(values.map(|value| kind.placed(value)), steps, round_ends);
+        match kind {
+            AxisScale::Linear => own,
+            AxisScale::Whole => Scale { step: own.step.max(1.0), kind, ..own },
+            AxisScale::Logarithmic if round_ends => {
+                Scale { from: own.from.floor(), to: own.to.ceil(), kind, ..own }
+            }
+            AxisScale::Logarithmic => Scale { kind, ..own },
+        }
     }
 
     pub(super) fn share(&self, value: f64) -> f64 {
-        ((value - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
+        ((self.kind.placed(value) - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
     pub(super) fn ticks(&self) -> Vec<f64> {
+        if self.kind == AxisScale::Logarithmic {
+            return self.ticks_of_decades();
+        }
         let first = (self.from / self.step - 1e-9).ceil() as i64;
         let last = (self.to / self.step + 1e-9).floor() as i64;
         (first..=last).map(|at| at as f64 * self.step).collect()
+    }
+
+    /// Powers of ten, and 2 and 5 times them where there are few.
+    fn ticks_of_decades(&self) -> Vec<f64> {
+        let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let decades = self.from.floor() as i32..=self.to.ceil() as i32;
+        let all = decades.flat_map(|decade| {
+            let power = libm::pow(10.0, f64::from(decade));
+            factors.iter().map(move |factor| factor * power)
+        });
+        let inside = |value: &f64| (self.from - 1e-9..=self.to + 1e-9).contains(&libm::log10(*value));
+        all.filter(inside).collect()
     }
 }
 
@@ -77,18 +127,50 @@ impl Sheet {
     }
 }
 
-/// The chart as SVG; the number makes its names unique on the page.
+/// The chart as SVG inside a page; the number makes its names unique there.
 pub fn draw(chart: &Chart, number: usize) -> String {
-    let keys = legend_keys(chart);
-    let (legend, rows) = legend(&keys);
-    let sheet = Sheet { x: x_scale(chart), y: y_scale(chart), top: 10.0 + rows * LEGEND_ROW };
-    let height = sheet.top + INSIDE + BOTTOM;
-    let mut svg = format!(
+    let (inside, height) = drawn(chart, OF_REPORTS);
+    format!(
         "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-labelledby=\"t{number} d{number}\">\n\
-         <title id=\"t{number}\">{}</title>\n<desc id=\"d{number}\">{}</desc>\n{legend}",
+         <title id=\"t{number}\">{}</title>\n<desc id=\"d{number}\">{}</desc>\n{inside}</svg>\n",
         escaped(&chart.title),
         escaped(&chart.summary)
-    );
+    )
+}
+
+/// The style of a drawing that stands alone: plain colours, which every program that reads SVG knows.
+const STYLE: &str = include_str!("../../assets/chart.css");
+
+/// Charts under each other as one file of SVG, without a page, a script or a font of elsewhere.
+pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
+    const HEAD: f64 = 30.0;
+    let (mut all, mut below) = (String::new(), 10.0);
+    for (at, part) in parts.iter().enumerate() {
+        let (inside, height) = drawn(&part.chart, part.axes);
+        let _ = writeln!(
+            all,
+            "<g transform=\"translate(0 {below})\" role=\"img\" aria-labelledby=\"t{at} d{at}\">\n\
+             <title id=\"t{at}\">{name}</title>\n<desc id=\"d{at}\">{}</desc>\n\
+             <text class=\"name\" x=\"{LEFT}\" y=\"16\">{name}</text>\n<g transform=\"translate(0 {HEAD})\">\n{inside}</g>\n</g>",
+            escaped(&part.chart.summary),
+            name = escaped(&part.chart.title)
+        );
+        below += height + HEAD + 10.0;
+    }
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {below}\" width=\"{WIDTH}\" height=\"{below}\" \
+         font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\">\n<title>{}</title>\n<style>\n{STYLE}</style>\n\
+         <rect class=\"paper\" width=\"{WIDTH}\" height=\"{below}\"/>\n{all}</svg>\n",
+        escaped(title)
+    )
+}
+
+/// What a chart draws, its legend included, and its height.
+fn drawn(chart: &Chart, kinds: Axes) -> (String, f64) {
+    let keys = legend_keys(chart);
+    let (mut svg, rows) = legend(&keys);
+    let sheet =
+        Sheet { x: x_scale(chart, kinds.across), y: y_scale(chart, kinds.up), top: 10.0 + rows * LEGEND_ROW };
     axes(&mut svg, chart, &sheet);
     match &chart.plot {
         Plot::Lines { curves, band } => {
@@ -97,25 +179,31 @@ pub fn draw(chart: &Chart, number: usize) -> String {
         }
         Plot::Stacks { at, parts } => draw_stacks(&mut svg, at, parts, chart, &sheet),
     }
-    svg.push_str("</svg>\n");
-    svg
+    (svg, sheet.top + INSIDE + BOTTOM)
 }
 
-fn x_scale(chart: &Chart) -> Scale {
+/// The room of one bar: the distance between two that stand beside each other.
+fn room_of_bar(at: &[f64]) -> f64 {
+    let least = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+    if least.is_finite() && least > 0.0 { least } else { 1.0 }
+}
+
+fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
     let values: Vec<f64> = match &chart.plot {
         Plot::Lines { curves, band } => {
             let of_band = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
             curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
         }
         // Half a bar stands over each end.
-        Plot::Stacks { at, .. } => at.iter().flat_map(|place| [place - 0.5, place + 0.5]).collect(),
+        Plot::Stacks { at, .. } => {
+            let half = room_of_bar(at) / 2.0;
+            at.iter().flat_map(|place| [place - half, place + half]).collect()
+        }
     };
-    let mut scale = Scale::of(values.into_iter(), 8.0, false);
-    scale.step = scale.step.max(1.0);
-    scale
+    Scale::of_kind(kind, values.into_iter(), 8.0, false)
 }
 
-fn y_scale(chart: &Chart) -> Scale {
+fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     let mut values: Vec<f64> = match &chart.plot {
         Plot::Lines { curves, band } => {
             let of_band =
@@ -138,7 +226,7 @@ fn y_scale(chart: &Chart) -> Scale {
     if least > 0.0 && least < 0.5 * most {
         values.push(0.0);
     }
-    Scale::of(values.into_iter(), 5.0, true)
+    Scale::of_kind(kind, values.into_iter(), 5.0, true)
 }
 
 fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
@@ -178,9 +266,14 @@ fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
 }
 
 fn draw_curve(svg: &mut String, curve: &Curve, at: usize, sheet: &Sheet) {
-    let finite = || curve.points.iter().filter(|point| point.1.is_finite());
-    let points: Vec<String> =
-        finite().map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y))).collect();
+    let has_place =
+        |(x, y): &&(f64, f64)| sheet.x.kind.placed(*x).is_finite() && sheet.y.kind.placed(*y).is_finite();
+    let points: Vec<String> = curve
+        .points
+        .iter()
+        .filter(has_place)
+        .map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y)))
+        .collect();
     let _ = writeln!(
         svg,
         "<polyline class=\"line s{}\" points=\"{}\"><title>{}</title></polyline>",
@@ -204,7 +297,7 @@ fn draw_band(svg: &mut String, band: &Band, sheet: &Sheet) {
 }
 
 fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, sheet: &Sheet) {
-    let width = (WIDTH - LEFT - RIGHT) / (sheet.x.to - sheet.x.from) * 0.8;
+    let width = room_of_bar(at) * (WIDTH - LEFT - RIGHT) / (sheet.x.to - sheet.x.from) * 0.8;
     let write = |value: f64| if chart.dollars { money(value) } else { whole(value) };
     for (bar, place) in at.iter().enumerate() {
         let (mut up, mut down) = (0.0, 0.0);
@@ -307,7 +400,7 @@ mod tests {
 
     #[test]
     fn the_highest_value_is_on_top_and_the_lowest_at_the_foot() {
-        let scale = || Scale { from: -10.0, to: 30.0, step: 10.0 };
+        let scale = || Scale { from: -10.0, to: 30.0, step: 10.0, kind: AxisScale::Linear };
         let sheet = Sheet { x: scale(), y: scale(), top: 20.0 };
         let places = [30.0, 10.0, -10.0, 99.0].map(|value| sheet.down(value));
         assert_eq!(places, [20.0, 20.0 + INSIDE / 2.0, 20.0 + INSIDE, 20.0]);
@@ -429,5 +522,32 @@ mod tests {
             assert!((top - place(&down, high)).abs() < 0.11, "{high} in week {week}: {top}");
             assert!((bottom - place(&down, low)).abs() < 0.16, "{low} in week {week}: {bottom}");
         }
+    }
+
+    #[test]
+    fn decades_are_evenly_apart_on_a_logarithmic_axis() {
+        let own = Scale::of_kind(AxisScale::Logarithmic, [3.0, 70_000.0].into_iter(), 5.0, true);
+        assert_eq!(own.ticks(), [1.0, 10.0, 100.0, 1e3, 1e4, 1e5]);
+        let shares: Vec<f64> = own.ticks().into_iter().map(|value| own.share(value)).collect();
+        assert!(shares.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-12), "{shares:?}");
+        let few = Scale::of_kind(AxisScale::Logarithmic, [10.0, 100.0].into_iter(), 5.0, true);
+        assert_eq!(few.ticks(), [10.0, 20.0, 50.0, 100.0]);
+    }
+
+    #[test]
+    fn a_drawing_that_stands_alone_brings_its_colours_and_keeps_its_charts_apart() {
+        let curve = Curve { name: "c".to_owned(), points: vec![(0.0, 0.0), (0.5, 1.0)] };
+        let part = || ChartPart {
+            chart: chart(Plot::Lines { curves: vec![curve.clone()], band: None }),
+            axes: Axes { across: AxisScale::Linear, up: AxisScale::Linear },
+        };
+        let svg = standing_alone("a & b", &[part(), part()]);
+        assert!(svg.starts_with("<svg xmlns=") && svg.contains("<title>a &amp; b</title>"), "{svg}");
+        assert!(svg.contains(".s1 {") && !svg.contains("var("), "the style is whole");
+        let heads: Vec<&str> =
+            svg.lines().filter(|line| line.starts_with("<g transform=\"translate(0 ")).collect();
+        assert_eq!(heads.len(), 4, "{svg}");
+        // Shares are labelled too: a linear axis is not held to whole numbers.
+        assert!(svg.contains(">0.10<") || svg.contains(">0.1<"), "{svg}");
     }
 }

@@ -7,6 +7,7 @@ use crate::session::{
     BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FigureUnit, Futures,
     Kin, ParameterDifference, ToolId,
 };
+use crate::statistics::Interval;
 
 /// The name of the run as it was.
 pub const AS_IT_WAS: &str = "as it was";
@@ -213,7 +214,7 @@ pub fn difference_line(
 ) -> Option<String> {
     let difference = futures.difference(branch, figure, comparison.until)?;
     let signed = |value| signed(figure.unit(), value);
-    let (low, high) = difference.interval;
+    let Interval { low, high } = difference.interval;
     Some(format!(
         "{}: {} on average (95 % interval {} to {}), more in {} of {}",
         figure.name(),

@@ -141,8 +141,8 @@ pub use trajectory::{
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
-    FORMS, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, PairedDifference,
-    ParameterDifference, WhatIf, branches_of, origin_of, sets_amounts,
+    FORMS, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference, WhatIf,
+    branches_of, origin_of, sets_amounts,
 };
 pub use why::{
     Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,

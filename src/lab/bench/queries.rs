@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
-use crate::lab::statistics::median;
 use crate::session::library::Library;
 use crate::session::{Session, Via};
+use crate::statistics::median;
 use crate::tools::ToolId;
 
 /// About the most subscribers that P1a ever has.

@@ -340,7 +340,7 @@ fn futures_as_data(comparison: &BranchComparison, futures: &Futures) -> Value {
                 .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
                 .collect();
             let difference = futures.difference(at, *figure, comparison.until).map(|own| {
-                json!({ "mean": own.mean, "interval": [own.interval.0, own.interval.1], "more": own.more, "of": own.of })
+                json!({ "mean": own.mean, "interval": [own.interval.low, own.interval.high], "more": own.more, "of": own.of })
             });
             (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
         });

@@ -4,7 +4,6 @@ mod curves;
 mod drawing;
 mod guesses;
 mod html;
-mod plot;
 mod ranking;
 mod table;
 mod words;

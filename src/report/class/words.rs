@@ -3,9 +3,9 @@
 use super::ClassView;
 use super::curves::{curves, scatter};
 use super::guesses::{asked, pitfalls};
-use super::plot::{Drawn, plot};
 use super::ranking::{RankedStudent, ranked};
 use crate::notation::{compact, percent, printable};
+use crate::report::plot::{Drawn, plot};
 use crate::report::words::{count, money};
 use crate::session::{ClassFinding, RunVerdict};
 

@@ -1,12 +1,7 @@
 //! Branches under luck that is redrawn: what may come, and how sure a difference is.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-
 use super::figure::{BranchFigure, Values};
-
-/// Resamples behind an interval.
-const RESAMPLES: usize = 2_000;
+use crate::statistics::{PairedDifference, quantile_of_sorted};
 
 /// Branches under several futures, the same ones for each.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,19 +27,6 @@ pub struct FutureBand {
     pub high: f64,
 }
 
-/// How much a branch has more than the run as it was, future by future.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairedDifference {
-    /// Mean of the differences.
-    pub mean: f64,
-    /// Bootstrap interval of the mean, 95 %.
-    pub interval: (f64, f64),
-    /// Futures in which the branch has more.
-    pub more: u32,
-    /// Futures that were compared.
-    pub of: u32,
-}
-
 impl Futures {
     pub(super) fn of(redrawn_after: u32, days: Vec<u32>, branches: Vec<Vec<Vec<Values>>>) -> Futures {
         let count = branches.first().map_or(0, Vec::len) as u32;
@@ -56,7 +38,7 @@ impl Futures {
         let mut values: Vec<f64> =
             self.values(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
         values.sort_by(f64::total_cmp);
-        let at = |share: f64| quantile(&values, share);
+        let at = |share: f64| quantile_of_sorted(&values, share);
         Some(FutureBand { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
     }
 
@@ -69,15 +51,7 @@ impl Futures {
     /// has a value in both.
     pub fn difference(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<PairedDifference> {
         let pairs = self.values(branch, figure, day).into_iter().zip(self.values(0, figure, day));
-        let differences: Vec<f64> =
-            pairs.map(|(own, other)| own - other).filter(|own| !own.is_nan()).collect();
-        let of = differences.len();
-        (of > 0).then(|| PairedDifference {
-            mean: mean(differences.iter().copied(), of),
-            interval: bootstrap(&differences),
-            more: differences.iter().filter(|own| **own > 0.0).count() as u32,
-            of: of as u32,
-        })
+        PairedDifference::of(pairs)
     }
 
     /// Futures of a branch that end before the last day.
@@ -107,31 +81,6 @@ fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
     }
 }
 
-fn mean(values: impl Iterator<Item = f64>, count: usize) -> f64 {
-    values.sum::<f64>() / count as f64
-}
-
-/// The value below which a share of some sorted values lies, between two of them where it falls between.
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let place = share * sorted.len().checked_sub(1)? as f64;
-    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
-    Some(below + (above - below) * place.fract())
-}
-
-/// 95 % interval of a mean: its spread over samples drawn from the values with replacement. Equal values give equal intervals.
-fn bootstrap(values: &[f64]) -> (f64, f64) {
-    let mut rng = ChaCha8Rng::seed_from_u64(values.len() as u64);
-    let count = values.len() as u64;
-    let mut resample = |_| {
-        let mut drawn = || values[((u64::from(rng.next_u32()) * count) >> 32) as usize];
-        mean((0..count).map(|_| drawn()), values.len())
-    };
-    let mut means: Vec<f64> = (0..RESAMPLES).map(&mut resample).collect();
-    means.sort_by(f64::total_cmp);
-    let at = |share| quantile(&means, share).unwrap_or(f64::NAN);
-    (at(0.025), at(0.975))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -153,7 +102,7 @@ mod tests {
         let band = futures.band(0, BranchFigure::Cash, 7);
         assert_eq!(band, Some(FutureBand { low: 1.0, median: 5.0, high: 9.0 }));
         let difference = futures.difference(1, BranchFigure::Cash, 7).expect("pairs");
-        assert_eq!((difference.mean, difference.interval), (2.0, (2.0, 2.0)));
+        assert_eq!((difference.mean, difference.interval.low, difference.interval.high), (2.0, 2.0, 2.0));
         assert_eq!((difference.more, difference.of), (11, 11));
         assert_eq!(futures.band(0, BranchFigure::Leads, 7), None);
         assert_eq!(futures.band(0, BranchFigure::Cash, 14), None);
@@ -172,13 +121,5 @@ mod tests {
         assert_eq!(futures.values(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
         assert_eq!(futures.values(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
         assert!(futures.values(0, BranchFigure::Churn, 14)[0].is_nan());
-    }
-
-    #[test]
-    fn the_interval_of_a_mean_has_the_width_of_its_error() {
-        // Spread 1, twenty values: the mean is known to 1.96 / sqrt(20) = 0.44 on both sides.
-        let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        let (low, high) = bootstrap(&values);
-        assert!((-0.5..-0.35).contains(&low) && (0.35..0.5).contains(&high), "{low} to {high}");
     }
 }

@@ -21,7 +21,7 @@ pub use adopt::Adopted;
 pub use comparison::{BranchComparison, BranchFigures, DecisionDifference, ParameterDifference};
 pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
 pub use figure::BranchFigure;
-pub use futures::{FutureBand, Futures, PairedDifference};
+pub use futures::{FutureBand, Futures};
 pub use kin::{BranchOrigin, Kin, branches_of, origin_of};
 
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};

@@ -1,0 +1,76 @@
+//! Experiments of the laboratory's commands: progress, ctrl-c, and the file in which their results are kept.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+
+use crate::cli::run::{progress_bar, thread_pool};
+use crate::cli::{Context, Failure};
+use crate::lab::experiment::{Conduct, Experiment, ExperimentError, ExperimentResults, ResultStore};
+
+/// Options of commands that play many runs.
+#[derive(Debug, Clone, Args)]
+pub struct PlayOptions {
+    /// Runs played at the same time [default: as many as there are processors].
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Play every run anew, also those of which results are kept.
+    #[arg(long)]
+    pub fresh: bool,
+}
+
+/// Conducts the experiment of a command, whose results are kept under its name: what was played once is not played again.
+///
+/// # Errors
+/// As [`Experiment::prepare`] and [`crate::lab::experiment::Prepared::conduct`].
+pub fn conduct(
+    command: &str,
+    experiment: &Experiment,
+    options: &PlayOptions,
+    context: &Context,
+) -> Result<ExperimentResults, Failure> {
+    conduct_keeping(&context.laboratory()?.join(format!("{command}.jsonl")), experiment, options, context)
+}
+
+/// The same, with results in a file.
+///
+/// # Errors
+/// The same.
+pub fn conduct_keeping(
+    path: &Path,
+    experiment: &Experiment,
+    options: &PlayOptions,
+    context: &Context,
+) -> Result<ExperimentResults, Failure> {
+    let pool = thread_pool(options.jobs)?;
+    let store = ResultStore::open(path)
+        .map_err(|error| Failure::from(ExperimentError::Store { path: path.to_owned(), error }))?;
+    let prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
+    let progress = progress_bar(prepared.left() as u64, "runs");
+    let stop = stopped_by_signals();
+    let on_run = || progress.inc(1);
+    let with = Conduct {
+        configuration: &context.configuration,
+        store: Some(&store),
+        pool: &pool,
+        stop: &stop,
+        on_run: &on_run,
+    };
+    let results = prepared.conduct(&with);
+    progress.finish_and_clear();
+    Ok(results?)
+}
+
+/// What ctrl-c sets; a second one ends the program at once.
+fn stopped_by_signals() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    for (signal, code) in [(signal_hook::consts::SIGINT, 130), (signal_hook::consts::SIGTERM, 143)] {
+        // Without a handler the signal ends the program as ever, and what is kept is kept.
+        let _ = signal_hook::flag::register_conditional_shutdown(signal, code, Arc::clone(&stop));
+        let _ = signal_hook::flag::register(signal, Arc::clone(&stop));
+    }
+    stop
+}

@@ -1,0 +1,129 @@
+//! Graphs of an exhibit: the same series as letters for a terminal and as SVG for a page.
+
+use super::Exhibit;
+use super::text::broken;
+use crate::report::page::{Chart, Curve, Part, Plot};
+use crate::report::plot::{AxisScale, Drawn, Frame, bars, plot_in};
+use crate::report::svg::{Axes, ChartPart, standing_alone};
+
+/// Named series over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Graph {
+    /// What it shows.
+    pub title: String,
+    /// The same in a sentence, for those who cannot see it.
+    pub summary: String,
+    /// The axis below.
+    pub across: GraphAxis,
+    /// The axis to the left.
+    pub up: GraphAxis,
+    /// What is drawn; bars take the first one only.
+    pub series: Vec<Series>,
+    /// How it is drawn.
+    pub form: GraphForm,
+}
+
+/// An axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GraphAxis {
+    /// What it counts.
+    pub label: &'static str,
+    /// How its values are placed.
+    pub scale: AxisScale,
+}
+
+/// A series of points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name.
+    pub name: String,
+    /// Points, from the left to the right.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How series are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GraphForm {
+    /// Joined points.
+    Lines,
+    /// A bar for each point: a histogram has the middles of its classes across.
+    Bars,
+}
+
+/// Signs of the series in a terminal, in their order.
+const SIGNS: [char; 8] = ['*', '+', 'o', 'x', '#', '~', '%', '@'];
+
+/// Most bars in a terminal.
+const MOST_BARS: usize = 40;
+
+impl Graph {
+    /// As text of lines no wider than `width`, the drawing of so many rows.
+    pub fn as_text(&self, width: usize, rows: usize) -> String {
+        let mut text = broken(&self.title, width).join("\n") + "\n";
+        match (self.form, self.series.first()) {
+            (GraphForm::Bars, Some(own)) => {
+                text += &bars(&thinned(&own.points), width);
+                text += &format!("{} by {}\n", self.up.label, self.across.label);
+            }
+            _ => {
+                let signs = SIGNS.iter().cycle();
+                let drawn: Vec<Drawn<'_>> = (self.series.iter().zip(signs))
+                    .map(|(own, sign)| Drawn { sign: *sign, points: &own.points, is_line: true })
+                    .collect();
+                let frame = Frame { width, height: rows, across: self.across.scale, up: self.up.scale };
+                text += &plot_in(&frame, &drawn);
+                let names: Vec<String> = self
+                    .series
+                    .iter()
+                    .zip(&drawn)
+                    .map(|(own, drawn)| format!("{} {}", drawn.sign, own.name))
+                    .collect();
+                let legend =
+                    format!("{} across, {} up:   {}", self.across.label, self.up.label, names.join("   "));
+                text += &(broken(&legend, width).join("\n") + "\n");
+            }
+        }
+        text
+    }
+
+    fn part(&self) -> ChartPart {
+        let curve = |own: &Series| Curve { name: own.name.clone(), points: own.points.clone() };
+        let plot = match (self.form, self.series.first()) {
+            (GraphForm::Bars, Some(own)) => Plot::Stacks {
+                at: own.points.iter().map(|point| point.0).collect(),
+                parts: vec![Part {
+                    name: own.name.clone(),
+                    values: own.points.iter().map(|point| point.1).collect(),
+                }],
+            },
+            _ => Plot::Lines { curves: self.series.iter().map(curve).collect(), band: None },
+        };
+        let chart = Chart {
+            title: format!("{}: {} up", self.title, self.up.label),
+            summary: self.summary.clone(),
+            across: self.across.label,
+            dollars: self.up.label.starts_with("dollars"),
+            within: None,
+            plot,
+        };
+        ChartPart { chart, axes: Axes { across: self.across.scale, up: self.up.scale } }
+    }
+}
+
+/// Neighbouring bars taken together until there are few enough to read.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let together = points.len().div_ceil(MOST_BARS).max(1);
+    let joined = |own: &[(f64, f64)]| {
+        let middle = own.iter().map(|point| point.0).sum::<f64>() / own.len() as f64;
+        (middle, own.iter().map(|point| point.1).sum())
+    };
+    points.chunks(together).map(joined).collect()
+}
+
+impl Exhibit {
+    /// Its graphs under each other as one drawing that stands alone; none without graphs.
+    pub fn as_svg(&self) -> Option<String> {
+        let parts: Vec<ChartPart> = self.graphs.iter().map(Graph::part).collect();
+        (!parts.is_empty()).then(|| standing_alone(&self.title, &parts))
+    }
+}

@@ -1,0 +1,100 @@
+use unicode_width::UnicodeWidthStr;
+
+use super::*;
+
+fn exhibit() -> Exhibit {
+    let mut table = Tabulation::new(
+        "policies",
+        "Final cash over 3 seeds",
+        vec![
+            Column::words("policy", "policy"),
+            Column::numbers("cash", "median final cash", Measure::Dollars),
+            Column::intervals("cash_interval", "95 % interval of the median", Measure::Dollars),
+            Column::numbers("survived", "share that survived", Measure::Share),
+            Column::numbers("gini", "evenness", Measure::Number(2)),
+        ],
+    );
+    table.rows.push(vec![
+        Datum::words("mid book, S1 only, heavy"),
+        Datum::number(15_756_408.25),
+        Datum::interval(Some(Interval { low: 9_000_000.5, high: 21_000_000.0 })),
+        Datum::number(2.0 / 3.0),
+        Datum::number(0.1),
+    ]);
+    table.rows.push(vec![
+        Datum::words("idle"),
+        Datum::number(957_500.0),
+        Datum::interval(None),
+        Datum::number(1.0),
+        Datum::Measured(12.0, Measure::Days),
+    ]);
+    Exhibit::of("Baselines", table).with_note("Seeds 1 to 3; the same luck for every policy.")
+}
+
+#[test]
+fn a_table_stands_as_wide_as_it_is_where_there_is_room() {
+    let text = exhibit().as_text(100);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "Baselines");
+    assert!(text.contains("$15,756,408") && text.contains("66.7%"), "{text}");
+    assert!(text.contains("$9,000,000 to $21,000,000"), "{text}");
+    let dollars = |line: &&&str| line.contains("15,756,408") || line.contains("957,500");
+    let ends: Vec<usize> = lines.iter().filter(dollars).map(|line| line.find("00  ").unwrap_or(0)).collect();
+    assert_eq!(ends.len(), 2, "{text}");
+    assert_eq!(lines.last(), Some(&"Seeds 1 to 3; the same luck for every policy."));
+}
+
+#[test]
+fn no_line_is_wider_than_the_room_and_no_cell_is_lost() {
+    for width in 40..=100 {
+        let text = exhibit().as_text(width);
+        assert!(text.lines().all(|line| line.width() <= width), "{width}:\n{text}");
+        for word in ["66.7%", "0.10", "12", "957,500", "idle", "evenness"] {
+            let shortened = word == "957,500" && text.contains("$958k");
+            assert!(text.contains(word) || shortened, "{word} at {width}:\n{text}");
+        }
+    }
+}
+
+#[test]
+fn programs_get_every_number_in_full_and_two_for_an_interval() {
+    let rows = exhibit().tables[0].as_csv();
+    assert_eq!(rows[0], ["policy", "cash", "cash_interval_low", "cash_interval_high", "survived", "gini"]);
+    assert_eq!(rows[1][1..4], ["15756408.25", "9000000.5", "21000000"]);
+    assert_eq!(rows[1][4].parse::<f64>(), Ok(2.0 / 3.0));
+    assert_eq!(rows[2], ["idle", "957500", "", "", "1", "12"]);
+    let json = exhibit().as_json();
+    let table = &json["tables"]["policies"];
+    assert_eq!(table["columns"][1]["unit"], "dollars");
+    assert_eq!(table["columns"][0]["unit"], serde_json::Value::Null);
+    assert_eq!(table["rows"][0]["cash_interval"]["low"], 9_000_000.5);
+    assert_eq!(table["rows"][1]["cash_interval"], serde_json::Value::Null);
+    assert_eq!(table["rows"][1]["gini"], serde_json::json!({ "value": 12, "unit": "days" }));
+    assert_eq!(json["intervals"]["level"], 0.95);
+}
+
+#[test]
+fn graphs_fit_their_room_in_letters_and_stand_alone_as_a_drawing() {
+    let points = |factor: f64| (1..=50).map(|at| (f64::from(at), factor * f64::from(at))).collect();
+    let axis = |label| GraphAxis { label, scale: AxisScale::Logarithmic };
+    let graph = Graph {
+        title: "Subscribers by day".to_owned(),
+        summary: "Both rise.".to_owned(),
+        across: axis("day"),
+        up: axis("subscribers"),
+        series: vec![
+            Series { name: "off".to_owned(), points: points(10.0) },
+            Series { name: "hard <1>".to_owned(), points: points(1.0) },
+        ],
+        form: GraphForm::Lines,
+    };
+    let bars = Graph { form: GraphForm::Bars, ..graph.clone() };
+    assert_eq!(exhibit().as_svg(), None);
+    let own = Exhibit { graphs: vec![graph, bars], ..exhibit() };
+    let text = own.as_text(60);
+    assert!(text.lines().all(|line| line.width() <= 60), "{text}");
+    assert!(text.contains("* off   + hard <1>") && text.contains('█'), "{text}");
+    let svg = own.as_svg().expect("graphs");
+    assert!(svg.contains("hard &lt;1&gt;") && svg.contains("<rect class=\"part f1\""), "{svg}");
+    assert_eq!(own.as_json()["graphs"][0]["series"][1]["points"][0], serde_json::json!([1, 1]));
+}

@@ -1,0 +1,175 @@
+//! Exhibits as text that fits a terminal. What is too wide is first shortened, then broken, and at last put below.
+
+use unicode_width::UnicodeWidthStr;
+
+use super::{Column, Exhibit, Holds, Tabulation};
+use crate::notation::printable;
+
+/// Between two columns.
+const GAP: usize = 2;
+/// Narrowest column of words that is still read.
+const LEAST: usize = 12;
+/// Rows of a graph.
+const GRAPH_ROWS: usize = 16;
+
+impl Exhibit {
+    /// As text of lines no wider than `width`, at least 40.
+    pub fn as_text(&self, width: usize) -> String {
+        let width = width.max(40);
+        let mut parts = vec![broken(&self.title, width).join("\n")];
+        parts.extend(self.tables.iter().map(|table| table.as_text(width)));
+        parts.extend(self.graphs.iter().map(|graph| graph.as_text(width, GRAPH_ROWS)));
+        let notes: Vec<String> = self.notes.iter().flat_map(|note| broken(note, width)).collect();
+        parts.push(notes.join("\n"));
+        let parts: Vec<&str> =
+            parts.iter().map(|part| part.trim_end()).filter(|part| !part.is_empty()).collect();
+        printable(&(parts.join("\n\n") + "\n")).into_owned()
+    }
+}
+
+impl Tabulation {
+    /// As text of lines no wider than `width`.
+    fn as_text(&self, width: usize) -> String {
+        let full = Sheet::of(self, false);
+        let sheet = if full.is_within(width) { full } else { Sheet::of(self, true).narrowed(width) };
+        let mut text = broken(&self.caption, width).join("\n");
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        let parts: Vec<String> = sheet.panels(width).iter().map(|own| sheet.written(own)).collect();
+        text + &parts.join("\n")
+    }
+}
+
+/// A table as it will stand: its cells written, its columns with their widths.
+struct Sheet<'a> {
+    columns: &'a [Column],
+    cells: Vec<Vec<String>>,
+    widths: Vec<usize>,
+}
+
+impl<'a> Sheet<'a> {
+    fn of(table: &'a Tabulation, is_short: bool) -> Sheet<'a> {
+        let write = |row: &Vec<super::Datum>| {
+            let pairs = row.iter().zip(&table.columns);
+            pairs.map(|(cell, column)| cell.written(column.measure(), is_short)).collect()
+        };
+        let cells: Vec<Vec<String>> = table.rows.iter().map(write).collect();
+        let width = |(at, column): (usize, &Column)| {
+            let own = cells.iter().filter_map(|row| row.get(at)).map(|cell| cell.width()).max().unwrap_or(0);
+            own.max(longest_word(&column.heading))
+        };
+        let widths = table.columns.iter().enumerate().map(width).collect();
+        Sheet { columns: &table.columns, cells, widths }
+    }
+
+    fn total(&self) -> usize {
+        self.widths.iter().sum::<usize>() + GAP * self.widths.len().saturating_sub(1)
+    }
+
+    fn is_within(&self, width: usize) -> bool {
+        self.total() <= width
+    }
+
+    /// With its widest columns of words broken, as far as it must be.
+    fn narrowed(mut self, width: usize) -> Sheet<'a> {
+        while self.total() > width {
+            let words = (0..self.columns.len()).filter(|at| self.columns[*at].holds == Holds::Words);
+            let Some(widest) = words.filter(|at| self.widths[*at] > LEAST).max_by_key(|at| self.widths[*at])
+            else {
+                break;
+            };
+            self.widths[widest] -= 1;
+        }
+        self.widths.iter_mut().for_each(|own| *own = (*own).min(width));
+        self
+    }
+
+    /// Columns that stand beside each other. Those that have no room stand below, after the first one again.
+    fn panels(&self, width: usize) -> Vec<Vec<usize>> {
+        let mut panels: Vec<Vec<usize>> = vec![Vec::new()];
+        let mut taken = 0;
+        for at in 0..self.columns.len() {
+            let needed = self.widths[at] + if taken > 0 { GAP } else { 0 };
+            let first = self.widths[0] + GAP;
+            let is_full = !panels.last().is_none_or(Vec::is_empty) && taken + needed > width;
+            if is_full && first + self.widths[at] <= width {
+                panels.push(vec![0, at]);
+                taken = first + self.widths[at];
+            } else if is_full {
+                panels.push(vec![at]);
+                taken = self.widths[at];
+            } else {
+                panels.last_mut().into_iter().for_each(|panel| panel.push(at));
+                taken += needed;
+            }
+        }
+        panels
+    }
+
+    fn written(&self, panel: &[usize]) -> String {
+        let heads: Vec<Vec<String>> =
+            panel.iter().map(|at| broken(&self.columns[*at].heading, self.widths[*at])).collect();
+        let height = heads.iter().map(Vec::len).max().unwrap_or(0);
+        // Headings stand on the rule.
+        let heads: Vec<Vec<String>> =
+            heads.into_iter().map(|own| [vec![String::new(); height - own.len()], own].concat()).collect();
+        let mut text = self.lines(panel, &heads);
+        text += &"─".repeat(panel.iter().map(|at| self.widths[*at] + GAP).sum::<usize>().saturating_sub(GAP));
+        text.push('\n');
+        for row in &self.cells {
+            let cell = |at: &usize| broken(row.get(*at).map_or("", String::as_str), self.widths[*at]);
+            text += &self.lines(panel, &panel.iter().map(cell).collect::<Vec<_>>());
+        }
+        text
+    }
+
+    /// Cells of one or more lines beside each other.
+    fn lines(&self, panel: &[usize], cells: &[Vec<String>]) -> String {
+        let mut text = String::new();
+        for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
+            let mut whole = String::new();
+            for (at, cell) in panel.iter().zip(cells) {
+                let (own, width) = (cell.get(line).map_or("", String::as_str), self.widths[*at]);
+                let blank = " ".repeat(width.saturating_sub(own.width()));
+                whole += &match self.columns[*at].holds {
+                    Holds::Words => format!("{own}{blank}"),
+                    Holds::Numbers(_) | Holds::Intervals(_) => format!("{blank}{own}"),
+                };
+                whole += &" ".repeat(GAP);
+            }
+            text += whole.trim_end();
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn longest_word(text: &str) -> usize {
+    text.split(' ').map(UnicodeWidthStr::width).max().unwrap_or(0)
+}
+
+/// A text in lines no wider than that, broken at blanks; a longer word is broken where it must be. Nothing for nothing.
+pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut().filter(|line| line.width() + 1 + word.width() <= width) {
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.extend(pieces(word, width)),
+        }
+    }
+    lines
+}
+
+fn pieces(word: &str, width: usize) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    for letter in word.chars() {
+        let mut own = [0; 4];
+        let letter: &str = letter.encode_utf8(&mut own);
+        match pieces.last_mut().filter(|piece| piece.width() + letter.width() <= width || piece.is_empty()) {
+            Some(piece) => *piece += letter,
+            None => pieces.push(letter.to_owned()),
+        }
+    }
+    pieces
+}

@@ -1,0 +1,44 @@
+//! What names a run of an experiment: everything its result depends on.
+
+use super::{Arm, Wanted};
+use crate::lab::runner::new_run;
+use crate::session::{Configuration, RunError};
+use crate::world::MECHANICS;
+
+/// What the runs of an arm have in common, as a hash that a seed completes.
+pub(super) struct ArmKey(blake3::Hasher);
+
+impl ArmKey {
+    /// The key of an arm. Its name is not part of it: the same run under another name is the same run.
+    ///
+    /// # Errors
+    /// There is no such scenario, or a parameter is wrong.
+    pub(super) fn of(arm: &Arm, wanted: &Wanted, configuration: &Configuration) -> Result<ArmKey, RunError> {
+        let run = new_run(&arm.policy, &arm.spec);
+        let scenario = configuration.scenario(&run.scenario)?;
+        let params = configuration.parameters(&scenario, &run.overrides, true)?;
+        let (days, cash) = scenario.terms(&params);
+        let (days, cash) = (run.days.unwrap_or(days), run.cash.unwrap_or(cash));
+        let policy = &arm.policy;
+        let plays = (&policy.rule_based, &policy.calls, &policy.enterprise);
+        let mut hasher = blake3::Hasher::new();
+        for part in [
+            format!("{} {MECHANICS}", env!("CARGO_PKG_VERSION")),
+            params.digest(),
+            format!("{plays:?}"),
+            format!("{days} {:?} {}", arm.spec.until, cash.to_bits()),
+            format!("{wanted:?}"),
+        ] {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part.as_bytes());
+        }
+        Ok(ArmKey(hasher))
+    }
+
+    /// The key of a run.
+    pub(super) fn of_seed(&self, seed: u64) -> String {
+        let mut hasher = self.0.clone();
+        hasher.update(&seed.to_le_bytes());
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+}

@@ -1,0 +1,63 @@
+//! Arms by seeds: policies played under the same luck, in parallel, each run kept as soon as it is over.
+//!
+//! [`Experiment::prepare`] finds what earlier commands have kept, [`Prepared::conduct`] plays the rest. A command that is
+//! stopped and given again goes on where it was, and shows what it would have shown at once.
+
+mod engine;
+mod key;
+mod result;
+mod store;
+#[cfg(test)]
+mod tests;
+
+pub use engine::{Conduct, ExperimentError, ExperimentResults, Prepared};
+pub use result::{DayPoint, FigurePoint, RunResult, WeekPoint};
+pub use store::ResultStore;
+
+use super::policy::Policy;
+use super::runner::RunSpec;
+
+/// One way to play that is compared with others.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    /// Name in tables.
+    pub name: String,
+    /// What plays.
+    pub policy: Policy,
+    /// Scenario, overrides, days and cash; its seed is not used.
+    pub spec: RunSpec,
+}
+
+impl Arm {
+    /// A policy as its file says.
+    pub fn new(name: impl Into<String>, policy: Policy) -> Arm {
+        Arm { name: name.into(), policy, spec: RunSpec::of_seed(0) }
+    }
+}
+
+/// What is kept of each run beside its end and its weeks.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Wanted {
+    /// A point for each day.
+    pub daily: bool,
+    /// Days of which all figures are kept, hidden ones included (docs/interfaces/golden.md#figures).
+    pub figures_on: Vec<u32>,
+}
+
+/// Arms and the seeds they have in common.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// Arms, in the order in which they are shown.
+    pub arms: Vec<Arm>,
+    /// Seeds.
+    pub seeds: Vec<u64>,
+    /// What is kept of each run.
+    pub wanted: Wanted,
+}
+
+impl Experiment {
+    /// Arms over seeds; the end and the weeks of each run are kept.
+    pub fn of(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> Experiment {
+        Experiment { arms, seeds: seeds.into_iter().collect(), wanted: Wanted::default() }
+    }
+}

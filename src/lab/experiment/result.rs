@@ -1,0 +1,184 @@
+//! What is kept of a run.
+
+use serde::{Deserialize, Serialize};
+
+use super::Wanted;
+use crate::lab::metrics::Collector;
+use crate::lab::runner::{Outcome, RunEnd};
+use crate::session::{DayReport, WeekFigures};
+
+/// What is kept of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// Seed.
+    pub seed: u64,
+    /// Last day the run could have had.
+    pub days: u32,
+    /// Last simulated day.
+    pub day: u32,
+    /// How it ended.
+    pub ended: RunEnd,
+    /// Cash at the end, dollars.
+    pub cash: f64,
+    /// Active subscriptions of individuals at the end.
+    pub subscribers: u32,
+    /// Seats of active companies at the end.
+    pub seats: u32,
+    /// Most active subscriptions of individuals at the end of a day.
+    pub peak_subscribers: u32,
+    /// The first day that had them.
+    pub peak_day: u32,
+    /// Hash of the last state.
+    pub state_hash: String,
+    /// The ends of its weeks.
+    pub weeks: Vec<WeekPoint>,
+    /// The ends of its days, where they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub daily: Vec<DayPoint>,
+    /// Figures of the days that were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<FigurePoint>,
+}
+
+/// The end of a week.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct WeekPoint {
+    /// Its last day.
+    pub day: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// Monthly recurring revenue, dollars.
+    pub mrr: f64,
+}
+
+/// The end of a day, and what happened on it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DayPoint {
+    /// Day.
+    pub day: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Monthly recurring revenue, dollars.
+    pub mrr: f64,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// Leads of individuals.
+    pub individual_leads: u32,
+    /// Leads of companies.
+    pub enterprise_leads: u32,
+    /// Individuals who signed up.
+    pub new_subscribers: u32,
+    /// Cancellations of individuals.
+    pub cancellations: u32,
+    /// Payments of subscribers, dollars.
+    pub payments: f64,
+    /// Running costs, dollars.
+    pub costs: f64,
+    /// Units used.
+    pub usage: u64,
+}
+
+/// A figure of a day.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FigurePoint {
+    /// Day.
+    pub day: u32,
+    /// Name.
+    pub figure: String,
+    /// What it is split by; empty if by nothing.
+    pub group: String,
+    /// Value.
+    pub value: f64,
+}
+
+impl RunResult {
+    /// Whether cash ran out.
+    pub fn is_bankrupt(&self) -> bool {
+        self.ended == RunEnd::Bankruptcy
+    }
+
+    /// A figure of a day that was asked for.
+    pub fn figure(&self, day: u32, figure: &str, group: &str) -> Option<f64> {
+        let own = |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
+        self.figures.iter().find(own).map(|point| point.value)
+    }
+}
+
+/// Sees the days of a run.
+pub(super) struct DayWatch {
+    daily: Option<Vec<DayPoint>>,
+    collector: Collector,
+    peak: (u32, u32),
+}
+
+impl DayWatch {
+    pub(super) fn of(wanted: &Wanted) -> DayWatch {
+        let collector = match wanted.figures_on.is_empty() {
+            true => Collector::idle(),
+            false => Collector::new(Some(wanted.figures_on.clone())),
+        };
+        DayWatch { daily: wanted.daily.then(Vec::new), collector, peak: (0, 0) }
+    }
+
+    pub(super) fn day(&mut self, report: &DayReport<'_>) {
+        self.collector.day(report);
+        let own = report.figures;
+        if own.individual_subscribers > self.peak.0 {
+            self.peak = (own.individual_subscribers, own.day);
+        }
+        self.daily.iter_mut().for_each(|days| {
+            days.push(DayPoint {
+                day: own.day,
+                cash: own.cash,
+                mrr: own.mrr,
+                subscribers: own.individual_subscribers,
+                seats: own.enterprise_seats,
+                individual_leads: own.new_individual_leads,
+                enterprise_leads: own.new_enterprise_leads,
+                new_subscribers: own.new_individual_subscribers,
+                cancellations: own.cancellations,
+                payments: own.payments_received,
+                costs: own.total_costs,
+                usage: own.total_usage,
+            });
+        });
+    }
+
+    /// What is kept of the run, once it is over.
+    pub(super) fn result(self, outcome: Outcome, weeks: &[WeekFigures]) -> RunResult {
+        let week = |own: &WeekFigures| WeekPoint {
+            day: own.day,
+            cash: own.cash,
+            subscribers: own.individual_subscribers,
+            seats: own.enterprise_seats,
+            mrr: own.recurring_revenue,
+        };
+        let figures = self.collector.finish(outcome.days).into_iter().map(|own| FigurePoint {
+            day: own.day,
+            figure: own.figure.to_owned(),
+            group: own.group.to_owned(),
+            value: own.value,
+        });
+        RunResult {
+            seed: outcome.seed,
+            days: outcome.days,
+            day: outcome.day,
+            ended: outcome.ended,
+            cash: outcome.cash,
+            subscribers: outcome.subscribers,
+            seats: outcome.seats,
+            peak_subscribers: self.peak.0,
+            peak_day: self.peak.1,
+            state_hash: outcome.state_hash,
+            weeks: weeks.iter().map(week).collect(),
+            daily: self.daily.unwrap_or_default(),
+            figures: figures.collect(),
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! A few numbers told: mean, spread, quantiles, and how far from the truth they may be.
+//!
+//! Intervals are percentile bootstraps: the numbers are drawn again with replacement, [`RESAMPLES`] times, from a stream whose
+//! seed depends on nothing but how many they are. Equal numbers give equal intervals, today and on every machine.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Resamples behind an interval.
+pub const RESAMPLES: usize = 2_000;
+
+/// Share of resamples that lies within an interval.
+pub const LEVEL: f64 = 0.95;
+
+/// Mean and sample standard deviation of a set of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// How many.
+    pub count: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Sample standard deviation (n - 1); 0 below two numbers.
+    pub std: f64,
+}
+
+impl Sample {
+    /// Of numbers in any order.
+    pub fn of(values: &[f64]) -> Sample {
+        let (count, mean) = (values.len(), mean(values));
+        let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+        let std = if count < 2 { 0.0 } else { (squares / (count - 1) as f64).sqrt() };
+        Sample { count, mean, std }
+    }
+}
+
+/// Mean of numbers; 0 without any.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Quantile of numbers in any order, linear between neighbours; none without any.
+pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    quantile_of_sorted(&sorted, share)
+}
+
+/// The value below which a share of some sorted values lies, between two of them where it falls between.
+pub fn quantile_of_sorted(sorted: &[f64], share: f64) -> Option<f64> {
+    let place = share * sorted.len().checked_sub(1)? as f64;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    Some(below + (above - below) * place.fract())
+}
+
+/// The middle of numbers in any order; none without any.
+pub fn median(values: &[f64]) -> Option<f64> {
+    quantile(values, 0.5)
+}
+
+/// The middle half of a set of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quartiles {
+    /// A quarter has less.
+    pub lower: f64,
+    /// Half has less.
+    pub median: f64,
+    /// A quarter has more.
+    pub upper: f64,
+}
+
+impl Quartiles {
+    /// Of numbers in any order; none without any.
+    pub fn of(values: &[f64]) -> Option<Quartiles> {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share| quantile_of_sorted(&sorted, share);
+        Some(Quartiles { lower: at(0.25)?, median: at(0.5)?, upper: at(0.75)? })
+    }
+}
+
+/// An interval, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Where the mean of what these numbers were drawn from lies; none without numbers.
+    pub fn of_mean(values: &[f64]) -> Option<Interval> {
+        bootstrap(values, |drawn| Some(mean(drawn)))
+    }
+
+    /// Where the median of what these numbers were drawn from lies; none without numbers.
+    pub fn of_median(values: &[f64]) -> Option<Interval> {
+        bootstrap(values, |drawn| {
+            drawn.sort_by(f64::total_cmp);
+            quantile_of_sorted(drawn, 0.5)
+        })
+    }
+}
+
+/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value.
+///
+/// The statistic may put the numbers into another order.
+pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
+    let count = u32::try_from(values.len()).ok().filter(|count| *count > 0)?;
+    let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
+    let mut drawn = vec![0.0; values.len()];
+    let mut resample = |_| {
+        drawn.iter_mut().for_each(|place| *place = values[rng.random_range(0..count) as usize]);
+        statistic(&mut drawn)
+    };
+    let mut found: Vec<f64> = (0..RESAMPLES).filter_map(&mut resample).collect();
+    found.sort_by(f64::total_cmp);
+    let at = |share| quantile_of_sorted(&found, share);
+    Some(Interval { low: at((1.0 - LEVEL) / 2.0)?, high: at((1.0 + LEVEL) / 2.0)? })
+}
+
+/// How much more one of two has than the other, pair by pair: the same luck, another decision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairedDifference {
+    /// Mean of the differences.
+    pub mean: f64,
+    /// Where the mean lies.
+    pub interval: Interval,
+    /// Pairs in which the first has more.
+    pub more: u32,
+    /// Pairs that were compared.
+    pub of: u32,
+}
+
+impl PairedDifference {
+    /// Of pairs, what each has of them; pairs without a value in both are left out. None without pairs.
+    pub fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
+        let differences = pairs.into_iter().map(|(own, other)| own - other);
+        let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
+        Some(PairedDifference {
+            mean: mean(&differences),
+            interval: Interval::of_mean(&differences)?,
+            more: differences.iter().filter(|own| **own > 0.0).count() as u32,
+            of: differences.len() as u32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_of_small_sets() {
+        let sample = Sample::of(&[1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((sample.mean, sample.count), (2.5, 4));
+        assert!((sample.std - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_eq!(Sample::of(&[7.0]).std, 0.0);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.25), Some(1.75));
+        assert_eq!(median(&[]), None);
+        let middle = Quartiles { lower: 2.0, median: 3.0, upper: 4.0 };
+        assert_eq!(Quartiles::of(&[5.0, 1.0, 4.0, 2.0, 3.0]), Some(middle));
+        assert_eq!(Quartiles::of(&[]), None);
+    }
+
+    #[test]
+    fn the_interval_of_a_mean_has_the_width_of_its_error() {
+        // Spread 1, twenty values: the mean is known to 1.96 / sqrt(20) = 0.44 on both sides.
+        let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let own = Interval::of_mean(&values).expect("values");
+        assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
+        assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
+        assert_eq!(Interval::of_mean(&[]), None);
+        assert_eq!(Interval::of_mean(&[3.0]), Some(Interval { low: 3.0, high: 3.0 }));
+    }
+
+    #[test]
+    fn the_interval_of_a_median_holds_it_and_shrinks_with_more_numbers() {
+        let spread = |count: u32| -> Vec<f64> { (0..count).map(|at| f64::from((at * 37) % count)).collect() };
+        let few = Interval::of_median(&spread(11)).expect("values");
+        assert!(few.low < 5.0 && few.high > 5.0, "{few:?}");
+        let many = Interval::of_median(&spread(401)).expect("values");
+        assert!(many.low < 200.0 && many.high > 200.0, "{many:?}");
+        assert!((many.high - many.low) / 401.0 < (few.high - few.low) / 11.0, "{many:?} {few:?}");
+    }
+
+    #[test]
+    fn differences_are_taken_pair_by_pair() {
+        let own = PairedDifference::of([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
+        let interval = Interval { low: 2.0, high: 2.0 };
+        assert_eq!(own, PairedDifference { mean: 2.0, interval, more: 2, of: 2 });
+        assert_eq!(PairedDifference::of([(f64::NAN, 1.0)]), None);
+    }
+}

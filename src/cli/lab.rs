@@ -6,6 +6,7 @@ mod experiments;
 mod forecasts;
 mod metrics;
 mod output;
+mod study;
 
 use std::path::{Path, PathBuf};
 
@@ -35,6 +36,10 @@ enum Laboratory {
     Compare(comparison::Options),
     /// Print the figures of a run day by day, hidden ones included: a debug run, or one that is over.
     Metrics(metrics::Options),
+    /// Play policies by scenarios by parameters by seeds into one tidy table, whole or in shards.
+    Study(study::Options),
+    /// Put the shards of a study together.
+    Merge(study::MergeOptions),
     /// Tell what differs between two runs on a day: parts of the state, figures, customers.
     Diff(difference::Options),
 }
@@ -77,6 +82,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Laboratory::Forecasts(options) => forecasts::run(options, context),
         Laboratory::Compare(options) => comparison::run(options, context),
         Laboratory::Metrics(options) => metrics::run(options, context),
+        Laboratory::Study(options) => study::run(options, context),
+        Laboratory::Merge(options) => study::merge(options),
         Laboratory::Diff(options) => difference::run(options, context),
     }
 }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::{Context, Failure, print};
 use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
+pub use crate::lab::{Seeds, parse_seeds};
 use crate::session::{DEFAULT_SCENARIO, list_world};
 
 /// Options of `run`.
@@ -67,28 +68,6 @@ pub enum Switch {
     On,
     /// Off.
     Off,
-}
-
-/// A seed or a range of seeds, both ends included.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seeds {
-    /// First seed.
-    pub first: u64,
-    /// Last seed.
-    pub last: u64,
-}
-
-/// Reads `7` or `1..24`.
-pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
-    let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
-    let seeds = match text.split_once("..") {
-        Some((first, last)) => Seeds { first: number(first)?, last: number(last)? },
-        None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
-    };
-    if seeds.first > seeds.last {
-        return Err(format!("{}..{} holds no seed; put the smaller number first", seeds.first, seeds.last));
-    }
-    Ok(seeds)
 }
 
 /// Reads `table.key=value`.
@@ -260,10 +239,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seeds_are_one_or_a_range_with_both_ends() {
-        assert_eq!(parse_seeds("7"), Ok(Seeds { first: 7, last: 7 }));
-        assert_eq!(parse_seeds("1..24"), Ok(Seeds { first: 1, last: 24 }));
-        assert!(parse_seeds("5..4").is_err() && parse_seeds("x").is_err() && parse_seeds("1..").is_err());
+    fn a_parameter_is_set_by_its_key_and_its_value() {
         assert_eq!(parse_override("a.b = 3"), Ok(("a.b".to_owned(), "3".to_owned())));
         assert!(parse_override("a.b").is_err());
     }

@@ -17,6 +17,8 @@ mod metrics;
 mod policy;
 mod routine;
 mod runner;
+mod seeds;
+pub mod study;
 mod symbols;
 
 pub use crate::rules::answers_to_companies;
@@ -29,3 +31,4 @@ pub use lesson_check::{
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
+pub use seeds::{Seeds, parse_seeds};

@@ -64,7 +64,7 @@ pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use folder::agreement::Agreed;
-pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario};
+pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days};
 pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
 pub use folder::derived::{manifest_of, manifest_text};

@@ -8,6 +8,8 @@ mod exports;
 mod forged;
 mod golden;
 mod hardship;
+#[cfg(unix)]
+mod large_studies;
 mod looking;
 mod plain;
 mod preparation;

@@ -8,7 +8,9 @@ use clap::Args;
 
 use crate::cli::run::{progress_bar, thread_pool};
 use crate::cli::{Context, Failure};
-use crate::lab::experiment::{Conduct, Experiment, ExperimentError, ExperimentResults, ResultStore};
+use crate::lab::experiment::{
+    Conduct, Experiment, ExperimentError, ExperimentResults, Prepared, ResultStore, RunResult,
+};
 
 /// Options of commands that play many runs.
 #[derive(Debug, Clone, Args)]
@@ -24,31 +26,46 @@ pub struct PlayOptions {
 /// Conducts the experiment of a command, whose results are kept under its name: what was played once is not played again.
 ///
 /// # Errors
-/// As [`Experiment::prepare`] and [`crate::lab::experiment::Prepared::conduct`].
+/// An arm could not begin, a run cannot be played, or the results cannot be kept; somebody stopped it.
 pub fn conduct(
     command: &str,
     experiment: &Experiment,
     options: &PlayOptions,
     context: &Context,
 ) -> Result<ExperimentResults, Failure> {
-    conduct_keeping(&context.laboratory()?.join(format!("{command}.jsonl")), experiment, options, context)
+    let path = context.laboratory()?.join(format!("{command}.jsonl"));
+    let all: Vec<usize> = (0..experiment.arms.len() * experiment.seeds.len()).collect();
+    let every = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct(with);
+    with_store(&path, experiment, &all, (options, context), every)
 }
 
-/// The same, with results in a file.
+/// Conducts some runs of an experiment, by their numbers, with results in a file.
 ///
 /// # Errors
 /// The same.
-pub fn conduct_keeping(
+pub fn conduct_some(
     path: &Path,
     experiment: &Experiment,
+    numbers: &[usize],
     options: &PlayOptions,
     context: &Context,
-) -> Result<ExperimentResults, Failure> {
+) -> Result<Vec<RunResult>, Failure> {
+    let some = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct_some(numbers, with);
+    with_store(path, experiment, numbers, (options, context), some)
+}
+
+fn with_store<R>(
+    path: &Path,
+    experiment: &Experiment,
+    numbers: &[usize],
+    (options, context): (&PlayOptions, &Context),
+    conduct: impl FnOnce(Prepared<'_>, &Conduct<'_>) -> Result<R, ExperimentError>,
+) -> Result<R, Failure> {
     let pool = thread_pool(options.jobs)?;
     let store = ResultStore::open(path)
         .map_err(|error| Failure::from(ExperimentError::Store { path: path.to_owned(), error }))?;
     let prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
-    let progress = progress_bar(prepared.left() as u64, "runs");
+    let progress = progress_bar(prepared.left(numbers) as u64, "runs");
     let stop = stopped_by_signals();
     let on_run = || progress.inc(1);
     let with = Conduct {
@@ -58,7 +75,7 @@ pub fn conduct_keeping(
         stop: &stop,
         on_run: &on_run,
     };
-    let results = prepared.conduct(&with);
+    let results = conduct(prepared, &with);
     progress.finish_and_clear();
     Ok(results?)
 }

@@ -30,6 +30,11 @@ pub struct OutputOptions {
 }
 
 impl OutputOptions {
+    /// Whether rows for programs are asked for, where those are what a command prints unless it is told otherwise.
+    pub fn is_of_rows(&self) -> bool {
+        !self.json && self.svg.is_none()
+    }
+
     /// Writes an exhibit as it was asked for.
     ///
     /// # Errors

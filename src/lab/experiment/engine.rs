@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::key::ArmKey;
 use super::result::DayWatch;
-use super::{Arm, Experiment, ResultStore, RunResult};
+use super::{Experiment, ResultStore, RunResult};
 use crate::lab::runner::{self, RunError, RunSpec};
 use crate::session::{Configuration, DayReport};
 
@@ -96,8 +96,8 @@ impl ExperimentResults {
 /// An experiment of which it is known what is left to play.
 pub struct Prepared<'a> {
     experiment: &'a Experiment,
-    /// Keys by arm and seed.
-    keys: Vec<Vec<String>>,
+    /// Runs: their keys, by their numbers; those of the first arm first, each in the order of the seeds.
+    keys: Vec<String>,
     known: BTreeMap<String, RunResult>,
 }
 
@@ -112,22 +112,31 @@ impl Experiment {
         store: Option<&ResultStore>,
         fresh: bool,
     ) -> Result<Prepared<'_>, ExperimentError> {
-        let keys_of = |arm: &Arm| -> Result<Vec<String>, ExperimentError> {
-            let key = ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
-                arm: arm.name.clone(),
-                error: RunError::Start(error),
-            })?;
-            Ok(self.seeds.iter().map(|seed| key.of_seed(*seed)).collect())
-        };
-        let keys: Vec<Vec<String>> = self.arms.iter().map(keys_of).collect::<Result<_, _>>()?;
+        let keys = self.keys(configuration)?;
         let known = match store.filter(|_| !fresh) {
             None => BTreeMap::new(),
             Some(store) => {
-                let all: BTreeSet<String> = keys.iter().flatten().cloned().collect();
+                let all: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
                 store.known(&all).map_err(|error| in_store(store, error))?
             }
         };
         Ok(Prepared { experiment: self, keys, known })
+    }
+
+    /// What names each of its runs, by number: everything that its result depends on.
+    ///
+    /// # Errors
+    /// An arm has no such scenario or a wrong parameter.
+    pub fn keys(&self, configuration: &Configuration) -> Result<Vec<String>, ExperimentError> {
+        let mut keys = Vec::with_capacity(self.arms.len() * self.seeds.len());
+        for arm in &self.arms {
+            let key = ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
+                arm: arm.name.clone(),
+                error: RunError::Start(error),
+            })?;
+            keys.extend(self.seeds.iter().map(|seed| key.of_seed(*seed)));
+        }
+        Ok(keys)
     }
 }
 
@@ -136,91 +145,85 @@ fn in_store(store: &ResultStore, error: io::Error) -> ExperimentError {
 }
 
 impl Prepared<'_> {
-    /// Runs that are still to be played.
-    pub fn left(&self) -> usize {
-        self.to_play().len()
+    /// Runs of some numbers that are still to be played.
+    pub fn left(&self, numbers: &[usize]) -> usize {
+        self.to_play(numbers).len()
     }
 
-    /// Each run that is to be played once, by its key: arm and seed.
-    fn to_play(&self) -> BTreeMap<&str, (usize, u64)> {
-        let mut left = BTreeMap::new();
-        for (arm, keys) in self.keys.iter().enumerate() {
-            for (key, seed) in keys.iter().zip(&self.experiment.seeds) {
-                if !self.known.contains_key(key) {
-                    left.entry(key.as_str()).or_insert((arm, *seed));
-                }
-            }
-        }
-        left
+    /// Each run that is to be played once: its number.
+    fn to_play(&self, numbers: &[usize]) -> Vec<usize> {
+        let mut taken = BTreeSet::new();
+        let is_left = |number: &&usize| {
+            let key = &self.keys[**number];
+            !self.known.contains_key(key) && taken.insert(key)
+        };
+        numbers.iter().filter(is_left).copied().collect()
+    }
+
+    /// Numbers of all runs.
+    pub fn numbers(&self) -> Vec<usize> {
+        (0..self.keys.len()).collect()
     }
 
     /// Plays what is left, and gives all results.
     ///
     /// # Errors
     /// A run cannot be played, a result cannot be kept, or somebody stopped it. What was played before is kept.
-    pub fn conduct(mut self, with: &Conduct<'_>) -> Result<ExperimentResults, ExperimentError> {
-        let mut left: Vec<(String, usize, u64)> =
-            self.to_play().into_iter().map(|(key, (arm, seed))| (key.to_owned(), arm, seed)).collect();
-        // The order in which they are shown.
-        left.sort_by_key(|(_, arm, seed)| (*arm, *seed));
-        let (of, before) = (self.keys.iter().map(Vec::len).sum(), self.known.len());
+    pub fn conduct(self, with: &Conduct<'_>) -> Result<ExperimentResults, ExperimentError> {
+        let (seeds, arms) = (self.experiment.seeds.clone(), self.experiment.arms.len());
+        let all = self.numbers();
+        let mut results = self.conduct_some(&all, with)?.into_iter();
+        let by_arm = (0..arms).map(|_| results.by_ref().take(seeds.len()).collect()).collect();
+        Ok(ExperimentResults { seeds, by_arm })
+    }
+
+    /// Plays what is left of the runs with these numbers, and gives their results in this order.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn conduct_some(
+        mut self,
+        numbers: &[usize],
+        with: &Conduct<'_>,
+    ) -> Result<Vec<RunResult>, ExperimentError> {
+        let left = self.to_play(numbers);
+        let before = numbers.iter().filter(|number| self.known.contains_key(&self.keys[**number])).count();
         let played = AtomicUsize::new(0);
-        let one = |(key, arm, seed): (String, usize, u64)| {
-            let result = play_one(&self.experiment.arms[arm], seed, self.experiment, with)?;
-            let Some(result) = result else {
-                let kept = if with.store.is_some() { before + played.load(Ordering::Relaxed) } else { 0 };
-                return Err(ExperimentError::Stopped { kept, of });
-            };
+        let one = |number: usize| {
+            let Some(result) = self.play(number, with)? else { return Ok(None) };
             if let Some(store) = with.store {
-                store.keep(&key, &result).map_err(|error| in_store(store, error))?;
+                store.keep(&self.keys[number], &result).map_err(|error| in_store(store, error))?;
             }
             played.fetch_add(1, Ordering::Relaxed);
             (with.on_run)();
-            Ok((key, result))
+            Ok(Some((number, result)))
         };
-        let found: Vec<Result<(String, RunResult), ExperimentError>> =
+        let found: Vec<Result<Option<(usize, RunResult)>, ExperimentError>> =
             with.pool.install(|| left.into_par_iter().with_max_len(1).map(one).collect());
-        let kept = if with.store.is_some() { before + played.load(Ordering::Relaxed) } else { 0 };
+        let kept = if with.store.is_some() { before + played.into_inner() } else { 0 };
         for own in found {
-            match own {
-                Ok((key, result)) => drop(self.known.insert(key, result)),
-                // Runs that ended while others were given up count too.
-                Err(ExperimentError::Stopped { of, .. }) => {
-                    return Err(ExperimentError::Stopped { kept, of });
-                }
-                Err(error) => return Err(error),
-            }
+            match own? {
+                Some((number, result)) => self.known.insert(self.keys[number].clone(), result),
+                None => return Err(ExperimentError::Stopped { kept, of: numbers.len() }),
+            };
         }
-        let of_key = |(key, seed): (&String, &u64)| {
-            let mut own = self.known.get(key).cloned()?;
-            own.seed = *seed;
-            Some(own)
-        };
-        let of_arm =
-            |keys: &Vec<String>| keys.iter().zip(&self.experiment.seeds).filter_map(of_key).collect();
-        Ok(ExperimentResults {
-            seeds: self.experiment.seeds.clone(),
-            by_arm: self.keys.iter().map(of_arm).collect(),
-        })
+        Ok(numbers.iter().filter_map(|number| self.known.get(&self.keys[*number]).cloned()).collect())
     }
-}
 
-/// A run; none if it was given up.
-fn play_one(
-    arm: &Arm,
-    seed: u64,
-    experiment: &Experiment,
-    with: &Conduct<'_>,
-) -> Result<Option<RunResult>, ExperimentError> {
-    let goes_on = || !with.stop.load(Ordering::Relaxed);
-    if !goes_on() {
-        return Ok(None);
+    /// A run; none if it was given up.
+    fn play(&self, number: usize, with: &Conduct<'_>) -> Result<Option<RunResult>, ExperimentError> {
+        let seeds = &self.experiment.seeds;
+        let (arm, seed) = (&self.experiment.arms[number / seeds.len()], seeds[number % seeds.len()]);
+        let goes_on = || !with.stop.load(Ordering::Relaxed);
+        if !goes_on() {
+            return Ok(None);
+        }
+        let spec = RunSpec { seed, save: None, projection: false, ..arm.spec.clone() };
+        let mut watch = DayWatch::of(&self.experiment.wanted);
+        let mut day = |report: &DayReport<'_>| watch.day(report);
+        let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
+            .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error })?;
+        let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
+        Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
     }
-    let spec = RunSpec { seed, save: None, projection: false, ..arm.spec.clone() };
-    let mut watch = DayWatch::of(&experiment.wanted);
-    let mut day = |report: &DayReport<'_>| watch.day(report);
-    let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
-        .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error })?;
-    let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
-    Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
 }

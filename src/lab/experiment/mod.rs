@@ -16,6 +16,7 @@ pub use store::ResultStore;
 
 use super::policy::Policy;
 use super::runner::RunSpec;
+use crate::session::{Configuration, RunError};
 
 /// One way to play that is compared with others.
 #[derive(Debug, Clone)]
@@ -32,6 +33,14 @@ impl Arm {
     /// A policy as its file says.
     pub fn new(name: impl Into<String>, policy: Policy) -> Arm {
         Arm { name: name.into(), policy, spec: RunSpec::of_seed(0) }
+    }
+
+    /// Whether its runs could begin: its scenario is there, and its parameters are allowed.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn check(&self, configuration: &Configuration) -> Result<(), RunError> {
+        key::ArmKey::of(self, &Wanted::default(), configuration).map(|_| ())
     }
 }
 

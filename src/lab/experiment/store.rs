@@ -45,12 +45,12 @@ impl ResultStore {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub(super) fn known(&self, keys: &BTreeSet<String>) -> io::Result<BTreeMap<String, RunResult>> {
+    pub(super) fn known(&self, keys: &BTreeSet<&str>) -> io::Result<BTreeMap<String, RunResult>> {
         let mut reader = BufReader::new(File::open(&self.path)?);
         let (mut known, mut line) = (BTreeMap::new(), Vec::new());
         while reader.read_until(b'\n', &mut line)? > 0 {
             let stored: Option<StoredLine<RunResult>> = serde_json::from_slice(&line).ok();
-            if let Some(own) = stored.filter(|own| keys.contains(&own.key)) {
+            if let Some(own) = stored.filter(|own| keys.contains(own.key.as_str())) {
                 known.insert(own.key, own.result);
             }
             line.clear();

@@ -238,15 +238,21 @@ fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterE
 const FEWEST_DAYS: u32 = 7;
 
 /// Whether a run can have this many days.
-pub(in crate::session) fn check_days(days: u32) -> Result<(), String> {
+///
+/// # Errors
+/// It cannot: the days it can have.
+pub fn check_days(days: u32) -> Result<(), String> {
     if (FEWEST_DAYS..=100_000).contains(&days) {
         return Ok(());
     }
     Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
 }
 
-/// Whether a run can start with this much cash.
-pub(in crate::session) fn check_cash(cash: f64) -> Result<(), String> {
+/// Whether a run can start with this much cash, in dollars.
+///
+/// # Errors
+/// It cannot: the cash it can have.
+pub fn check_cash(cash: f64) -> Result<(), String> {
     if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
         return Ok(());
     }

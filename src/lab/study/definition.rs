@@ -1,0 +1,352 @@
+//! Study files: read, checked, and spread out into arms.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::grid::{Level, crossed, flat, value_text};
+use crate::lab::experiment::{Arm, Experiment, Wanted};
+use crate::lab::policy::Policy;
+use crate::lab::runner::RunSpec;
+use crate::lab::seeds::parse_seeds;
+use crate::session::{Configuration, DEFAULT_SCENARIO, RunError, check_cash, check_days};
+use crate::world::params::{ParameterError, line_of_key};
+
+/// Most runs of a study.
+const MOST_RUNS: u64 = 1_000_000;
+
+/// A study that was read: what is played, in the order of its rows.
+#[derive(Debug, Clone)]
+pub struct StudyPlan {
+    /// Name: letters, digits, hyphens and underscores.
+    pub name: String,
+    /// Names of the columns that say what a run is: policy, scenario, and what is varied.
+    pub factors: Vec<String>,
+    /// The values of the factors, by arm.
+    pub levels: Vec<Vec<String>>,
+    /// Arms and seeds.
+    pub experiment: Experiment,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StudyText {
+    name: String,
+    #[serde(default, rename = "description")]
+    _description: String,
+    policies: Vec<String>,
+    #[serde(default)]
+    scenarios: Vec<String>,
+    seeds: SeedsGiven,
+    days: Option<u32>,
+    until: Option<u32>,
+    cash: Option<f64>,
+    surges: Option<bool>,
+    #[serde(default)]
+    daily: bool,
+    #[serde(default)]
+    overrides: Vec<OverrideSet>,
+    #[serde(default)]
+    grid: Table,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "seeds are a number, a range like \"1..24\", or a list of numbers")]
+enum SeedsGiven {
+    One(u64),
+    Range(String),
+    List(Vec<u64>),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OverrideSet {
+    name: String,
+    #[serde(default)]
+    set: Table,
+}
+
+/// A study file with its text, to name the lines of what is wrong.
+struct StudySource<'a> {
+    name: String,
+    text: &'a str,
+}
+
+impl StudySource<'_> {
+    fn wrong(&self, key: &str, problem: impl Into<String>) -> ParameterError {
+        ParameterError {
+            source: self.name.clone(),
+            line: line_of_key(self.text, key),
+            key: key.to_owned(),
+            problem: problem.into(),
+        }
+    }
+
+    /// What is wrong with an override: at the first line that names it from its table on.
+    fn wrong_override(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
+        let from = line_of_key(self.text, within).unwrap_or(1);
+        let names = |line: &&str| line.contains(key) || line.contains(key.rsplit('.').next().unwrap_or(key));
+        let at = self.text.lines().skip(from - 1).position(|line| names(&line));
+        ParameterError {
+            source: self.name.clone(),
+            line: Some(from + at.unwrap_or(0)),
+            key: key.to_owned(),
+            problem: problem.into(),
+        }
+    }
+
+    fn read(&self) -> Result<StudyText, ParameterError> {
+        let at = |line: Option<usize>, key: String, problem: &str| ParameterError {
+            source: self.name.clone(),
+            line,
+            key,
+            problem: problem.to_owned(),
+        };
+        let line = |error: &toml::de::Error| {
+            let start = error.span()?.start.min(self.text.len());
+            Some(self.text[..start].matches('\n').count() + 1)
+        };
+        let reader = toml::Deserializer::parse(self.text)
+            .map_err(|error| at(line(&error), String::new(), error.message()))?;
+        serde_path_to_error::deserialize(reader).map_err(|error| {
+            let key = error.path().to_string();
+            let key = if key == "." { String::new() } else { key };
+            at(line(error.inner()), key, error.inner().message())
+        })
+    }
+}
+
+impl StudyPlan {
+    /// Reads a study file; policies that are files lie beside it.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line and its key.
+    pub fn read(
+        path: &Path,
+        daily: bool,
+        configuration: &Configuration,
+    ) -> Result<StudyPlan, ParameterError> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| ParameterError {
+            source: name.clone(),
+            line: None,
+            key: String::new(),
+            problem: error.to_string(),
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        StudyPlan::of(&StudySource { name, text: &text }, folder, daily, configuration)
+    }
+
+    fn of(
+        source: &StudySource<'_>,
+        folder: &Path,
+        daily: bool,
+        configuration: &Configuration,
+    ) -> Result<StudyPlan, ParameterError> {
+        let own = source.read()?;
+        let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
+        if own.name.is_empty() || own.name.len() > 60 || !own.name.chars().all(fits) {
+            let problem = "a study is named with up to 60 letters, digits, hyphens and underscores";
+            return Err(source.wrong("name", problem));
+        }
+        let policies = policies(source, &own, folder, configuration)?;
+        check_terms(source, &own)?;
+        let levels = varied(source, &own)?;
+        let seeds = seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
+        let mut factors = vec!["policy".to_owned(), "scenario".to_owned()];
+        factors.extend(levels.names.iter().cloned());
+        let (mut arms, mut labels) = (Vec::new(), Vec::new());
+        for policy in &policies {
+            for scenario in scenarios(&own, policy) {
+                for level in &levels.all {
+                    let arm = own.arm(policy, &scenario, level);
+                    check(source, &own, &arm, configuration)?;
+                    arms.push(arm);
+                    let words = [policy.name.clone(), scenario.clone()];
+                    labels.push(words.into_iter().chain(level.labels.iter().cloned()).collect());
+                }
+            }
+        }
+        let wanted = Wanted { daily: own.daily || daily, figures_on: Vec::new() };
+        Ok(StudyPlan {
+            name: own.name,
+            factors,
+            levels: labels,
+            experiment: Experiment { arms, seeds, wanted },
+        })
+    }
+
+    /// The arm and the seed of a run, counted from 0.
+    pub(super) fn run(&self, number: usize) -> (&[String], u64) {
+        let seeds = &self.experiment.seeds;
+        (&self.levels[number / seeds.len()], seeds[number % seeds.len()])
+    }
+}
+
+impl StudyText {
+    fn arm(&self, policy: &Policy, scenario: &str, level: &Level) -> Arm {
+        let name: Vec<&str> = [policy.name.as_str(), scenario]
+            .into_iter()
+            .chain(level.labels.iter().map(String::as_str))
+            .collect();
+        let spec = RunSpec {
+            days: self.days,
+            until: self.until,
+            surges: self.surges,
+            cash: self.cash,
+            scenario: Some(scenario.to_owned()),
+            overrides: level.overrides.clone(),
+            ..RunSpec::of_seed(0)
+        };
+        Arm { name: name.join(", "), policy: policy.clone(), spec }
+    }
+}
+
+/// The scenarios of a policy: those of the study, else its own.
+fn scenarios(own: &StudyText, policy: &Policy) -> Vec<String> {
+    match own.scenarios.is_empty() {
+        true => vec![policy.start.scenario.clone().unwrap_or(DEFAULT_SCENARIO.to_owned())],
+        false => own.scenarios.clone(),
+    }
+}
+
+fn policies(
+    source: &StudySource<'_>,
+    own: &StudyText,
+    folder: &Path,
+    configuration: &Configuration,
+) -> Result<Vec<Policy>, ParameterError> {
+    if own.policies.is_empty() {
+        return Err(source.wrong("policies", "a study plays at least one policy"));
+    }
+    let mut found: Vec<Policy> = Vec::new();
+    for (at, name) in own.policies.iter().enumerate() {
+        let key = format!("policies.{at}");
+        let is_file = name.ends_with(".toml") || name.contains(std::path::is_separator);
+        let place = if is_file { folder.join(name).display().to_string() } else { name.clone() };
+        let policy =
+            Policy::find(&place, configuration).map_err(|error| source.wrong(&key, error.to_string()))?;
+        if policy.name.chars().any(char::is_control) {
+            return Err(source.wrong(&key, "the name of the policy holds letters that no table can"));
+        }
+        if found.iter().any(|other| other.name == policy.name) {
+            return Err(source.wrong(&key, format!("two policies are called {}", policy.name)));
+        }
+        found.push(policy);
+    }
+    Ok(found)
+}
+
+/// What is varied beside policies, scenarios and seeds.
+struct Varied {
+    names: Vec<String>,
+    all: Vec<Level>,
+}
+
+fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, ParameterError> {
+    let (mut names, mut all) = (Vec::new(), vec![Level::default()]);
+    if !own.overrides.is_empty() {
+        names.push("overrides".to_owned());
+        let mut sets: Vec<Level> = Vec::new();
+        for (at, set) in own.overrides.iter().enumerate() {
+            let is_taken = sets.iter().any(|other| other.labels[0] == set.name);
+            if set.name.is_empty() || is_taken || set.name.chars().any(char::is_control) {
+                let problem = "sets of overrides have names, each another one";
+                return Err(source.wrong(&format!("overrides.{at}"), problem));
+            }
+            let overrides = flat(&set.set).into_iter().map(|(key, value)| (key, value_text(value)));
+            sets.push(Level { labels: vec![set.name.clone()], overrides: overrides.collect() });
+        }
+        all = crossed(&all, &sets);
+    }
+    for (key, values) in flat(&own.grid) {
+        let Value::Array(values) = values else {
+            return Err(source.wrong_override("grid", &key, "a list of values is varied"));
+        };
+        if values.is_empty() {
+            return Err(source.wrong_override("grid", &key, "a list without values leaves nothing to play"));
+        }
+        let level = |value: &Value| {
+            let text = value_text(value);
+            let label = value.as_str().map_or(text.clone(), str::to_owned);
+            Level { labels: vec![label], overrides: vec![(key.clone(), text)] }
+        };
+        let own: Vec<Level> = values.iter().map(level).collect();
+        names.push(key.clone());
+        all = crossed(&all, &own);
+    }
+    Ok(Varied { names, all })
+}
+
+fn seeds(
+    source: &StudySource<'_>,
+    own: &StudyText,
+    arms: u64,
+    levels: &Varied,
+) -> Result<Vec<u64>, ParameterError> {
+    let arms = arms.saturating_mul(levels.all.len() as u64);
+    let most = MOST_RUNS / arms.max(1);
+    let too_many = |count: u64| {
+        let problem = format!(
+            "{count} seeds for each of {arms} arms are more than the {MOST_RUNS} runs a study may have: make several of it"
+        );
+        source.wrong("seeds", problem)
+    };
+    let seeds: Vec<u64> = match &own.seeds {
+        SeedsGiven::One(seed) => vec![*seed],
+        SeedsGiven::List(seeds) => seeds.clone(),
+        SeedsGiven::Range(text) => {
+            let range = parse_seeds(text).map_err(|problem| source.wrong("seeds", problem))?;
+            let count = (range.last - range.first).saturating_add(1);
+            if count > most {
+                return Err(too_many(count));
+            }
+            (range.first..=range.last).collect()
+        }
+    };
+    let mut sorted = seeds.clone();
+    sorted.sort_unstable();
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(source.wrong("seeds", format!("seed {} stands twice", pair[0])));
+    }
+    match seeds.len() as u64 {
+        0 => Err(source.wrong("seeds", "a study has at least one seed")),
+        count if count > most => Err(too_many(count)),
+        _ => Ok(seeds),
+    }
+}
+
+/// Days and cash that a run can have.
+fn check_terms(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
+    own.days.map_or(Ok(()), check_days).map_err(|problem| source.wrong("days", problem))?;
+    own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.wrong("cash", problem))?;
+    match own.until {
+        Some(0) => Err(source.wrong("until", "a run goes on for a day at least")),
+        _ => Ok(()),
+    }
+}
+
+/// Whether an arm could begin.
+fn check(
+    source: &StudySource<'_>,
+    own: &StudyText,
+    arm: &Arm,
+    configuration: &Configuration,
+) -> Result<(), ParameterError> {
+    let Err(error) = arm.check(configuration) else { return Ok(()) };
+    if let RunError::Configuration(wrong) = &error {
+        let concerns = |key: &&String| {
+            wrong.key == **key || wrong.key.starts_with(&format!("{key}.")) || wrong.source.contains(*key)
+        };
+        let given = arm.spec.overrides.iter().map(|(key, _)| key).find(concerns);
+        if let Some(key) = given {
+            let is_of_grid = flat(&own.grid).iter().any(|(other, _)| other == key);
+            let within = if is_of_grid { "grid" } else { "overrides" };
+            return Err(source.wrong_override(within, key, wrong.problem.clone()));
+        }
+    }
+    let at = own.scenarios.iter().position(|name| Some(name) == arm.spec.scenario.as_ref());
+    let key = at.map_or("policies".to_owned(), |at| format!("scenarios.{at}"));
+    Err(source.wrong(&key, error.to_string()))
+}

@@ -1,0 +1,91 @@
+//! The rows of a study: one for each run, or one for each run and day.
+
+use super::StudyPlan;
+use crate::lab::experiment::{DayPoint, RunResult};
+use crate::lab::runner::RunEnd;
+
+const OF_RUN: [&str; 10] = [
+    "days",
+    "day",
+    "ended",
+    "cash",
+    "subscribers",
+    "seats",
+    "peak_subscribers",
+    "peak_day",
+    "mrr",
+    "state_hash",
+];
+
+const OF_DAY: [&str; 12] = [
+    "day",
+    "cash",
+    "mrr",
+    "subscribers",
+    "seats",
+    "individual_leads",
+    "enterprise_leads",
+    "new_subscribers",
+    "cancellations",
+    "payments",
+    "costs",
+    "usage",
+];
+
+/// The names of the columns.
+pub fn head(plan: &StudyPlan) -> Vec<String> {
+    let own: &[&str] = if plan.experiment.wanted.daily { &OF_DAY } else { &OF_RUN };
+    let before = std::iter::once("run".to_owned()).chain(plan.factors.iter().cloned());
+    before.chain(["seed".to_owned()]).chain(own.iter().map(|name| (*name).to_owned())).collect()
+}
+
+/// The rows of a run, by its number from 0. Numbers are in the shortest form that reads back to the same value.
+pub fn rows(plan: &StudyPlan, number: usize, result: &RunResult) -> Vec<Vec<String>> {
+    let (levels, seed) = plan.run(number);
+    let mut before = vec![(number + 1).to_string()];
+    before.extend(levels.iter().cloned());
+    before.push(seed.to_string());
+    let row = |own: Vec<String>| before.iter().cloned().chain(own).collect();
+    if plan.experiment.wanted.daily {
+        return result.daily.iter().map(of_day).map(row).collect();
+    }
+    vec![row(of_run(result))]
+}
+
+fn of_run(own: &RunResult) -> Vec<String> {
+    let ended = match own.ended {
+        RunEnd::Horizon => "horizon",
+        RunEnd::Until => "until",
+        RunEnd::Bankruptcy => "bankruptcy",
+    };
+    let mrr = own.weeks.last().map(|week| week.mrr.to_string()).unwrap_or_default();
+    vec![
+        own.days.to_string(),
+        own.day.to_string(),
+        ended.to_owned(),
+        own.cash.to_string(),
+        own.subscribers.to_string(),
+        own.seats.to_string(),
+        own.peak_subscribers.to_string(),
+        own.peak_day.to_string(),
+        mrr,
+        own.state_hash.clone(),
+    ]
+}
+
+fn of_day(own: &DayPoint) -> Vec<String> {
+    vec![
+        own.day.to_string(),
+        own.cash.to_string(),
+        own.mrr.to_string(),
+        own.subscribers.to_string(),
+        own.seats.to_string(),
+        own.individual_leads.to_string(),
+        own.enterprise_leads.to_string(),
+        own.new_subscribers.to_string(),
+        own.cancellations.to_string(),
+        own.payments.to_string(),
+        own.costs.to_string(),
+        own.usage.to_string(),
+    ]
+}

@@ -1,0 +1,220 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::*;
+use crate::session::Configuration;
+
+fn write(folder: &Path, text: &str) -> PathBuf {
+    let path = folder.join("study.toml");
+    fs::write(&path, text).expect("a file");
+    path
+}
+
+const GOOD: &str = r#"
+name = "copying"
+description = "how much rivals copy"
+policies = ["P0", "mine.toml"]
+scenarios = ["default", "competitor-hard"]
+seeds = "1..3"
+days = 14
+
+[[overrides]]
+name = "as shipped"
+
+[[overrides]]
+name = "no surges"
+set = { "demand_surge.probability" = 0.0 }
+
+[grid]
+"leads.saturation_base" = [12.5, 14.5]
+"#;
+
+#[test]
+fn a_study_spreads_out_into_arms_in_the_order_of_its_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("mine.toml"), "name = \"mine\"\n[start]\ncash = 2e6\n").expect("a policy");
+    let path = write(folder.path(), GOOD);
+    let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
+    assert_eq!(plan.factors, ["policy", "scenario", "overrides", "leads.saturation_base"]);
+    assert_eq!((plan.experiment.arms.len(), plan.experiment.seeds.len()), (16, 3));
+    assert_eq!(plan.levels[0], ["P0", "default", "as shipped", "12.5"]);
+    assert_eq!(plan.levels[3], ["P0", "default", "no surges", "14.5"]);
+    assert_eq!(plan.levels[15], ["mine", "competitor-hard", "no surges", "14.5"]);
+    assert_eq!(plan.experiment.arms[3].spec.overrides.len(), 2);
+    let names = head(&plan);
+    assert_eq!(names[..6], ["run", "policy", "scenario", "overrides", "leads.saturation_base", "seed"]);
+    assert!(!plan.experiment.wanted.daily);
+    assert!(
+        StudyPlan::read(&path, true, &Configuration::shipped()).expect("a study").experiment.wanted.daily
+    );
+}
+
+#[test]
+fn wrong_studies_name_line_and_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let begin = "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\n";
+    for (text, line, parts) in [
+        ("name = \"x\"\npolicies = [\"P0\"]\nseed = 1\n".to_owned(), Some(3), ["seed", "unknown"]),
+        ("name = \"x\"\npolicies = [\"P0\"]\n".to_owned(), Some(1), ["seeds", "missing"]),
+        ("name = \"a/b\"\npolicies = [\"P0\"]\nseeds = 1\n".to_owned(), Some(1), ["name", "letters"]),
+        ("name = \"x\"\npolicies = []\nseeds = 1\n".to_owned(), Some(2), ["policies", "at least one"]),
+        (
+            "name = \"x\"\npolicies = [\n \"P0\",\n \"P77\",\n]\nseeds = 1\n".to_owned(),
+            Some(4),
+            ["policies.1", "P77"],
+        ),
+        (
+            "name = \"x\"\npolicies = [\"P0\", \"P0\"]\nseeds = 1\n".to_owned(),
+            Some(2),
+            ["policies.1", "two policies"],
+        ),
+        ("name = \"x\"\npolicies = [\"P0\"]\nseeds = \"3..1\"\n".to_owned(), Some(3), ["seeds", "smaller"]),
+        (
+            "name = \"x\"\npolicies = [\"P0\"]\nseeds = [1, 2, 1]\n".to_owned(),
+            Some(3),
+            ["seeds", "seed 1 stands twice"],
+        ),
+        ("name = \"x\"\npolicies = [\"P0\"]\nseeds = []\n".to_owned(), Some(3), ["seeds", "at least one"]),
+        ("name = \"x\"\npolicies = [\"P0\"]\nseeds = -1\n".to_owned(), Some(3), ["seeds", "a number"]),
+        (
+            "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..18446744073709551615\"\n".to_owned(),
+            Some(3),
+            ["seeds", "1000000 runs"],
+        ),
+        (format!("{begin}days = 3\n"), Some(4), ["days", "between 7"]),
+        (format!("{begin}days = \"long\"\n"), Some(4), ["days", "long"]),
+        (format!("{begin}cash = -1.0\n"), Some(4), ["cash", "above 0"]),
+        (format!("{begin}until = 0\n"), Some(4), ["until", "a day at least"]),
+        (format!("{begin}scenarios = [\"default\", \"nowhere\"]\n"), Some(4), ["scenarios.1", "nowhere"]),
+        (
+            format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"a\"\n"),
+            Some(7),
+            ["overrides.1", "another one"],
+        ),
+        (
+            format!("{begin}\n[[overrides]]\nname = \"a\"\nset = {{ \"leads.nothing\" = 1 }}\n"),
+            Some(7),
+            ["leads.nothing", "leads"],
+        ),
+        (
+            format!("{begin}\n[grid]\n\"demand_surge.probability\" = [0.1, 7.0]\n"),
+            Some(6),
+            ["demand_surge.probability", "7"],
+        ),
+        (
+            format!("{begin}\n[grid]\ndemand_surge.probability = 0.1\n"),
+            Some(6),
+            ["demand_surge.probability", "a list"],
+        ),
+        (format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"), Some(6), ["leads", "nothing to play"]),
+        ("name = \"x\"\npolicies = [\"P0\"\nseeds = 1\n".to_owned(), Some(3), ["", ""]),
+    ] {
+        let path = write(folder.path(), &text);
+        let error = StudyPlan::read(&path, false, &Configuration::shipped()).expect_err(&text);
+        assert_eq!(error.line, line, "{text}: {error}");
+        for part in parts {
+            assert!(error.to_string().contains(part), "{part}: {error}");
+        }
+    }
+    let missing = StudyPlan::read(&folder.path().join("none.toml"), false, &Configuration::shipped());
+    assert!(missing.expect_err("no file").to_string().contains("none.toml"));
+}
+
+#[test]
+fn shards_are_read_and_share_all_runs_out() {
+    assert_eq!(parse_shard("2/4"), Ok(Shard { shard: 2, of: 4 }));
+    for wrong in ["0/4", "5/4", "4", "a/b", "1/0", "1/100001", ""] {
+        assert!(parse_shard(wrong).is_err(), "{wrong}");
+    }
+    for runs in [0, 1, 7, 200] {
+        for of in [1, 3, 4, 250] {
+            let mut all: Vec<usize> = (1..=of).flat_map(|shard| Shard { shard, of }.numbers(runs)).collect();
+            all.sort_unstable();
+            assert_eq!(all, (0..runs).collect::<Vec<_>>(), "{runs} runs in {of} shards");
+        }
+    }
+}
+
+/// Shards of a study of so many runs; each run has one row, or as many as its number.
+fn shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec<PathBuf>) {
+    let rows = |run: usize| -> String {
+        let count = if has_many { run % 3 + 1 } else { 1 };
+        (0..count).map(|row| format!("{run},row {row}\n")).collect()
+    };
+    let whole = format!("run,what\n{}", (1..=runs).map(rows).collect::<String>());
+    let write = |shard| {
+        let part = Shard { shard, of };
+        let own: String = part.numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
+        let path = folder.join(ShardHead::file_name("s", part));
+        fs::write(&path, ShardHead::sealed("s", "d", part, &format!("run,what\n{own}"))).expect("a file");
+        path
+    };
+    (whole, (1..=of).map(write).collect())
+}
+
+fn merged(places: &[PathBuf]) -> Result<String, String> {
+    let shards = Shards::of(places).map_err(|error| error.to_string())?;
+    let mut out = Vec::new();
+    shards.write(&mut out).map_err(|error| error.to_string())?;
+    Ok(String::from_utf8(out).expect("UTF-8"))
+}
+
+#[test]
+fn merged_shards_are_the_study_that_was_not_split() {
+    for (runs, of, has_many) in [(10, 4, false), (10, 4, true), (3, 5, false), (0, 2, false), (7, 1, true)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (whole, mut files) = shards(folder.path(), runs, of, has_many);
+        assert_eq!(merged(&[folder.path().to_owned()]), Ok(whole.clone()), "{runs} runs in {of} shards");
+        files.reverse();
+        assert_eq!(merged(&files), Ok(whole.clone()), "any order");
+        files.push(folder.path().to_owned());
+        assert_eq!(merged(&files), Ok(whole), "named twice is there once");
+    }
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, files) = shards(folder.path(), 10, 4, false);
+    let fails = |places: &[PathBuf], parts: &[&str]| {
+        let error = merged(places).expect_err("refused");
+        assert!(error.ends_with("nothing was written"), "{error}");
+        for part in parts {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    };
+    fails(&files[..3], &["missing: s.4-of-4.csv"]);
+    let twin = folder.path().join("twin.csv");
+    fs::copy(&files[1], &twin).expect("a copy");
+    let mut with_twin = files.clone();
+    with_twin.push(twin.clone());
+    fails(&with_twin, &["twin.csv", "s.2-of-4.csv", "both shard 2 of 4"]);
+    let foreign = ShardHead::sealed("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
+    fs::write(&twin, foreign).expect("a file");
+    fails(
+        &[files[..3].to_vec(), vec![twin.clone()]].concat(),
+        &["twin.csv is another s", "missing: s.4-of-4.csv"],
+    );
+    let other = ShardHead::sealed("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
+    fs::write(&twin, other).expect("a file");
+    fails(&[files.clone(), vec![twin.clone()]].concat(), &["twin.csv belongs to the study t"]);
+    fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
+    fails(&[files.clone(), vec![twin]].concat(), &["twin.csv", "no shard"]);
+    let bytes = fs::read(&files[2]).expect("a shard");
+    for damaged in
+        [&bytes[..bytes.len() - 1], &bytes[..bytes.len() / 2], &[bytes.as_slice(), b"9,9\n"].concat()]
+    {
+        fs::write(&files[2], damaged).expect("a file");
+        fails(&files, &["s.3-of-4.csv"]);
+    }
+    fails(&[folder.path().join("nowhere")], &["nowhere"]);
+    let empty = tempfile::tempdir().expect("a folder");
+    fails(&[empty.path().to_owned()], &["there is no shard"]);
+}
+
+#[test]
+fn the_study_of_the_guide_is_one() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab/examples/copying.toml");
+    let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
+    assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as its first line says");
+}

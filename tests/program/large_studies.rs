@@ -1,0 +1,244 @@
+//! Large studies: split by an existing scheduler, killed, repeated, put together; a full disk, a stop, wrong places.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::support::home::{Home, said};
+
+/// 200 short runs.
+const STUDY: &str = r#"
+name = "small"
+policies = ["P0", "P1b"]
+seeds = "1..50"
+days = 28
+
+[grid]
+"demand_surge.probability" = [0.0, 0.2]
+"#;
+
+const SHARDS: usize = 4;
+/// The shard that is killed.
+const KILLED: usize = 3;
+
+fn study(home: &Home, text: &str) -> String {
+    let path = home.0.path().join("study.toml");
+    fs::write(&path, text).expect("a file");
+    path.to_string_lossy().into_owned()
+}
+
+/// The files in which runs are kept.
+fn kept(home: &Home) -> Vec<PathBuf> {
+    let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
+    entries.map(|entry| entry.path()).collect()
+}
+
+/// Runs that are kept of a shard, or of the study that is not split.
+fn kept_runs(home: &Home, ending: &str) -> usize {
+    let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
+    let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
+    bytes.iter().filter(|byte| **byte == b'\n').count()
+}
+
+fn signal(name: &str, process: &str) {
+    let sent = Command::new("kill").args([name, process]).status().expect("kill");
+    assert!(sent.success(), "{name} {process}");
+}
+
+/// Waits until something is so.
+fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < Duration::from_secs(300), "{what} does not come");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// How shards are started: by GNU parallel where it is installed, else by the test itself.
+struct Scheduler<'a> {
+    home: &'a Home,
+    file: &'a str,
+    out: &'a Path,
+    has_parallel: bool,
+}
+
+impl Scheduler<'_> {
+    fn of<'a>(home: &'a Home, file: &'a str, out: &'a Path) -> Scheduler<'a> {
+        let found = Command::new("parallel").arg("--version").output();
+        let has_parallel =
+            found.is_ok_and(|own| String::from_utf8_lossy(&own.stdout).starts_with("GNU parallel"));
+        if !has_parallel {
+            eprintln!("SKIPPED: GNU parallel is not installed; this test starts the shards itself");
+        }
+        Scheduler { home, file, out, has_parallel }
+    }
+
+    /// The shell's command of a shard; its process leaves its number.
+    fn shard(&self, shard: &str) -> String {
+        let folder = self.home.0.path().display();
+        format!(
+            "echo $$ > '{folder}/process-{shard}'; exec '{}' lab study '{}' --shard {shard}/{SHARDS} --out '{}' --jobs 1",
+            env!("CARGO_BIN_EXE_novamind"),
+            self.file,
+            self.out.display()
+        )
+    }
+
+    /// Starts all shards, or those that failed before.
+    fn start(&self, only_failed: bool) -> Vec<Child> {
+        let quiet = |command: &mut Command| {
+            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts")
+        };
+        if !self.has_parallel {
+            let shards = (1..=SHARDS).filter(|shard| !only_failed || *shard == KILLED);
+            let start = |shard: usize| {
+                quiet(self.home.command("sh").args(["-c", &self.shard(&shard.to_string())]))
+            };
+            return shards.map(start).collect();
+        }
+        let log = self.home.0.path().join("log").display().to_string();
+        let mut command = self.home.command("parallel");
+        command.env("HOME", self.home.0.path()).args(["--will-cite", "--jobs", "4", "--joblog", &log]);
+        if only_failed {
+            command.arg("--resume-failed");
+        }
+        command.arg(self.shard("{}")).arg(":::").args((1..=SHARDS).map(|shard| shard.to_string()));
+        vec![quiet(&mut command)]
+    }
+
+    fn wait(mut children: Vec<Child>) -> bool {
+        children.iter_mut().map(|child| child.wait().expect("it ends").success()).fold(true, |all, own| all && own)
+    }
+}
+
+#[test]
+fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split() {
+    let (home, alone) = (Home::new(), Home::new());
+    let file = study(&home, STUDY);
+    let whole = alone.run(&["lab", "study", &file]);
+    assert_eq!(whole.code, 0, "{}", whole.err);
+    assert_eq!(whole.out.lines().count(), 201);
+
+    let out = home.0.path().join("shards");
+    let scheduler = Scheduler::of(&home, &file, &out);
+    let first = scheduler.start(false);
+    let own = format!(".{KILLED}-of-{SHARDS}.jsonl");
+    wait_for("a run of the shard", || kept_runs(&home, &own) > 2);
+    let process = fs::read_to_string(home.0.path().join(format!("process-{KILLED}"))).expect("a number");
+    signal("-KILL", process.trim());
+    assert!(!Scheduler::wait(first), "a killed shard is a failure");
+    let before = kept_runs(&home, &own);
+    assert!((3..50).contains(&before), "killed in the middle: {before}");
+    let folder = out.to_string_lossy().into_owned();
+    home.run(&["lab", "merge", &folder]).fails(1, &["missing: small.3-of-4.csv", "nothing was written"]);
+
+    assert!(Scheduler::wait(scheduler.start(true)), "the shard is played to its end");
+    assert_eq!(kept_runs(&home, &own), 50 + usize::from(has_half_a_line(&home, &own)), "no run is played twice");
+    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 50, "the others are not played again");
+    let merged = home.run(&["lab", "merge", &folder]);
+    assert_eq!((merged.code, merged.err.as_str()), (0, ""));
+    assert_eq!(merged.out.as_bytes(), whole.out.as_bytes());
+    let into = home.0.path().join("small.csv").to_string_lossy().into_owned();
+    assert_eq!(home.run(&["lab", "merge", &folder, "--out", &into]).code, 0);
+    assert_eq!(fs::read(&into).expect("rows"), whole.out.as_bytes());
+}
+
+/// Whether the kill cut a line off: it stays, and its run was played again.
+fn has_half_a_line(home: &Home, ending: &str) -> bool {
+    let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
+    let text = fs::read_to_string(own).expect("lines");
+    text.lines().any(|line| serde_json::from_str::<serde_json::Value>(line).is_err())
+}
+
+/// Twenty runs.
+const FEW: &str = "name = \"few\"\npolicies = [\"P1b\"]\nseeds = \"1..20\"\ndays = 56\n";
+
+#[test]
+fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
+    let (home, alone) = (Home::new(), Home::new());
+    let file = study(&home, FEW);
+    let whole = alone.run(&["lab", "study", &file]);
+    let mut command = home.program();
+    command.args(["lab", "study", &file, "--jobs", "1"]);
+    let child = command.spawn().expect("the program starts");
+    wait_for("a run", || kept_runs(&home, ".jsonl") > 1);
+    signal("-INT", &child.id().to_string());
+    let output = child.wait_with_output().expect("it ends");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
+    let done = kept_runs(&home, ".jsonl");
+    assert!(told.contains(&format!("stopped: {done} of 20 runs are kept, and the same command goes on")), "{told}");
+    let rest = home.run(&["lab", "study", &file]);
+    assert_eq!((rest.code, rest.out), (0, whole.out));
+    assert_eq!(kept_runs(&home, ".jsonl"), 20, "no run is played twice");
+}
+
+#[test]
+fn a_full_disk_loses_nothing_that_was_kept() {
+    let (home, alone) = (Home::new(), Home::new());
+    let file = study(&home, FEW);
+    let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
+    let whole = alone.run(&["lab", "study", &file]).out;
+    let program = env!("CARGO_BIN_EXE_novamind");
+    // Blocks of 512 bytes: room for some of the runs, and then for all of them but not for the rows.
+    let limited = |blocks: usize, more: &str| {
+        let script =
+            format!("trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}");
+        said(home.command("sh").args(["-c", &script]), "")
+    };
+    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "is safe"]);
+    let before = kept_runs(&home, ".jsonl");
+    assert!((1..20).contains(&before), "{before}");
+    let last = fs::read(&kept(&home)[0]).expect("runs");
+    assert!(last.ends_with(b"\n"), "what did not fit is taken back");
+    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
+    assert_eq!(kept_runs(&home, ".jsonl"), 20);
+    limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
+    assert!(!Path::new(&into).exists(), "half a table is none");
+    let told = home.run(&["lab", "study", &file, "--out", &into]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
+    assert!(told.out.contains("median final cash") && told.out.contains("P1b"), "{}", told.out);
+    assert!(told.out.lines().all(|line| line.chars().count() <= 100), "{}", told.out);
+}
+
+#[test]
+fn places_that_cannot_be_written_are_told_before_anything_is_played() {
+    let home = Home::new();
+    let file = study(&home, FEW);
+    let inside = format!("{file}/shards");
+    home.run(&["lab", "study", &file, "--shard", "1/2", "--out", &inside]).fails(1, &["study.toml/shards"]);
+    assert_eq!(kept_runs(&home, ".jsonl"), 0);
+    let wrong = home.run(&["lab", "study", &file, "--shard", "3/2", "--out", "x"]);
+    assert!(wrong.code == 2 && wrong.err.contains("3/2 is no shard"), "{}", wrong.err);
+    fs::write(home.runs().join(".lab"), "a file").expect("a file");
+    home.run(&["lab", "study", &file]).fails(1, &[".lab"]);
+    let wrong = study(&home, "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\nday = 4\n");
+    home.run(&["lab", "study", &wrong]).fails(3, &["study.toml, line 4", "day"]);
+}
+
+#[test]
+fn a_study_by_days_has_a_row_for_each_run_and_day() {
+    let home = Home::new();
+    let file = study(&home, "name = \"d\"\npolicies = [\"P0\", \"P1b\"]\nseeds = [3, 9]\ndays = 14\n");
+    let check = home.run(&["lab", "study", &file, "--check"]);
+    assert_eq!((check.code, check.out.as_str()), (0, "d: 2 arms by 2 seeds, 4 runs\n"));
+    let daily = home.run(&["lab", "study", &file, "--daily"]);
+    assert_eq!(daily.code, 0, "{}", daily.err);
+    let lines: Vec<&str> = daily.out.lines().collect();
+    assert_eq!(lines.len(), 1 + 4 * 14);
+    assert!(lines[0].starts_with("run,policy,scenario,seed,day,cash,mrr,subscribers"), "{}", lines[0]);
+    let ends = home.run(&["lab", "study", &file]).out;
+    let cell = |line: &str, name: &str, head: &str| {
+        let at = head.split(',').position(|own| own == name).expect("a column");
+        line.split(',').nth(at).expect("a cell").to_owned()
+    };
+    let head = ends.lines().next().expect("a head");
+    for (at, end) in ends.lines().skip(1).enumerate() {
+        let last = lines[14 * (at + 1)];
+        for name in ["run", "policy", "seed", "day", "cash", "subscribers", "seats", "mrr"] {
+            assert_eq!(cell(last, name, lines[0]), cell(end, name, head), "{name} of {end}");
+        }
+    }
+}

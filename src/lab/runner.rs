@@ -215,10 +215,12 @@ pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
 
 /// The run a policy asks for.
 pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
-    let mut overrides = spec.overrides.clone();
+    // What is set by name comes after what the policy says, and wins.
+    let mut overrides = Vec::new();
     if spec.surges.or(policy.start.surges) == Some(false) {
         overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));
     }
+    overrides.extend(spec.overrides.iter().cloned());
     let standard = NewRun::default();
     NewRun {
         lesson: None,

@@ -15,7 +15,7 @@ seeds = "1..50"
 days = 28
 
 [grid]
-"demand_surge.probability" = [0.0, 0.2]
+"demand_surge.probability" = [0.0, 0.01]
 "#;
 
 const SHARDS: usize = 4;
@@ -88,13 +88,17 @@ impl Scheduler<'_> {
     /// Starts all shards, or those that failed before.
     fn start(&self, only_failed: bool) -> Vec<Child> {
         let quiet = |command: &mut Command| {
-            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts")
+            command
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .expect("it starts")
         };
         if !self.has_parallel {
             let shards = (1..=SHARDS).filter(|shard| !only_failed || *shard == KILLED);
-            let start = |shard: usize| {
-                quiet(self.home.command("sh").args(["-c", &self.shard(&shard.to_string())]))
-            };
+            let start =
+                |shard: usize| quiet(self.home.command("sh").args(["-c", &self.shard(&shard.to_string())]));
             return shards.map(start).collect();
         }
         let log = self.home.0.path().join("log").display().to_string();
@@ -108,7 +112,10 @@ impl Scheduler<'_> {
     }
 
     fn wait(mut children: Vec<Child>) -> bool {
-        children.iter_mut().map(|child| child.wait().expect("it ends").success()).fold(true, |all, own| all && own)
+        children
+            .iter_mut()
+            .map(|child| child.wait().expect("it ends").success())
+            .fold(true, |all, own| all && own)
     }
 }
 
@@ -134,7 +141,11 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     home.run(&["lab", "merge", &folder]).fails(1, &["missing: small.3-of-4.csv", "nothing was written"]);
 
     assert!(Scheduler::wait(scheduler.start(true)), "the shard is played to its end");
-    assert_eq!(kept_runs(&home, &own), 50 + usize::from(has_half_a_line(&home, &own)), "no run is played twice");
+    assert_eq!(
+        kept_runs(&home, &own),
+        50 + usize::from(has_half_a_line(&home, &own)),
+        "no run is played twice"
+    );
     assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 50, "the others are not played again");
     let merged = home.run(&["lab", "merge", &folder]);
     assert_eq!((merged.code, merged.err.as_str()), (0, ""));
@@ -168,7 +179,10 @@ fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
     let done = kept_runs(&home, ".jsonl");
-    assert!(told.contains(&format!("stopped: {done} of 20 runs are kept, and the same command goes on")), "{told}");
+    assert!(
+        told.contains(&format!("stopped: {done} of 20 runs are kept, and the same command goes on")),
+        "{told}"
+    );
     let rest = home.run(&["lab", "study", &file]);
     assert_eq!((rest.code, rest.out), (0, whole.out));
     assert_eq!(kept_runs(&home, ".jsonl"), 20, "no run is played twice");
@@ -183,8 +197,9 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let program = env!("CARGO_BIN_EXE_novamind");
     // Blocks of 512 bytes: room for some of the runs, and then for all of them but not for the rows.
     let limited = |blocks: usize, more: &str| {
-        let script =
-            format!("trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}");
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"
+        );
         said(home.command("sh").args(["-c", &script]), "")
     };
     limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "is safe"]);
@@ -199,7 +214,7 @@ fn a_full_disk_loses_nothing_that_was_kept() {
     let told = home.run(&["lab", "study", &file, "--out", &into]);
     assert_eq!(told.code, 0, "{}", told.err);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
-    assert!(told.out.contains("median final cash") && told.out.contains("P1b"), "{}", told.out);
+    assert!(told.out.contains("few: 1 arm by 20 seeds") && told.out.contains("P1b"), "{}", told.out);
     assert!(told.out.lines().all(|line| line.chars().count() <= 100), "{}", told.out);
 }
 
@@ -229,6 +244,8 @@ fn a_study_by_days_has_a_row_for_each_run_and_day() {
     let lines: Vec<&str> = daily.out.lines().collect();
     assert_eq!(lines.len(), 1 + 4 * 14);
     assert!(lines[0].starts_with("run,policy,scenario,seed,day,cash,mrr,subscribers"), "{}", lines[0]);
+    let worlds = fs::read_to_string(home.runs().join("worlds.jsonl")).expect("a list");
+    assert!(worlds.contains(r#""by":"lab","seed":3,"to_seed":9,"scenario":"default""#), "{worlds}");
     let ends = home.run(&["lab", "study", &file]).out;
     let cell = |line: &str, name: &str, head: &str| {
         let at = head.split(',').position(|own| own == name).expect("a column");

@@ -10,7 +10,8 @@ use super::experiments::{PlayOptions, conduct_some};
 use super::output::OutputOptions;
 use crate::cli::runs::as_csv;
 use crate::cli::{Context, Failure, print};
-use crate::lab::study::{Shard, ShardHead, Shards, StudyPlan, head, parse_shard, rows, summary};
+use crate::lab::study::{Shard, ShardHead, Shards, StudyPlan, head, parse_shard, rows, size, summary};
+use crate::report::count;
 
 /// Options of `lab study`.
 #[derive(Debug, Args)]
@@ -54,8 +55,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
     if options.check {
-        let (arms, seeds) = (plan.experiment.arms.len(), plan.experiment.seeds.len());
-        return print(&format!("{}: {arms} arms by {seeds} seeds, {runs} runs\n", plan.name));
+        return print(&format!("{}: {}, {}\n", plan.name, size(&plan), count(runs as u32, "run")));
     }
     let digest = plan.digest(&context.configuration)?;
     let part = options.shard.unwrap_or(Shard { shard: 1, of: 1 });
@@ -83,7 +83,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let file = folder.join(ShardHead::file_name(&plan.name, part));
             text = ShardHead::sealed(&plan.name, &digest, part, &text);
             write(&file, kept, |out| out.write_all(text.as_bytes()))?;
-            print(&format!("shard {part}: {} runs in {}\n", numbers.len(), file.display()))
+            print(&format!("shard {part}: {} in {}\n", count(numbers.len() as u32, "run"), file.display()))
         }
     }
 }

@@ -79,7 +79,7 @@ impl Graph {
                     .map(|(own, drawn)| format!("{} {}", drawn.sign, own.name))
                     .collect();
                 let legend =
-                    format!("{} across, {} up: {}", self.across.label, self.up.label, names.join(", "));
+                    format!("{} across, {} up: {}", self.across.label, self.up.label, names.join("; "));
                 text += &(broken(&legend, width).join("\n") + "\n");
             }
         }

@@ -15,7 +15,7 @@ pub use result::{DayPoint, FigurePoint, RunResult, WeekPoint};
 pub use store::ResultStore;
 
 use super::policy::Policy;
-use super::runner::RunSpec;
+use super::runner::{RunSpec, new_run};
 use crate::session::{Configuration, RunError};
 
 /// One way to play that is compared with others.
@@ -33,6 +33,11 @@ impl Arm {
     /// A policy as its file says.
     pub fn new(name: impl Into<String>, policy: Policy) -> Arm {
         Arm { name: name.into(), policy, spec: RunSpec::of_seed(0) }
+    }
+
+    /// Name of the scenario that it plays.
+    pub fn scenario(&self) -> String {
+        new_run(&self.policy, &self.spec).scenario
     }
 
     /// Whether its runs could begin: its scenario is there, and its parameters are allowed.

@@ -62,8 +62,11 @@ fn what_is_known_is_not_played_again_and_is_the_same() {
     assert_eq!(conduct(&renamed, &path, false, 99).1, 0);
     renamed.arms[0].spec.days = Some(21);
     assert_eq!(conduct(&renamed, &path, false, 99).1, 3);
-    renamed.arms[0].spec.overrides = vec![("demand_surge.probability".to_owned(), "0.0".to_owned())];
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 3);
+    let surges = |share: &str| vec![("demand_surge.probability".to_owned(), share.to_owned())];
+    renamed.arms[0].spec.overrides = surges("0.0");
+    assert_eq!(conduct(&renamed, &path, false, 99).1, 0, "the policy has no surges either");
+    renamed.arms[0].spec.overrides = surges("0.25");
+    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "what is set by name wins");
     renamed.wanted.daily = true;
     let (daily, played) = conduct(&renamed, &path, false, 99);
     assert_eq!(played, 6);

@@ -4,7 +4,8 @@ use super::StudyPlan;
 use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::lab::experiment::RunResult;
+use crate::lab::experiment::{Experiment, RunResult};
+use crate::report::count;
 use crate::statistics::{Interval, LEVEL, Quartiles, RESAMPLES, median};
 
 /// Most arms whose curves can be told apart.
@@ -40,7 +41,7 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
         ]);
         table.rows.push(row);
     }
-    let mut exhibit = Exhibit::of(format!("{}: {} arms by {seeds} seeds", plan.name, by_arm.len()), table);
+    let mut exhibit = Exhibit::of(format!("{}: {}", plan.name, size(plan)), table);
     if (1..=MOST_CURVES).contains(&by_arm.len()) {
         exhibit.graphs.push(curves(plan, &by_arm));
     }
@@ -51,6 +52,12 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
         LEVEL * 100.0
     );
     exhibit.with_note(luck).with_note(interval)
+}
+
+/// How large a study is: `2 arms by 24 seeds`.
+pub fn size(plan: &StudyPlan) -> String {
+    let Experiment { arms, seeds, .. } = &plan.experiment;
+    format!("{} by {}", count(arms.len() as u32, "arm"), count(seeds.len() as u32, "seed"))
 }
 
 fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {

@@ -25,7 +25,7 @@ pub struct WorldLine {
     pub at: String,
     /// The machine.
     pub machine: String,
-    /// By what: `play`, `run`, `branch`, `rescue`, `import`, `replay`, `delete`.
+    /// By what: `play`, `run`, `lab`, `branch`, `rescue`, `import`, `replay`, `delete`.
     pub by: String,
     /// First seed.
     pub seed: u64,

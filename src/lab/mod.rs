@@ -5,6 +5,7 @@
 
 mod answers;
 pub mod bench;
+pub mod bound;
 pub(crate) mod comparison;
 #[cfg(test)]
 mod example_tests;
@@ -12,8 +13,10 @@ pub mod exhibit;
 pub mod experiment;
 mod forecasts;
 mod golden;
+pub mod laws;
 mod lesson_check;
 mod metrics;
+mod normal;
 mod policy;
 mod routine;
 mod runner;

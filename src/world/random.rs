@@ -25,7 +25,9 @@ macro_rules! parts {
         pub enum Part { $($(#[$doc])* $name,)* }
 
         impl Part {
-            const ALL: &'static [Part] = &[$(Part::$name,)*];
+            /// All of them.
+            pub const ALL: &'static [Part] = &[$(Part::$name,)*];
+
 
             /// Its name, which its streams are derived from.
             pub fn name(self) -> &'static str {

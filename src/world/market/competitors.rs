@@ -164,8 +164,8 @@ pub fn react(
     events.push(event);
 }
 
-/// Size and share of the bank of today's event, if there is one.
-fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<GivenEvent> {
+/// Size, before its growth over the run, and share of the bank of today's event, if there is one.
+pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<GivenEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;
     }

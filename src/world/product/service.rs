@@ -31,7 +31,8 @@ pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
     rate.clamp(operations.error_rate_min, operations.error_rate_max)
 }
 
-fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
+/// Minutes that an outage lasts.
+pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
     let (mut u, choices) = (stream.uniform(), operations.downtime_minutes_choices);
     for (minutes, probability) in choices.into_iter().zip(operations.downtime_minutes_probabilities) {
         if u < probability {

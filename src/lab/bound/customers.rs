@@ -1,0 +1,46 @@
+//! N and p: the largest attainable market of a group and the highest price it supports.
+
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+
+/// Customers of a group that pay: individuals, or seats of companies.
+pub fn attainable(group: Group, params: &Params) -> f64 {
+    let own = params.group(group);
+    own.base_market_cap * f64::from(own.seat_count_max.unwrap_or(1))
+}
+
+/// The price that a group supports, dollars a month and customer or seat.
+pub fn highest_price(group: Group, params: &Params) -> f64 {
+    params.group(group).c_max_mean
+}
+
+/// Dollars of a billing day on which everybody pays.
+pub fn full_bill(group: Group, params: &Params) -> f64 {
+    attainable(group, params) * highest_price(group, params)
+}
+
+/// Units that everybody uses on a day, in the mean of the week.
+pub fn daily_usage(params: &Params) -> f64 {
+    let week = params.calendar.weekly;
+    let mean_day = week.iter().sum::<f64>() / week.len() as f64;
+    let demand = |group| attainable(group, params) * params.group(group).usage_demand_mean;
+    mean_day * Group::all().map(demand).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markets_are_counted_in_customers_and_in_the_most_seats() {
+        let params = Params::shipped();
+        let group = |id| Group::parse(id).expect("a group");
+        assert_eq!(attainable(group("S1"), &params), 272_000.0);
+        assert_eq!(attainable(group("E3"), &params), 136.0 * 2000.0);
+        assert_eq!(full_bill(group("S1"), &params), 13_600_000.0);
+        // Sixteen full bills: what the published revenue is a little below.
+        let all: f64 = Group::all().map(|group| 16.0 * full_bill(group, &params)).sum();
+        assert!((all / 1e6 - 6733.476).abs() < 1e-6, "{all}");
+        assert!((daily_usage(&params) / 1e6 - 507.970279).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,145 @@
+//! The lines of the account: what they are called, how they follow, and what was published.
+
+/// A line of the account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AccountLine {
+    /// What individuals pay.
+    Individuals,
+    /// What companies pay.
+    Companies,
+    /// Both.
+    Revenue,
+    /// Compute.
+    Compute,
+    /// Capacity.
+    Capacity,
+    /// General development.
+    GlobalDevelopment,
+    /// Targeted development.
+    TargetedDevelopment,
+    /// R&D.
+    Research,
+    /// Ads.
+    Advertising,
+    /// Charges for leads.
+    LeadCosts,
+    /// Operations.
+    Operations,
+    /// Finding groups.
+    MarketResearch,
+    /// Studying them.
+    GroupResearch,
+    /// All costs.
+    Costs,
+    /// Cash at the start, and revenue without costs.
+    Subtotal,
+    /// The share of it that is reported.
+    Estimate,
+}
+
+impl AccountLine {
+    /// All of them, in the order of the account.
+    pub const ALL: [AccountLine; 16] = [
+        AccountLine::Individuals,
+        AccountLine::Companies,
+        AccountLine::Revenue,
+        AccountLine::Compute,
+        AccountLine::Capacity,
+        AccountLine::GlobalDevelopment,
+        AccountLine::TargetedDevelopment,
+        AccountLine::Research,
+        AccountLine::Advertising,
+        AccountLine::LeadCosts,
+        AccountLine::Operations,
+        AccountLine::MarketResearch,
+        AccountLine::GroupResearch,
+        AccountLine::Costs,
+        AccountLine::Subtotal,
+        AccountLine::Estimate,
+    ];
+
+    /// The lines that are costs.
+    pub const COSTS: [AccountLine; 10] = [
+        AccountLine::Compute,
+        AccountLine::Capacity,
+        AccountLine::GlobalDevelopment,
+        AccountLine::TargetedDevelopment,
+        AccountLine::Research,
+        AccountLine::Advertising,
+        AccountLine::LeadCosts,
+        AccountLine::Operations,
+        AccountLine::MarketResearch,
+        AccountLine::GroupResearch,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            AccountLine::Individuals => "revenue, individuals",
+            AccountLine::Companies => "revenue, companies",
+            AccountLine::Revenue => "revenue",
+            AccountLine::Compute => "compute",
+            AccountLine::Capacity => "capacity",
+            AccountLine::GlobalDevelopment => "global development",
+            AccountLine::TargetedDevelopment => "targeted development",
+            AccountLine::Research => "R&D",
+            AccountLine::Advertising => "advertising",
+            AccountLine::LeadCosts => "lead cost",
+            AccountLine::Operations => "operations",
+            AccountLine::MarketResearch => "market research",
+            AccountLine::GroupResearch => "group research",
+            AccountLine::Costs => "costs",
+            AccountLine::Subtotal => "before discount",
+            AccountLine::Estimate => "estimate",
+        }
+    }
+
+    /// Published, in millions of dollars.
+    pub fn published(self) -> f64 {
+        match self {
+            AccountLine::Individuals => 1930.0,
+            AccountLine::Companies => 4760.0,
+            AccountLine::Revenue => 6690.0,
+            AccountLine::Compute => 1554.0,
+            AccountLine::Capacity => 37.3,
+            AccountLine::GlobalDevelopment => 19.9,
+            AccountLine::TargetedDevelopment => 423.6,
+            AccountLine::Research => 9.2,
+            AccountLine::Advertising => 114.8,
+            AccountLine::LeadCosts => 0.9,
+            AccountLine::Operations => 2.5,
+            AccountLine::MarketResearch => 1.5,
+            AccountLine::GroupResearch => 1.0,
+            AccountLine::Costs => 2164.7,
+            AccountLine::Subtotal => 4526.3,
+            AccountLine::Estimate => 2200.0,
+        }
+    }
+
+    /// How far a published figure can be from the exact one because it was rounded, in millions of dollars.
+    pub fn rounding(self) -> f64 {
+        match self {
+            AccountLine::Individuals | AccountLine::Companies => 5.0,
+            AccountLine::Compute => 0.5,
+            AccountLine::Estimate => 50.0,
+            _ => 0.05,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_account_adds_up() {
+        let sum: f64 = AccountLine::COSTS.iter().map(|line| line.published()).sum();
+        assert!((sum - AccountLine::Costs.published()).abs() < 1e-9, "{sum}");
+        let revenue = AccountLine::Individuals.published() + AccountLine::Companies.published();
+        assert_eq!(revenue, AccountLine::Revenue.published());
+        let left = 1.0 + revenue - sum;
+        assert!((left - AccountLine::Subtotal.published()).abs() < 1e-9, "{left}");
+        assert!((0.49 * left - AccountLine::Estimate.published()).abs() < AccountLine::Estimate.rounding());
+    }
+}

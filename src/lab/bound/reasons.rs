@@ -1,0 +1,84 @@
+//! Why a line differs from the published one, in the figures of both.
+
+use super::account::BoundAccount;
+use super::customers;
+use super::published::AccountLine;
+use super::winning;
+use crate::notation::{grouped, percent};
+use crate::world::identifiers::Group;
+use crate::world::params::Params;
+
+impl BoundAccount {
+    /// Why a line differs from the published one.
+    pub(super) fn why(&self, line: AccountLine, own: f64, params: &Params) -> String {
+        let millions = own / 1e6;
+        if (millions - line.published()).abs() <= line.rounding() {
+            return "the published figure, rounded".to_owned();
+        }
+        let ratio = line.published() / millions;
+        match line {
+            AccountLine::Individuals | AccountLine::Companies => self.why_revenue(line, params),
+            AccountLine::Revenue => "the sum of the two lines above".to_owned(),
+            AccountLine::Compute => {
+                let units = 1e6 * line.published()
+                    / (params.model(self.premises.model_tier).unit_cost * f64::from(self.premises.days));
+                format!(
+                    "{} million units a day here, {} published",
+                    grouped(self.daily_usage / 1e6, 0),
+                    grouped(units / 1e6, 0)
+                )
+            }
+            AccountLine::TargetedDevelopment => format!(
+                "the gap of each group depends on the rivals: mean of {} lucks here; the paper does not print its gaps",
+                super::climate::LUCKS
+            ),
+            AccountLine::Advertising => format!(
+                "published {} of ours: ours fills every market within the first {} days, where leads thin out; how fast the paper fills them is not printed",
+                percent(ratio, 0),
+                self.premises.renewals.first().unwrap_or(&0)
+            ),
+            AccountLine::LeadCosts => format!(
+                "one lead a customer here; the published figure pays for {} leads a customer",
+                grouped(
+                    1e6 * line.published() / params.leads.lead_acquisition_cost / winning::accounts(params),
+                    2
+                )
+            ),
+            AccountLine::Operations => {
+                "customers and seats that are supported differ as the markets do".to_owned()
+            }
+            AccountLine::MarketResearch => {
+                let unknown = Group::all().filter(|group| !group.initially_known()).count();
+                let law = &params.market_research;
+                format!(
+                    "{} attempts find {unknown} groups in the mean; the published figure pays for {}",
+                    grouped(unknown as f64 / law.market_research_discover_prob, 1),
+                    grouped(1e6 * line.published() / law.discovery_cost_level_1, 0)
+                )
+            }
+            AccountLine::GroupResearch => format!(
+                "a study to level {} of every group that was found, at today's prices; the paper does not print its levels",
+                self.premises.study_level
+            ),
+            AccountLine::Costs => "the sum of the costs above".to_owned(),
+            AccountLine::Subtotal | AccountLine::Estimate => "follows from revenue and costs".to_owned(),
+            AccountLine::Capacity | AccountLine::GlobalDevelopment | AccountLine::Research => {
+                "the parameters in force are not the published ones".to_owned()
+            }
+        }
+    }
+
+    fn why_revenue(&self, line: AccountLine, params: &Params) -> String {
+        let of_companies = line == AccountLine::Companies;
+        let groups = Group::all().filter(|group| group.is_enterprise() == of_companies);
+        let bills = self.premises.renewals.len() as f64;
+        let full = bills * groups.map(|group| customers::full_bill(group, params)).sum::<f64>();
+        let what = if of_companies { "the most seats of every account" } else { "the markets of day 0" };
+        format!(
+            "{} of full bills are paid here; full bills of {what} at mean budgets are {} million, of which the published figure is {}",
+            percent(self.revenue_of(of_companies) / full, 1),
+            grouped(full / 1e6, 0),
+            percent(1e6 * line.published() / full, 1)
+        )
+    }
+}

@@ -1,0 +1,47 @@
+//! mu, sigma and d: the quality that customers require at the highest price, and by how much it has risen on a day.
+
+use super::climate::Climate;
+use crate::world::identifiers::Group;
+use crate::world::market::drift::{is_drift_day, step_of_everyone, step_of_group};
+use crate::world::params::Params;
+
+/// Mean and spread of the quality required at the budget.
+pub fn required(group: Group, params: &Params) -> (f64, f64) {
+    let own = params.group(group);
+    (own.q_min_mean + own.q_range_mean, libm::hypot(own.q_min_std, own.q_range_std))
+}
+
+/// Quality that rivals and taste have added to a group's expectations by a day, without what rivals copy of the
+/// group's own bank.
+pub fn risen(group: Group, day: u32, climate: &Climate, params: &Params) -> f64 {
+    let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
+    let taste = applied * (step_of_group(group, params).quality + step_of_everyone(&params.drift));
+    let reaction = params.group(group).competitor_reactivity_q_bias;
+    climate.raised[day as usize] * (1.0 + reaction) + taste
+}
+
+/// Quality that an overload of service costs.
+pub fn overload_penalty(daily_usage: f64, capacity_tier: u8, params: &Params) -> f64 {
+    let capacity = f64::from(params.capacity(capacity_tier).capacity_units);
+    let strain = (daily_usage / capacity - params.operations.overload_reference_utilization).max(0.0);
+    params.quality.service_overload_weight * strain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_published_usage_overloads_the_largest_capacity() {
+        let params = Params::shipped();
+        let penalty = overload_penalty(521e6, 7, &params);
+        assert!((penalty - 0.08 * (521.0 / 300.0 - 1.0)).abs() < 1e-12);
+        assert_eq!(overload_penalty(299e6, 7, &params), 0.0);
+    }
+
+    #[test]
+    fn a_group_requires_floor_and_range_at_its_budget() {
+        let (mean, spread) = required(Group::parse("S1").expect("a group"), &Params::shipped());
+        assert!((mean - 0.55).abs() < 1e-12 && (spread - 0.0125f64.sqrt()).abs() < 1e-12);
+    }
+}

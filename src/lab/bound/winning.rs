@@ -1,0 +1,65 @@
+//! What wins the customers: advertising, and the charge for each lead.
+
+use super::premises::Premises;
+use crate::session::best_starting_channel;
+use crate::world::identifiers::Group;
+use crate::world::market::leads::market_cap;
+use crate::world::params::Params;
+
+/// Steps in which the thinning of leads is added up.
+const STEPS: u32 = 20_000;
+
+/// Dollars of ads that fill a group's market by the first renewal, through its best channel.
+pub fn advertising(group: Group, premises: &Premises, params: &Params) -> f64 {
+    let own = params.group(group);
+    let first = premises.renewals.first().copied().unwrap_or(premises.days);
+    let market = market_cap(own.base_market_cap, own.annual_cap_growth_rate, first, &params.leads);
+    let channel = best_starting_channel(group, params);
+    let each = params.starting_yields()[channel][group] / params.leads.ad_spend_unit;
+    let leads = each * params.initial.initial_reputation * mean_day(first, params);
+    own.base_market_cap * thinning(own.base_market_cap / market, params) / leads
+}
+
+/// How many times as much the customers up to a share of the market cost as the first one does: leads thin out as it fills.
+fn thinning(taken: f64, params: &Params) -> f64 {
+    let law = &params.leads;
+    let cost = |step: u32| {
+        let share = taken * (f64::from(step) + 0.5) / f64::from(STEPS);
+        let left = law.saturation_base - libm::pow(share, law.saturation_exponent);
+        1.0 / left.max(law.saturation_floor)
+    };
+    (0..STEPS).map(cost).sum::<f64>() / f64::from(STEPS)
+}
+
+/// Factor of the calendar on leads, in the mean of the days up to one.
+fn mean_day(last: u32, params: &Params) -> f64 {
+    (1..=last).map(|day| params.calendar.of_leads(day)).sum::<f64>() / f64::from(last.max(1))
+}
+
+/// Customers or accounts that have to be won.
+pub fn accounts(params: &Params) -> f64 {
+    Group::all().map(|group| params.group(group).base_market_cap).sum()
+}
+
+/// Dollars that are charged for leads.
+pub fn lead_costs(params: &Params) -> f64 {
+    accounts(params) * params.leads.lead_acquisition_cost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filling_a_market_costs_its_yield_its_reputation_and_its_thinning() {
+        let (premises, params) = (Premises::of_the_paper(3.0), Params::shipped());
+        let s1 = Group::parse("S1").expect("a group");
+        let taken = 1.0 / (1.0 + 0.2 * 30.0 / 365.0);
+        // The sum of 1 / (1 - x^2) up to a share is its inverse hyperbolic tangent.
+        let expected = 272_000.0 / 0.3203613 / 0.5 / mean_day(30, &params) * libm::atanh(taken) / taken;
+        let own = advertising(s1, &premises, &params);
+        assert!((own / expected - 1.0).abs() < 1e-6, "{own} {expected}");
+        assert_eq!(accounts(&params), 1_208_492.0);
+        assert_eq!(lead_costs(&params), 604_246.0);
+    }
+}

@@ -1,0 +1,71 @@
+//! How often draws fall where.
+
+/// Draws counted in bins of one width.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub from: f64,
+    /// Width of a bin.
+    pub width: f64,
+    /// Draws in each bin; the outer ones hold what lies beyond them.
+    pub counts: Vec<u64>,
+}
+
+/// Share of the draws beyond each end that the outer bins take in, so that a few far ones do not flatten the rest.
+const BEYOND: f64 = 0.001;
+
+impl Histogram {
+    /// Of draws, in at most so many bins. Few values have a bin each.
+    pub fn of(draws: &[f64], bins: usize) -> Histogram {
+        let mut sorted: Vec<f64> = draws.iter().copied().filter(|draw| draw.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&most)) = (sorted.first(), sorted.last()) else {
+            return Histogram { from: 0.0, width: 1.0, counts: vec![0] };
+        };
+        let whole = sorted.iter().all(|draw| draw.fract() == 0.0);
+        if whole && most - least < bins as f64 {
+            return Histogram::counted(&sorted, least - 0.5, 1.0, (most - least) as usize + 1);
+        }
+        let beyond = (BEYOND * sorted.len() as f64) as usize;
+        let (low, high) = (sorted[beyond], sorted[sorted.len() - 1 - beyond]);
+        let span = if high > low { high - low } else { 1.0 };
+        Histogram::counted(&sorted, low, span / bins as f64, bins)
+    }
+
+    fn counted(draws: &[f64], from: f64, width: f64, bins: usize) -> Histogram {
+        let mut counts = vec![0; bins];
+        for draw in draws {
+            let bin = ((draw - from) / width).floor().clamp(0.0, (bins - 1) as f64);
+            counts[bin as usize] += 1;
+        }
+        Histogram { from, width, counts }
+    }
+
+    /// Middle of a bin.
+    pub fn middle(&self, bin: usize) -> f64 {
+        self.from + (bin as f64 + 0.5) * self.width
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_whole_values_have_a_bin_each() {
+        let own = Histogram::of(&[10.0, 12.0, 12.0, 11.0], 20);
+        assert_eq!((own.from, own.width, own.counts.clone()), (9.5, 1.0, vec![1, 1, 2]));
+        assert_eq!(own.middle(2), 12.0);
+    }
+
+    #[test]
+    fn far_draws_are_counted_in_the_outer_bins() {
+        let mut draws: Vec<f64> = (0..2000).map(|n| f64::from(n) / 2000.0).collect();
+        draws.push(1e9);
+        let own = Histogram::of(&draws, 10);
+        assert_eq!(own.counts.iter().sum::<u64>(), 2001);
+        assert!(own.width < 0.2 && own.counts.iter().all(|count| (190..215).contains(count)), "{own:?}");
+        assert_eq!(Histogram::of(&[], 5).counts, [0]);
+        assert_eq!(Histogram::of(&[0.25; 4], 3).counts, [4, 0, 0]);
+    }
+}

@@ -1,0 +1,259 @@
+//! Draws behind the market: rivals, surges, the economy, channels, what studies tell.
+
+use super::law::Law;
+use super::world_draw::{Family, Luck, WorldDraw, group_at};
+use crate::session::best_starting_channel;
+use crate::world::identifiers::Group;
+use crate::world::market::competitors::{draw_event, event_probability, magnitude_scale, sampled_boost};
+use crate::world::market::discovery::draw_attempt;
+use crate::world::market::economy::next_pmi;
+use crate::world::market::surges::draw_surge;
+use crate::world::market::yields::varied_yield;
+use crate::world::params::Params;
+use crate::world::random::Part;
+
+const RIVALS: &str = "market/competitors.rs";
+const SURGES: &str = "market/surges.rs";
+const DISCOVERY: &str = "market/discovery.rs";
+
+/// Day of the examples of rivals, in the second half of a run of so many days.
+const DAY: u32 = 300;
+const RUN: u32 = 500;
+
+fn rival_chance(params: &Params) -> f64 {
+    event_probability(DAY, RUN, None, params)
+}
+
+/// Size, before its growth, and share of the bank of an event that is sure to come.
+fn rival_event(luck: &Luck, n: u64) -> (f64, f64) {
+    let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
+    let drawn = draw_event(1.0, &luck.params.competitor, &mut stream);
+    drawn.map_or((f64::NAN, f64::NAN), |event| (event.size, event.u))
+}
+
+fn unknown_groups() -> Vec<Group> {
+    Group::all().filter(|group| !group.initially_known()).collect()
+}
+
+/// Of a surge that is sure to come.
+fn surge(luck: &Luck, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
+    let law = crate::world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
+    let day = n as u32;
+    draw_surge(day, &law, &luck.streams).map_or(f64::NAN, |own| figure(own.end_day - day, own.multiplier))
+}
+
+fn best_yield(params: &Params, member: usize) -> f64 {
+    let group = group_at(member);
+    params.starting_yields()[best_starting_channel(group, params)][group]
+}
+
+/// The draws.
+pub const DRAWS: &[WorldDraw] = &[
+    WorldDraw {
+        name: "rival_event",
+        what: "an event of a rival on day 300 of 500",
+        part: Part::CompetitorEvent,
+        family: Family::One,
+        keys: &["competitor.competitor_event_mean_interval", "competitor.first_half_interval_multiplier"],
+        sites: &[(RIVALS, 1)],
+        law: |params, _| Law::Chance(rival_chance(params)),
+        draw: |luck, _, n| {
+            let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
+            let drawn = draw_event(rival_chance(&luck.params), &luck.params.competitor, &mut stream);
+            f64::from(u8::from(drawn.is_some()))
+        },
+    },
+    WorldDraw {
+        name: "rival_size",
+        what: "quality that an event of day 300 of 500 adds to expectations, unless rivals copy more",
+        part: Part::CompetitorEvent,
+        family: Family::One,
+        keys: &[
+            "competitor.competitor_event_boost_mu",
+            "competitor.competitor_event_boost_sigma",
+            "competitor.competitor_event_boost_min",
+            "competitor.competitor_event_boost_max",
+            "competitor.competitor_event_magnitude_scale_min",
+            "competitor.competitor_event_magnitude_scale_max",
+        ],
+        sites: &[(RIVALS, 1)],
+        law: |params, _| {
+            let own = &params.competitor;
+            Law::LogNormal {
+                mu: own.competitor_event_boost_mu,
+                sigma: own.competitor_event_boost_sigma,
+                least: own.competitor_event_boost_min,
+                most: own.competitor_event_boost_max,
+                factor: magnitude_scale(DAY, RUN, own),
+            }
+        },
+        draw: |luck, _, n| sampled_boost(rival_event(luck, n).0, DAY, RUN, &luck.params.competitor),
+    },
+    WorldDraw {
+        name: "rival_copy",
+        what: "share of the shared bank that rivals can copy at an event",
+        part: Part::CompetitorEvent,
+        family: Family::One,
+        keys: &["competitor.competitor_feedback_u_min", "competitor.competitor_feedback_u_max"],
+        sites: &[(RIVALS, 1)],
+        law: |params, _| Law::Uniform {
+            low: params.competitor.competitor_feedback_u_min,
+            high: params.competitor.competitor_feedback_u_max,
+        },
+        draw: |luck, _, n| rival_event(luck, n).1,
+    },
+    WorldDraw {
+        name: "rival_drain",
+        what: "share of a group's targeted bank that rivals copy at an event",
+        part: Part::CompetitorEvent,
+        family: Family::One,
+        keys: &["competitor.competitor_segment_drain_u_min", "competitor.competitor_segment_drain_u_max"],
+        sites: &[(RIVALS, 1)],
+        law: |params, _| Law::Uniform {
+            low: params.competitor.competitor_segment_drain_u_min,
+            high: params.competitor.competitor_segment_drain_u_max,
+        },
+        draw: |luck, _, n| {
+            let law = &luck.params.competitor;
+            luck.streams
+                .open(Part::CompetitorEvent, [n])
+                .between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max)
+        },
+    },
+    WorldDraw {
+        name: "surge",
+        what: "a demand surge on a day",
+        part: Part::Surge,
+        family: Family::One,
+        keys: &["demand_surge.probability"],
+        sites: &[(SURGES, 1)],
+        law: |params, _| Law::Chance(params.demand_surge.probability),
+        draw: |luck, _, n| {
+            let drawn = draw_surge(n as u32, &luck.params.demand_surge, &luck.streams);
+            f64::from(u8::from(drawn.is_some()))
+        },
+    },
+    WorldDraw {
+        name: "surge_days",
+        what: "length of a surge, days",
+        part: Part::Surge,
+        family: Family::One,
+        keys: &["demand_surge.duration_days_low", "demand_surge.duration_days_high_exclusive"],
+        sites: &[(SURGES, 1)],
+        law: |params, _| Law::Whole {
+            low: params.demand_surge.duration_days_low,
+            high: params.demand_surge.duration_days_high_exclusive - 1,
+        },
+        draw: |luck, _, n| surge(luck, n, |days, _| f64::from(days)),
+    },
+    WorldDraw {
+        name: "surge_multiplier",
+        what: "factor of a surge on leads",
+        part: Part::Surge,
+        family: Family::One,
+        keys: &["demand_surge.multiplier_base", "demand_surge.multiplier_range"],
+        sites: &[(SURGES, 1)],
+        law: |params, _| {
+            let own = &params.demand_surge;
+            Law::Uniform { low: own.multiplier_base, high: own.multiplier_base + own.multiplier_range }
+        },
+        draw: |luck, _, n| surge(luck, n, |_, multiplier| multiplier),
+    },
+    WorldDraw {
+        name: "group_found",
+        what: "an attempt of market research finds a group",
+        part: Part::MarketResearch,
+        family: Family::One,
+        keys: &["market_research.market_research_discover_prob"],
+        sites: &[(DISCOVERY, 1)],
+        law: |params, _| Law::Chance(params.market_research.market_research_discover_prob),
+        draw: |luck, _, n| {
+            let mut stream = luck.streams.open(Part::MarketResearch, [n]);
+            let chance = luck.params.market_research.market_research_discover_prob;
+            f64::from(u8::from(draw_attempt(&unknown_groups(), chance, &mut stream).is_some()))
+        },
+    },
+    WorldDraw {
+        name: "found_group",
+        what: "which of the unknown groups an attempt finds, in their order",
+        part: Part::MarketResearch,
+        family: Family::One,
+        keys: &[],
+        sites: &[(DISCOVERY, 1)],
+        law: |_, _| Law::Whole { low: 0, high: unknown_groups().len().saturating_sub(1) as u32 },
+        draw: |luck, _, n| {
+            let (all, mut stream) = (unknown_groups(), luck.streams.open(Part::MarketResearch, [n]));
+            let found = draw_attempt(&all, 1.0, &mut stream);
+            found.and_then(|found| all.iter().position(|own| *own == found)).map_or(f64::NAN, |at| at as f64)
+        },
+    },
+    WorldDraw {
+        name: "index_phase",
+        what: "phase of the economic cycle on day 0, where a scenario leaves it to chance",
+        part: Part::Macro,
+        family: Family::One,
+        keys: &["macro.macro_pmi_random_phase"],
+        sites: &[("market/economy.rs", 1)],
+        law: |_, _| Law::Uniform { low: 0.0, high: 2.0 * std::f64::consts::PI },
+        draw: |luck, _, n| luck.streams.open(Part::Macro, [n]).between(0.0, 2.0 * std::f64::consts::PI),
+    },
+    WorldDraw {
+        name: "index_step",
+        what: "hidden index of the economy, from a day on which it stands at its cycle's target",
+        part: Part::Macro,
+        family: Family::One,
+        keys: &[
+            "macro.macro_pmi_initial",
+            "macro.macro_pmi_daily_volatility",
+            "macro.macro_pmi_floor",
+            "macro.macro_pmi_ceiling",
+        ],
+        sites: &[("market/economy.rs", 1)],
+        law: |params, _| Law::Normal {
+            mean: params.economy.macro_pmi_initial,
+            std: params.economy.macro_pmi_daily_volatility,
+            least: params.economy.macro_pmi_floor,
+            most: params.economy.macro_pmi_ceiling,
+        },
+        draw: |luck, _, n| {
+            let law = &luck.params.economy;
+            let z = luck.streams.open(Part::Macro, [n]).standard_normal();
+            next_pmi(law.macro_pmi_initial, law.macro_pmi_initial, z, law)
+        },
+    },
+    WorldDraw {
+        name: "yield_change",
+        what: "leads for $1,000 of a group's best channel after its first month",
+        part: Part::LeadRateDrift,
+        family: Family::Groups,
+        keys: &[
+            "channel.leads_per_1000_dollars",
+            "leads.monthly_channel_noise_fraction",
+            "leads.monthly_channel_value_min",
+        ],
+        sites: &[("market/yields.rs", 1)],
+        law: |params, member| {
+            let start = best_yield(params, member);
+            Law::Normal {
+                mean: start,
+                std: params.leads.monthly_channel_noise_fraction * start,
+                least: params.leads.monthly_channel_value_min,
+                most: f64::INFINITY,
+            }
+        },
+        draw: |luck, member, n| {
+            let z = luck.streams.open(Part::LeadRateDrift, [member as u64, n]).standard_normal();
+            varied_yield(best_yield(&luck.params, member), z, &luck.params.leads)
+        },
+    },
+    WorldDraw {
+        name: "study_error",
+        what: "error of an estimate as a share of the largest one of its level",
+        part: Part::Insight,
+        family: Family::One,
+        keys: &["info_level.noise"],
+        sites: &[("market/insights.rs", 1)],
+        law: |_, _| Law::Uniform { low: -1.0, high: 1.0 },
+        draw: |luck, member, n| luck.streams.open(Part::Insight, [member as u64, 1, n]).between(-1.0, 1.0),
+    },
+];

@@ -1,0 +1,23 @@
+//! Every distribution that the world draws from, beside its exact law (docs/laboratory/laws-and-curves.md).
+
+mod customers;
+mod histogram;
+mod law;
+mod market;
+mod product;
+mod retention;
+mod social;
+mod world_draw;
+
+#[cfg(test)]
+mod complete;
+
+pub use histogram::Histogram;
+pub use law::{Law, Moments};
+pub use world_draw::{Family, Luck, WorldDraw};
+
+/// All draws of the world, in the order of its parts.
+pub fn world_draws() -> impl Iterator<Item = &'static WorldDraw> {
+    let parts = [product::DRAWS, customers::DRAWS, retention::DRAWS, market::DRAWS, social::DRAWS];
+    parts.into_iter().flatten()
+}

@@ -1,4 +1,4 @@
-//! Scenarios, lessons, themes and policies that came with the program: every file of their folders in `configs/`, compiled in.
+//! Scenarios, lessons, themes, policies and grids that came with the program: every file of their folders in `configs/`, compiled in.
 //! A new one needs no line of code.
 
 use include_dir::{Dir, include_dir};
@@ -10,6 +10,7 @@ static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/scenarios"
 static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/themes");
 static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/policies");
 
+static GRIDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/grids");
 static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/lessons");
 static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/lessons");
 
@@ -26,6 +27,11 @@ pub fn themes() -> Vec<Shipped> {
 /// The policies, by name.
 pub fn policies() -> Vec<Shipped> {
     of(&POLICIES)
+}
+
+/// The grids of policies, by name.
+pub fn grids() -> Vec<Shipped> {
+    of(&GRIDS)
 }
 
 /// The lessons, by name, in the order of the course.
@@ -71,7 +77,9 @@ mod tests {
 
     #[test]
     fn every_file_of_the_folders_is_here_under_its_name() {
-        for (folder, held) in [("scenarios", scenarios()), ("themes", themes()), ("policies", policies())] {
+        for (folder, held) in
+            [("scenarios", scenarios()), ("themes", themes()), ("policies", policies()), ("grids", grids())]
+        {
             let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(folder);
             let entries = std::fs::read_dir(path).expect("a folder").flatten();
             let mut there: Vec<String> =

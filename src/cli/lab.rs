@@ -1,9 +1,14 @@
 //! `novamind lab`: comparison with reference figures, and of runs with each other.
 
+mod ablate;
+mod baseline;
+mod bound;
 mod comparison;
+mod curves;
 mod difference;
 mod experiments;
 mod forecasts;
+mod laws;
 mod metrics;
 mod output;
 mod study;
@@ -28,6 +33,16 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum Laboratory {
+    /// Play the paper's 24 rule-based configurations, or a grid of your own, over many seeds.
+    Baseline(baseline::Options),
+    /// Play a policy against rivals that copy more and more, and tell what each step costs.
+    Ablate(ablate::Options),
+    /// Reckon the paper's upper bound from the parameters, line by line beside the published account.
+    Bound(bound::Options),
+    /// Show every distribution that the world draws from: law, parameters, draws, moments.
+    Laws(laws::Options),
+    /// Draw participation curves: how much quality customers require at a price.
+    Curves(curves::Options),
     /// Run the policies of a reference folder over many seeds and compare with its figures.
     Golden(Golden),
     /// Play policies and tell how often the intervals of naive forecasts held.
@@ -78,6 +93,11 @@ const SHARE_OF_ALL: f64 = 0.97;
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
+        Laboratory::Baseline(options) => baseline::run(options, context),
+        Laboratory::Ablate(options) => ablate::run(options, context),
+        Laboratory::Bound(options) => bound::run(options, context),
+        Laboratory::Laws(options) => laws::run(options, context),
+        Laboratory::Curves(options) => curves::run(options, context),
         Laboratory::Golden(golden) => run_golden(golden, context),
         Laboratory::Forecasts(options) => forecasts::run(options, context),
         Laboratory::Compare(options) => comparison::run(options, context),

@@ -3,10 +3,13 @@
 //! A policy acts on what a player can see, except for the channel choice of the paper's baseline, which reads
 //! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
 
+pub mod ablation;
 mod answers;
+pub mod baseline;
 pub mod bench;
 pub mod bound;
 pub(crate) mod comparison;
+pub mod curves;
 #[cfg(test)]
 mod example_tests;
 pub mod exhibit;

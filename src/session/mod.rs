@@ -40,7 +40,7 @@ pub use counterfactual::script::PastCall;
 pub use curve::access::CurveLook;
 pub use curve::example::example_curve;
 pub use curve::explorer::{
-    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS,
+    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS, true_curve_of,
 };
 pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;

@@ -35,10 +35,24 @@ pub fn conduct(
     options: &PlayOptions,
     context: &Context,
 ) -> Result<ExperimentResults, Failure> {
+    conduct_knowing(command, experiment, options, context, |_| ())
+}
+
+/// The same; before anything is played, what is known from elsewhere is added.
+///
+/// # Errors
+/// The same.
+pub fn conduct_knowing(
+    command: &str,
+    experiment: &Experiment,
+    options: &PlayOptions,
+    context: &Context,
+    add_known: impl FnOnce(&mut Prepared<'_>),
+) -> Result<ExperimentResults, Failure> {
     let path = context.laboratory()?.join(format!("{command}.jsonl"));
     let all: Vec<usize> = (0..experiment.arms.len() * experiment.seeds.len()).collect();
     let every = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct(with);
-    with_store(&path, experiment, &all, (options, context), every)
+    with_store(&path, experiment, &all, (options, context), add_known, every)
 }
 
 /// Conducts some runs of an experiment, by their numbers, with results in a file.
@@ -53,7 +67,7 @@ pub fn conduct_some(
     context: &Context,
 ) -> Result<Vec<RunResult>, Failure> {
     let some = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct_some(numbers, with);
-    with_store(path, experiment, numbers, (options, context), some)
+    with_store(path, experiment, numbers, (options, context), |_| (), some)
 }
 
 fn with_store<R>(
@@ -61,12 +75,14 @@ fn with_store<R>(
     experiment: &Experiment,
     numbers: &[usize],
     (options, context): (&PlayOptions, &Context),
+    add_known: impl FnOnce(&mut Prepared<'_>),
     conduct: impl FnOnce(Prepared<'_>, &Conduct<'_>) -> Result<R, ExperimentError>,
 ) -> Result<R, Failure> {
     let pool = thread_pool(options.jobs)?;
     let store = ResultStore::open(path)
         .map_err(|error| Failure::from(ExperimentError::Store { path: path.to_owned(), error }))?;
-    let prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
+    let mut prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
+    add_known(&mut prepared);
     let left = prepared.left(numbers);
     if left > 0 {
         list_worlds(experiment);

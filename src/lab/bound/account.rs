@@ -1,7 +1,5 @@
 //! The account: every line from the plan and the parameters.
 
-use serde::Serialize;
-
 use super::climate::{Climate, climate};
 use super::premises::Premises;
 use super::published::AccountLine;
@@ -11,7 +9,7 @@ use crate::world::identifiers::Group;
 use crate::world::params::Params;
 
 /// A group in the account.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BoundGroup {
     /// Group.
     pub group: &'static str,
@@ -32,7 +30,7 @@ pub struct BoundGroup {
 }
 
 /// A line with its figure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figured {
     /// Line.
     pub line: AccountLine,
@@ -45,7 +43,7 @@ pub struct Figured {
 }
 
 /// The whole account.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BoundAccount {
     /// What is taken for granted.
     pub premises: Premises,
@@ -60,7 +58,7 @@ pub struct BoundAccount {
 }
 
 /// One row of the sensitivity to slack.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SlackRow {
     /// Slack.
     pub slack: f64,

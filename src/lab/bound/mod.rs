@@ -3,8 +3,11 @@
 mod account;
 mod climate;
 mod customers;
+mod exhibit;
 mod improving;
 mod knowing;
+#[cfg(test)]
+mod page;
 mod premises;
 mod published;
 mod reasons;
@@ -14,6 +17,7 @@ mod running;
 mod targeted;
 mod winning;
 
-pub use account::{BoundAccount, NEARLY_ALL, SlackRow, sensitivity};
-pub use premises::{PUBLISHED_SLACK, Premises};
+pub use account::{BoundAccount, SlackRow, sensitivity};
+pub use exhibit::bound_exhibit;
+pub use premises::Premises;
 pub use published::AccountLine;

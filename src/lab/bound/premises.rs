@@ -1,9 +1,7 @@
 //! What the account takes for granted: the plan it prices, in the numbers of the paper.
 
-use serde::Serialize;
-
 /// The plan that the account prices.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Premises {
     /// Targeted development is paid so many times over.
     pub slack: f64,

@@ -1,8 +1,7 @@
 //! The lines of the account: what they are called, how they follow, and what was published.
 
 /// A line of the account.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AccountLine {
     /// What individuals pay.
     Individuals,

@@ -150,6 +150,15 @@ impl Prepared<'_> {
         self.to_play(numbers).len()
     }
 
+    /// Takes the result of a run of an arm as known: somebody found that another run is the same one.
+    pub fn know(&mut self, arm: usize, run: &RunResult) {
+        let seeds = &self.experiment.seeds;
+        let place = seeds.iter().position(|seed| *seed == run.seed);
+        if let Some(key) = place.and_then(|place| self.keys.get(arm * seeds.len() + place)) {
+            self.known.entry(key.clone()).or_insert_with(|| run.clone());
+        }
+    }
+
     /// Each run that is to be played once: its number.
     fn to_play(&self, numbers: &[usize]) -> Vec<usize> {
         let mut taken = BTreeSet::new();

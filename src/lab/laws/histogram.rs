@@ -1,7 +1,7 @@
 //! How often draws fall where.
 
 /// Draws counted in bins of one width.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
     /// Lower end of the first bin.
     pub from: f64,

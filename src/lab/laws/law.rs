@@ -83,7 +83,7 @@ pub enum Rounding {
 }
 
 /// Mean and standard deviation.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// Mean.
     pub mean: f64,
@@ -294,9 +294,11 @@ mod tests {
             let law = Law::Exponential { mean: 2.0, offset, least, most };
             assert_moments(&law, |p| (-2.0 * libm::log1p(-p) + offset).clamp(least, most));
         }
-        for (least, most, factor) in [(0.0, infinite, 1.0), (0.00197, 0.1727, 2.5)] {
-            let law = Law::LogNormal { mu: -4.5559, sigma: 1.2, least, most, factor };
-            let raw = |p: f64| libm::exp(-4.5559 + 1.2 * inverse_normal(p));
+        for (mu, sigma, least, most, factor) in
+            [(0.0, 0.3, 0.0, infinite, 1.0), (-4.5559, 1.2, 0.00197, 0.1727, 2.5)]
+        {
+            let law = Law::LogNormal { mu, sigma, least, most, factor };
+            let raw = |p: f64| libm::exp(mu + sigma * inverse_normal(p));
             assert_moments(&law, |p| factor * raw(p).clamp(least, most));
         }
         assert_moments(&Law::Uniform { low: -0.25, high: 0.25 }, |p| 0.5 * p - 0.25);

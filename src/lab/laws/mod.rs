@@ -1,10 +1,12 @@
 //! Every distribution that the world draws from, beside its exact law (docs/laboratory/laws-and-curves.md).
 
 mod customers;
+mod exhibit;
 mod histogram;
 mod law;
 mod market;
 mod product;
+mod reference;
 mod retention;
 mod social;
 mod world_draw;
@@ -12,9 +14,8 @@ mod world_draw;
 #[cfg(test)]
 mod complete;
 
-pub use histogram::Histogram;
-pub use law::{Law, Moments};
-pub use world_draw::{Family, Luck, WorldDraw};
+pub use exhibit::{all_laws, one_law};
+pub use world_draw::{Luck, WorldDraw};
 
 /// All draws of the world, in the order of its parts.
 pub fn world_draws() -> impl Iterator<Item = &'static WorldDraw> {

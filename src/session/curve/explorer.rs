@@ -213,6 +213,14 @@ impl CurveExplorer {
     }
 }
 
+/// The curve of a group's customers as parameters make them, before anything has moved: of no run.
+pub fn true_curve_of(group: Group, params: &Params) -> Vec<CurvePoint> {
+    let nothing = PlanPoint { list: 0.0, quality: 0.0, quota: f64::INFINITY };
+    let on_offer = OnOffer { plans: ByPlan([nothing; 3]), promotion: 0.0, ongoing: ByPlan([0.0; 3]) };
+    let market = (Expectation::default(), Arc::new(params.clone()));
+    CurveExplorer::of(group, CurveBasis::Truth { day: 0 }, on_offer, vec![market]).points
+}
+
 fn least(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }

@@ -1,0 +1,83 @@
+//! `novamind lab ablate`: what rivals cost.
+
+use clap::Args;
+
+use super::experiments::{PlayOptions, conduct};
+use super::output::OutputOptions;
+use crate::cli::run::{Seeds, parse_seeds};
+use crate::cli::{Context, Failure};
+use crate::lab::Policy;
+use crate::lab::ablation::{
+    Axis, COPY, DRAIN, RivalSetting, SHORT_DAYS, ShortRun, ablation_exhibit, arms, shared_probe,
+    short_run_policies, targeted_probe,
+};
+use crate::lab::experiment::{Experiment, ExperimentResults};
+
+/// Options of `lab ablate`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Policy that plays, by name or path [default: a probe with shared development, and one with targeted development for the drain].
+    #[arg(long, value_name = "NAME|FILE")]
+    policy: Option<String>,
+    /// Seed, or a range with both ends.
+    #[arg(long, default_value = "1..12", value_name = "N|A..B", value_parser = parse_seeds)]
+    seeds: Seeds,
+    /// Day whose subscribers are compared, the last one of a week.
+    #[arg(long, default_value = "140", value_name = "N", value_parser = parse_week_end)]
+    day: u32,
+    #[command(flatten)]
+    play: PlayOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Days of the long horizon.
+const LONG_DAYS: u32 = 500;
+
+fn parse_week_end(text: &str) -> Result<u32, String> {
+    let day: u32 = text.parse().map_err(|_| format!("{text} is not a day"))?;
+    match day.is_multiple_of(7) && (7..=LONG_DAYS).contains(&day) {
+        true => Ok(day),
+        false => Err(format!("weeks end on days 7, 14, … {}", LONG_DAYS / 7 * 7)),
+    }
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let (shared, targeted) = match &options.policy {
+        Some(name) => {
+            let own = Policy::find(name, &context.configuration)?;
+            (own.clone(), own)
+        }
+        None => (shared_probe()?, targeted_probe()?),
+    };
+    let play =
+        |policy: &Policy, settings: &[RivalSetting], days: u32| -> Result<ExperimentResults, Failure> {
+            let seeds = options.seeds.first..=options.seeds.last;
+            conduct("ablate", &Experiment::of(arms(policy, settings, days), seeds), &options.play, context)
+        };
+    let copy = play(&shared, &COPY, LONG_DAYS)?;
+    let drain = play(&targeted, &DRAIN, LONG_DAYS)?;
+    let few: Vec<RivalSetting> =
+        COPY.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let mut short = vec![(shared.name.clone(), play(&shared, &few, SHORT_DAYS)?)];
+    for (name, policy) in short_run_policies()? {
+        short.push((name.to_owned(), play(&policy, &few, SHORT_DAYS)?));
+    }
+    let axes = [
+        Axis {
+            name: "copy",
+            caption: format!("Copying of the shared bank, policy: {}", shared.name),
+            settings: &COPY,
+            results: &copy,
+        },
+        Axis {
+            name: "drain",
+            caption: format!("Draining of the targeted bank, policy: {}", targeted.name),
+            settings: &DRAIN,
+            results: &drain,
+        },
+    ];
+    let short: Vec<ShortRun<'_>> = short.iter().map(|(name, results)| ShortRun { name, results }).collect();
+    options.output.show(&ablation_exhibit(&axes, &short, options.day))
+}

@@ -1,0 +1,82 @@
+//! `novamind lab baseline`: the paper's rule-based configurations, or a grid.
+
+use clap::Args;
+
+use super::experiments::{PlayOptions, conduct, conduct_knowing};
+use super::output::OutputOptions;
+use crate::cli::run::{Seeds, parse_seeds};
+use crate::cli::{Context, Failure};
+use crate::lab::RunSpec;
+use crate::lab::baseline::{Grid, GridPoint, PAPER, baseline_exhibit, is_shared, leaders};
+use crate::lab::experiment::{Arm, Experiment, ExperimentResults, Prepared};
+use crate::session::DEFAULT_SCENARIO;
+
+/// Options of `lab baseline`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Seed, or a range with both ends.
+    #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
+    seeds: Seeds,
+    /// Another grid: a shipped one, or the path of a file.
+    #[arg(long, default_value = PAPER, value_name = "NAME|FILE")]
+    grid: String,
+    /// Scenario [default: as the grid says, else default].
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
+    /// Last day of the runs [default: as the grid or scenario says, else 500].
+    #[arg(long, value_name = "N")]
+    days: Option<u32>,
+    #[command(flatten)]
+    play: PlayOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let grid = Grid::find(&options.grid)?;
+    let results = played(&grid, options, context)?;
+    options.output.show(&baseline_exhibit(&grid, options.grid == PAPER, &results))
+}
+
+/// Plays the leaders first: most other configurations then turn out to be known.
+fn played(grid: &Grid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
+    let points = &grid.configurations;
+    let seeds = options.seeds.first..=options.seeds.last;
+    let arm = |own: &GridPoint| {
+        let mut arm = Arm::new(own.label(), own.policy.clone());
+        arm.spec = RunSpec { scenario: options.scenario.clone(), days: options.days, ..arm.spec };
+        arm
+    };
+    let all = Experiment::of(points.iter().map(arm).collect(), seeds.clone());
+    let leaders = leaders(points);
+    let leading: Vec<usize> = (0..points.len()).filter(|at| leaders[*at] == *at).collect();
+    let first = Experiment::of(leading.iter().map(|at| arm(&points[*at])).collect(), seeds);
+    let known = conduct("baseline", &first, &options.play, context)?;
+    let mut starts = Vec::new();
+    for own in points {
+        starts.push(start_cash(own, options, context)?);
+    }
+    // What was just played is not played afresh again.
+    let play = PlayOptions { fresh: false, ..options.play.clone() };
+    conduct_knowing("baseline", &all, &play, context, |prepared: &mut Prepared<'_>| {
+        for (at, own) in points.iter().enumerate() {
+            let leader = &points[leaders[at]];
+            let runs = leading.iter().position(|place| *place == leaders[at]);
+            for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
+                if is_shared(&leader.policy, &own.policy, starts[at], run) {
+                    prepared.know(at, run);
+                }
+            }
+        }
+    })
+}
+
+fn start_cash(own: &GridPoint, options: &Options, context: &Context) -> Result<f64, Failure> {
+    if let Some(cash) = own.policy.start.cash {
+        return Ok(cash);
+    }
+    let named = options.scenario.as_deref().or(own.policy.start.scenario.as_deref());
+    let scenario = context.configuration.scenario(named.unwrap_or(DEFAULT_SCENARIO))?;
+    Ok(context.configuration.terms(&scenario, true)?.1)
+}

@@ -1,0 +1,80 @@
+//! `novamind lab laws`: every distribution of the world.
+
+use clap::Args;
+
+use super::output::OutputOptions;
+use crate::cli::run::parse_override;
+use crate::cli::{Context, Failure};
+use crate::lab::laws::{Luck, WorldDraw, all_laws, one_law, world_draws};
+use crate::session::DEFAULT_SCENARIO;
+use crate::world::params::nearest;
+use crate::world::random::Streams;
+
+/// Options of `lab laws`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Only this one, with its histogram.
+    #[arg(value_name = "NAME")]
+    name: Option<String>,
+    /// For this group or R&D tier [default: the first].
+    #[arg(long, value_name = "MEMBER", requires = "name")]
+    of: Option<String>,
+    /// Draws of each.
+    #[arg(long, default_value = "100000", value_name = "N", value_parser = clap::value_parser!(u64).range(2..=10_000_000))]
+    draws: u64,
+    /// Seed of the draws.
+    #[arg(long, default_value = "1", value_name = "N")]
+    seed: u64,
+    /// Scenario whose parameters are in force.
+    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+    scenario: String,
+    /// Set a parameter; can be repeated.
+    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
+    set: Vec<(String, String)>,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Runs the command; nothing is played.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let scenario = context.configuration.scenario(&options.scenario)?;
+    let params = context.configuration.parameters(&scenario, &options.set, true)?;
+    let luck = Luck { params, streams: Streams::new(options.seed) };
+    let Some(name) = &options.name else {
+        return options.output.show(&all_laws(&luck, options.draws));
+    };
+    let own = find(name)?;
+    let member = member_of(own, options.of.as_deref(), &luck)?;
+    options.output.show(&one_law(own, (member.0, &member.1), &luck, options.draws))
+}
+
+fn find(name: &str) -> Result<&'static WorldDraw, Failure> {
+    let found = world_draws().find(|own| own.name == name);
+    found.ok_or_else(|| {
+        let near = nearest(name, world_draws().map(|own| own.name));
+        let help = if near.is_empty() {
+            "`novamind lab laws` lists them".to_owned()
+        } else {
+            format!("did you mean {}?", near.join(" or "))
+        };
+        Failure::usage(format!("there is no law {name}; {help}"))
+    })
+}
+
+fn member_of(own: &WorldDraw, wanted: Option<&str>, luck: &Luck) -> Result<(usize, String), Failure> {
+    let members = own.family.members(&luck.params);
+    let Some(wanted) = wanted else {
+        return members.into_iter().next().ok_or_else(|| Failure::usage("nothing is drawn so here"));
+    };
+    let is_wanted = |(number, name): &(usize, String)| {
+        name == wanted || (name.starts_with("tier") && number.to_string() == wanted)
+    };
+    members.iter().find(|own| is_wanted(own)).cloned().ok_or_else(|| {
+        let names: Vec<&str> =
+            members.iter().map(|(_, name)| name.as_str()).filter(|name| !name.is_empty()).collect();
+        Failure::usage(match names.is_empty() {
+            true => format!("{} is one for all: leave out --of", own.name),
+            false => format!("--of takes one of {}", names.join(", ")),
+        })
+    })
+}

@@ -1,0 +1,11 @@
+//! What rivals cost: they copy what is shared and drain what is targeted (docs/laboratory/ablation.md).
+
+mod exhibit;
+mod probes;
+mod rivals;
+#[cfg(test)]
+mod tests;
+
+pub use exhibit::{Axis, SHORT_DAYS, ShortRun, ablation_exhibit};
+pub use probes::{shared_probe, short_run_policies, targeted_probe};
+pub use rivals::{COPY, DRAIN, RivalSetting, arms};

@@ -1,0 +1,59 @@
+use super::*;
+use crate::lab::experiment::{Conduct, Experiment, ExperimentResults};
+use crate::lab::policy::Policy;
+use crate::session::Configuration;
+
+/// A policy against rivals, until a day of a run of so many.
+fn played(policy: &Policy, settings: &[RivalSetting], (days, until): (u32, u32)) -> ExperimentResults {
+    let mut arms = arms(policy, settings, days);
+    arms.iter_mut().for_each(|arm| arm.spec.until = Some(until));
+    let experiment = Experiment::of(arms, 1..=2);
+    let configuration = Configuration::shipped();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let with = Conduct {
+        configuration: &configuration,
+        store: None,
+        pool: &pool,
+        stop: &std::sync::atomic::AtomicBool::new(false),
+        on_run: &|| {},
+    };
+    let prepared = experiment.prepare(&configuration, None, true).expect("an experiment");
+    prepared.conduct(&with).expect("results")
+}
+
+#[test]
+fn copying_costs_shared_development_and_draining_targeted_one() {
+    let (shared, targeted) = (shared_probe().expect("a probe"), targeted_probe().expect("a probe"));
+    let at = |results: &ExperimentResults, arm: usize| results.of(arm, |run| f64::from(run.subscribers));
+    let pick = |all: &[RivalSetting], names: &[&str]| -> Vec<RivalSetting> {
+        names.iter().map(|name| *all.iter().find(|own| own.name == *name).expect("a setting")).collect()
+    };
+    let copy = played(&shared, &pick(&COPY, &["off", "default", "hard"]), (500, 105));
+    for seed in 0..2 {
+        let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
+        assert!(off > default && default >= hard, "{off} {default} {hard}");
+    }
+    // With targeted spending alone, default and hard rivals are the same; draining is not.
+    let drain =
+        played(&targeted, &pick(&DRAIN, &["no drain", "default", "hard", "drain to 0.2"]), (500, 105));
+    assert_eq!(at(&drain, 1), at(&drain, 2));
+    let cash = |arm: usize| drain.of(arm, |run| run.cash);
+    assert_eq!(cash(1), cash(2));
+    assert!(at(&drain, 0)[0] > at(&drain, 3)[0], "{:?} {:?}", at(&drain, 0), at(&drain, 3));
+}
+
+#[test]
+fn fifty_days_have_neither_rivals_nor_drift() {
+    let rivals: Vec<RivalSetting> =
+        COPY.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let probe = shared_probe().expect("a probe");
+    let results = played(&probe, &rivals, (SHORT_DAYS, SHORT_DAYS));
+    let cash = |arm: usize| results.of(arm, |run| run.cash);
+    assert!(cash(0) == cash(1) && cash(1) == cash(2));
+    let short = [ShortRun { name: "the probe", results: &results }];
+    let axis = Axis { name: "copy", caption: "the probe".to_owned(), settings: &rivals, results: &results };
+    let text = ablation_exhibit(&[axis], &short, 49).as_text(100);
+    assert!(text.contains("neither rivals nor drift") && text.contains("identical in 2 of 2"), "{text}");
+    let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
+    assert_eq!(named, ["the paper's baseline", "ads from day 0"]);
+}

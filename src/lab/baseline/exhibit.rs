@@ -1,0 +1,208 @@
+//! The configurations as a table: as the paper's for one seed, with spread and stability for many.
+
+use super::grid::Grid;
+use super::ranks::{concordance, places};
+use crate::lab::exhibit::{
+    AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
+};
+use crate::lab::experiment::{ExperimentResults, RunResult};
+use crate::notation::dollars;
+use crate::report::ranking::published;
+use crate::statistics::{Interval, Quartiles, mean, median};
+
+/// The configurations of a grid with what became of them.
+pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentResults) -> Exhibit {
+    let board = Board::of(results);
+    let count = results.seeds.len();
+    let seeds = match (results.seeds.first(), results.seeds.last()) {
+        (Some(first), Some(last)) if first != last => format!("seeds {first} to {last}"),
+        (Some(first), _) => format!("seed {first}"),
+        _ => "no seeds".to_owned(),
+    };
+    let table = if count > 1 { over_seeds(grid, &board) } else { of_one_seed(grid, &board) };
+    let mut exhibit =
+        Exhibit::of(format!("{}: {} configurations, {seeds}", grid.name, grid.configurations.len()), table);
+    if count > 1 {
+        exhibit.tables.push(best_by_seed(grid, &board));
+        exhibit.graphs.push(spread(&board));
+    }
+    exhibit.notes.extend(notes(grid, is_published, &board));
+    exhibit
+}
+
+/// Results with the places of the configurations.
+struct Board<'a> {
+    results: &'a ExperimentResults,
+    /// Configurations, the best first: by median final cash.
+    order: Vec<usize>,
+    /// Places by seed and configuration.
+    by_seed: Vec<Vec<f64>>,
+}
+
+impl<'a> Board<'a> {
+    fn of(results: &'a ExperimentResults) -> Board<'a> {
+        let middle = |arm: usize| median(&results.of(arm, |run| run.cash)).unwrap_or(f64::NEG_INFINITY);
+        let mut order: Vec<usize> = (0..results.by_arm.len()).collect();
+        order.sort_by(|one, other| middle(*other).total_cmp(&middle(*one)));
+        let of_seed = |at: usize| {
+            let cash: Vec<f64> =
+                results.by_arm.iter().filter_map(|runs| runs.get(at)).map(|run| run.cash).collect();
+            places(&cash)
+        };
+        Board { results, order, by_seed: (0..results.seeds.len()).map(of_seed).collect() }
+    }
+
+    fn runs(&self, arm: usize) -> &[RunResult] {
+        self.results.by_arm.get(arm).map_or(&[], Vec::as_slice)
+    }
+
+    /// Share of the seeds in which a configuration is first, alone or with others.
+    fn first(&self, arm: usize) -> f64 {
+        let least = |places: &[f64]| places.iter().copied().fold(f64::INFINITY, f64::min);
+        let firsts =
+            self.by_seed.iter().filter(|places| places.get(arm).is_some_and(|own| *own == least(places)));
+        firsts.count() as f64 / self.by_seed.len().max(1) as f64
+    }
+
+    fn mean_place(&self, arm: usize) -> f64 {
+        mean(&self.by_seed.iter().filter_map(|places| places.get(arm).copied()).collect::<Vec<_>>())
+    }
+}
+
+fn head(grid: &Grid) -> Vec<Column> {
+    let names = grid.axes.join(" / ");
+    vec![Column::words("configuration", &names)]
+}
+
+fn of_one_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
+    let mut columns = head(grid);
+    columns.extend([
+        Column::numbers("cash", "final cash", Measure::Dollars),
+        Column::numbers("survival", "survival, days", Measure::Days),
+        Column::numbers("peak", "peak subscribers", Measure::Count),
+        Column::numbers("peak_day", "on day", Measure::Days),
+    ]);
+    let mut table = Tabulation::new("configurations", "The best first", columns);
+    for arm in &board.order {
+        let Some(run) = board.runs(*arm).first() else { continue };
+        table.rows.push(vec![
+            Datum::words(grid.configurations[*arm].label()),
+            Datum::number(run.cash),
+            Datum::number(f64::from(run.day)),
+            Datum::number(f64::from(run.peak_subscribers)),
+            Datum::number(f64::from(run.peak_day)),
+        ]);
+    }
+    table
+}
+
+fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
+    let mut columns = head(grid);
+    columns.extend([
+        Column::numbers("median_cash", "median cash", Measure::Dollars),
+        Column::intervals("median_cash_interval", "95 % interval of it", Measure::Dollars),
+        Column::numbers("lower_quartile", "lower quartile", Measure::Dollars),
+        Column::numbers("upper_quartile", "upper quartile", Measure::Dollars),
+        Column::numbers("bankrupt", "bankrupt", Measure::Share),
+        Column::numbers("survival", "mean survival, days", Measure::Number(1)),
+        Column::numbers("peak", "median peak subscribers", Measure::Count),
+        Column::numbers("first", "first in", Measure::Share),
+        Column::numbers("place", "mean place", Measure::Number(1)),
+    ]);
+    let mut table = Tabulation::new("configurations", "The best first, by median final cash", columns);
+    for arm in &board.order {
+        let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
+        let cash = of(|run| run.cash);
+        let quartiles = Quartiles::of(&cash);
+        table.rows.push(vec![
+            Datum::words(grid.configurations[*arm].label()),
+            Datum::number(quartiles.map(|own| own.median)),
+            Datum::interval(Interval::of_median(&cash)),
+            Datum::number(quartiles.map(|own| own.lower)),
+            Datum::number(quartiles.map(|own| own.upper)),
+            Datum::number(mean(&of(|run| f64::from(u8::from(run.is_bankrupt()))))),
+            Datum::number(mean(&of(|run| f64::from(run.day)))),
+            Datum::number(median(&of(|run| f64::from(run.peak_subscribers)))),
+            Datum::number(board.first(*arm)),
+            Datum::number(board.mean_place(*arm)),
+        ]);
+    }
+    table
+}
+
+fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
+    let columns = vec![
+        Column::numbers("seed", "seed", Measure::Count),
+        Column::words("configuration", "best configuration"),
+        Column::numbers("cash", "its cash", Measure::Dollars),
+        Column::numbers("bankrupt", "bankrupt", Measure::Count),
+    ];
+    let mut table = Tabulation::new("seeds", "The best configuration of each seed", columns);
+    for (at, seed) in board.results.seeds.iter().enumerate() {
+        let run = |arm: usize| board.runs(arm).get(at);
+        let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |own| own.cash);
+        let best = board.order.iter().copied().max_by(|one, other| cash(one).total_cmp(&cash(other)));
+        let Some(best) = best else { continue };
+        let bankrupt =
+            board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
+        table.rows.push(vec![
+            Datum::number(*seed as f64),
+            Datum::words(grid.configurations[best].label()),
+            Datum::number(cash(&best)),
+            Datum::number(bankrupt as f64),
+        ]);
+    }
+    table
+}
+
+/// Quartiles of the final cash of each configuration, the best first.
+fn spread(board: &Board<'_>) -> Graph {
+    let quartiles: Vec<Quartiles> = (board.order.iter())
+        .filter_map(|arm| Quartiles::of(&board.results.of(*arm, |run| run.cash)))
+        .collect();
+    let series = |name: &str, of: fn(&Quartiles) -> f64| Series {
+        name: name.to_owned(),
+        points: quartiles.iter().enumerate().map(|(at, own)| (at as f64 + 1.0, of(own))).collect(),
+    };
+    Graph {
+        title: "Final cash of the configurations, the best first".to_owned(),
+        summary: "Median and quartiles of final cash by the place of the configuration in the table"
+            .to_owned(),
+        across: GraphAxis { label: "place in the table", scale: AxisScale::Whole },
+        up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
+        series: vec![
+            series("upper quartile", |own| own.upper),
+            series("lower quartile", |own| own.lower),
+            series("median", |own| own.median),
+        ],
+        form: GraphForm::Lines,
+    }
+}
+
+fn notes(grid: &Grid, is_published: bool, board: &Board<'_>) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(best) = board.order.first() {
+        let label = grid.configurations[*best].label();
+        notes.push(match board.results.seeds.len() {
+            1 => format!("Best configuration: {label}."),
+            _ => format!("Best configuration by median final cash: {label}."),
+        });
+    }
+    if let Some(own) = concordance(&board.by_seed) {
+        notes.push(format!(
+            "Rank stability: Kendall's W of the rankings by final cash is {own:.2}: 1 where every seed ranks the configurations alike, about {:.2} where seeds have nothing in common.",
+            1.0 / board.by_seed.len() as f64
+        ));
+    }
+    if !grid.description.is_empty() {
+        notes.push(grid.description.clone());
+    }
+    if is_published {
+        notes.push(format!(
+            "Published for mid / S1 / heavy / $100K at the paper's seed 42: {}. Seeds stand for other luck here than there ({}).",
+            dollars(published().rule_based_baseline),
+            published().source
+        ));
+    }
+    notes
+}

@@ -1,0 +1,62 @@
+//! How alike the seeds rank the configurations.
+
+/// Places by value, the greatest first, from 1; equal values share the mean of their places.
+pub fn places(values: &[f64]) -> Vec<f64> {
+    let place = |value: &f64| {
+        let better = values.iter().filter(|other| other.total_cmp(value).is_gt()).count() as f64;
+        let equal = values.iter().filter(|other| other.total_cmp(value).is_eq()).count() as f64;
+        better + (equal + 1.0) / 2.0
+    };
+    values.iter().map(place).collect()
+}
+
+/// Kendall's coefficient of concordance W of several rankings of the same things: 1 where all rank alike, about 1 / (number
+/// of rankings) where they have nothing in common. Shared places are allowed for. None below two rankings or two things, or where
+/// every ranking holds all things equal.
+pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
+    let (judges, things) = (rankings.len() as f64, rankings.first()?.len() as f64);
+    if judges < 2.0 || things < 2.0 {
+        return None;
+    }
+    let sums: Vec<f64> =
+        (0..things as usize).map(|at| rankings.iter().map(|own| own[at]).sum::<f64>()).collect();
+    let squares: f64 = sums.iter().map(|sum| sum * sum).sum();
+    let ties: f64 = rankings.iter().map(|own| tie_correction(own)).sum();
+    let spread = judges * judges * things * (things * things - 1.0) - judges * ties;
+    let above = 12.0 * squares - 3.0 * judges * judges * things * (things + 1.0) * (things + 1.0);
+    (spread > 0.0).then(|| above / spread)
+}
+
+/// Sum of t^3 - t over groups of t shared places.
+fn tie_correction(places: &[f64]) -> f64 {
+    let shared = |place: &f64| places.iter().filter(|other| **other == *place).count() as f64;
+    // Each of the t members adds its share.
+    places.iter().map(|place| shared(place)).map(|count| count * count - 1.0).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_begin_with_the_greatest_and_equal_ones_share() {
+        assert_eq!(places(&[5.0, 9.0, 5.0, -1.0]), [2.5, 1.0, 2.5, 4.0]);
+    }
+
+    #[test]
+    fn rankings_that_agree_have_concordance_1_and_opposite_ones_0() {
+        let up = vec![1.0, 2.0, 3.0];
+        let down = vec![3.0, 2.0, 1.0];
+        assert_eq!(concordance(&[up.clone(), up.clone(), up.clone()]), Some(1.0));
+        assert_eq!(concordance(&[up.clone(), down]), Some(0.0));
+        let tied = vec![1.5, 1.5, 3.0];
+        assert_eq!(concordance(&[tied.clone(), tied]), Some(1.0));
+        assert_eq!(concordance(&[up]), None);
+        // Three judges, four things (Kendall 1948): R = 6, 5, 9, 10.
+        let judges = [[2.0, 1.0, 3.0, 4.0], [1.0, 3.0, 2.0, 4.0], [3.0, 1.0, 4.0, 2.0]].map(Vec::from);
+        let own = concordance(&judges).expect("rankings");
+        let sums = [6.0, 5.0, 9.0, 10.0];
+        let spread: f64 = sums.iter().map(|sum: &f64| (sum - 7.5) * (sum - 7.5)).sum();
+        assert!((own - 12.0 * spread / (9.0 * 60.0)).abs() < 1e-12, "{own}");
+    }
+}

@@ -1,0 +1,36 @@
+//! Configurations that differ in their cash floor only play alike until cash comes between their floors: such runs are played
+//! once.
+
+use super::grid::GridPoint;
+use crate::lab::experiment::RunResult;
+use crate::lab::policy::{Policy, RuleBased};
+
+/// For each configuration, the one with the lowest floor that is like it in everything else.
+pub fn leaders(points: &[GridPoint]) -> Vec<usize> {
+    let floor = |at: usize| floor_of(&points[at].policy);
+    let leader = |at: usize| {
+        let alike = (0..points.len()).filter(|other| are_alike(&points[at].policy, &points[*other].policy));
+        alike.min_by(|one, other| floor(*one).total_cmp(&floor(*other))).unwrap_or(at)
+    };
+    (0..points.len()).map(leader).collect()
+}
+
+/// Cash floor; without a routine nothing reads it.
+fn floor_of(policy: &Policy) -> f64 {
+    policy.rule_based.as_ref().map_or(f64::NEG_INFINITY, |rules| rules.cash_floor)
+}
+
+fn are_alike(one: &Policy, other: &Policy) -> bool {
+    let rules =
+        |own: &Policy| own.rule_based.as_ref().map(|rules| RuleBased { cash_floor: 0.0, ..rules.clone() });
+    rules(one) == rules(other)
+        && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
+}
+
+/// Whether a run of the leader is also that of a configuration with another floor: on no decision day was cash above the
+/// one and not above the other.
+pub fn is_shared(leader: &Policy, own: &Policy, start_cash: f64, run: &RunResult) -> bool {
+    let (low, high) = (floor_of(leader), floor_of(own));
+    let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);
+    std::iter::once(start_cash).chain(decided).all(|cash| (cash > low) == (cash > high))
+}

@@ -1,0 +1,56 @@
+use super::*;
+use crate::lab::experiment::{Arm, Conduct, Experiment, ExperimentResults};
+use crate::session::Configuration;
+
+/// The results of some configurations over a few days, all played.
+fn played(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
+    let arms = points.iter().map(|own| {
+        let mut arm = Arm::new(own.label(), own.policy.clone());
+        arm.spec.until = Some(days);
+        arm
+    });
+    let experiment = Experiment::of(arms.collect(), seeds.iter().copied());
+    let configuration = Configuration::shipped();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let with = Conduct {
+        configuration: &configuration,
+        store: None,
+        pool: &pool,
+        stop: &std::sync::atomic::AtomicBool::new(false),
+        on_run: &|| {},
+    };
+    let prepared = experiment.prepare(&configuration, None, true).expect("an experiment");
+    prepared.conduct(&with).expect("results")
+}
+
+#[test]
+fn configurations_of_one_leader_play_alike_unless_cash_comes_between_their_floors() {
+    let grid = Grid::find(PAPER).expect("a grid");
+    let points = &grid.configurations;
+    let leaders = leaders(points);
+    let expected: Vec<usize> = (0..24).map(|at| at / 2 * 2).collect();
+    assert_eq!(leaders, expected);
+    // mid / S1 / light comes below $300,000 within 350 days, mid / S1 / heavy within 50 does not.
+    let (light, heavy) = (&points[12..14], &points[16..18]);
+    for (pair, days, shared) in [(light, 350, false), (heavy, 49, true)] {
+        let results = played(pair, &[1], days);
+        let (low, high) = (&results.by_arm[0][0], &results.by_arm[1][0]);
+        assert_eq!(is_shared(&pair[0].policy, &pair[1].policy, 1e6, low), shared, "{}", pair[0].label());
+        assert_eq!(low.state_hash == high.state_hash, shared, "{}", pair[0].label());
+    }
+}
+
+#[test]
+fn one_seed_is_told_as_the_paper_does_and_many_with_their_spread() {
+    let grid = Grid::find(PAPER).expect("a grid");
+    let few = Grid { configurations: grid.configurations[..2].to_vec(), ..grid };
+    let one = baseline_exhibit(&few, true, &played(&few.configurations, &[1], 28));
+    let text = one.as_text(100);
+    assert!(text.contains("survival") && text.contains("peak") && text.contains("15,756,408"), "{text}");
+    assert!(!text.contains("Kendall"), "{text}");
+    let two = baseline_exhibit(&few, false, &played(&few.configurations, &[1, 2], 28));
+    let text = two.as_text(100);
+    assert!(text.contains("quartile") && text.contains("Kendall") && !text.contains("15,756"), "{text}");
+    let row = two.table("seeds").expect("a table").rows.len();
+    assert_eq!(row, 2);
+}

@@ -10,6 +10,8 @@ use crate::world::params::{GroupParams, Params};
 
 /// Steps from a price of 0 to beyond the budget.
 const STEPS: u32 = 100;
+/// Every so many prices of the sample are a row.
+const ROW_EVERY: usize = 5;
 /// How far beyond the budget the figure goes.
 const BEYOND: f64 = 1.1;
 
@@ -100,7 +102,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
     ];
     let caption = "Quality that the mean customer requires, and that shares of the customers require at most";
     let mut table = Tabulation::new("curve", caption, columns);
-    for point in &sample {
+    for point in sample.iter().step_by(ROW_EVERY) {
         table.rows.push(vec![
             Datum::number(point.price),
             Datum::number(required_quality(point.price, &curve, params)),

@@ -5,10 +5,8 @@ use clap::Args;
 use super::output::OutputOptions;
 use crate::cli::run::parse_override;
 use crate::cli::{Context, Failure};
-use crate::lab::laws::{Luck, WorldDraw, all_laws, one_law, world_draws};
+use crate::lab::laws::{Luck, WorldDraw, all_laws, one_law};
 use crate::session::DEFAULT_SCENARIO;
-use crate::world::params::nearest;
-use crate::world::random::Streams;
 
 /// Options of `lab laws`.
 #[derive(Debug, Args)]
@@ -39,7 +37,7 @@ pub struct Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let scenario = context.configuration.scenario(&options.scenario)?;
     let params = context.configuration.parameters(&scenario, &options.set, true)?;
-    let luck = Luck { params, streams: Streams::new(options.seed) };
+    let luck = Luck::of(params, options.seed);
     let Some(name) = &options.name else {
         return options.output.show(&all_laws(&luck, options.draws));
     };
@@ -49,13 +47,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn find(name: &str) -> Result<&'static WorldDraw, Failure> {
-    let found = world_draws().find(|own| own.name == name);
-    found.ok_or_else(|| {
-        let near = nearest(name, world_draws().map(|own| own.name));
-        let help = if near.is_empty() {
-            "`novamind lab laws` lists them".to_owned()
-        } else {
-            format!("did you mean {}?", near.join(" or "))
+    WorldDraw::find(name).map_err(|near| {
+        let help = match near.is_empty() {
+            true => "`novamind lab laws` lists them".to_owned(),
+            false => format!("did you mean {}?", near.join(" or ")),
         };
         Failure::usage(format!("there is no law {name}; {help}"))
     })

@@ -23,6 +23,7 @@ pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentRes
     let mut exhibit =
         Exhibit::of(format!("{}: {} configurations, {seeds}", grid.name, grid.configurations.len()), table);
     if count > 1 {
+        exhibit.tables.push(stability(grid, &board));
         exhibit.tables.push(best_by_seed(grid, &board));
         exhibit.graphs.push(spread(&board));
     }
@@ -104,10 +105,6 @@ fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
         Column::numbers("lower_quartile", "lower quartile", Measure::Dollars),
         Column::numbers("upper_quartile", "upper quartile", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Share),
-        Column::numbers("survival", "mean survival, days", Measure::Number(1)),
-        Column::numbers("peak", "median peak subscribers", Measure::Count),
-        Column::numbers("first", "first in", Measure::Share),
-        Column::numbers("place", "mean place", Measure::Number(1)),
     ]);
     let mut table = Tabulation::new("configurations", "The best first, by median final cash", columns);
     for arm in &board.order {
@@ -121,6 +118,24 @@ fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
             Datum::number(quartiles.map(|own| own.lower)),
             Datum::number(quartiles.map(|own| own.upper)),
             Datum::number(mean(&of(|run| f64::from(u8::from(run.is_bankrupt()))))),
+        ]);
+    }
+    table
+}
+
+fn stability(grid: &Grid, board: &Board<'_>) -> Tabulation {
+    let mut columns = head(grid);
+    columns.extend([
+        Column::numbers("survival", "mean survival, days", Measure::Number(1)),
+        Column::numbers("peak", "median peak subscribers", Measure::Count),
+        Column::numbers("first", "first in", Measure::Share),
+        Column::numbers("place", "mean place", Measure::Number(1)),
+    ]);
+    let mut table = Tabulation::new("stability", "Survival, size, and places by final cash", columns);
+    for arm in &board.order {
+        let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
+        table.rows.push(vec![
+            Datum::words(grid.configurations[*arm].label()),
             Datum::number(mean(&of(|run| f64::from(run.day)))),
             Datum::number(median(&of(|run| f64::from(run.peak_subscribers)))),
             Datum::number(board.first(*arm)),
@@ -141,7 +156,9 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     for (at, seed) in board.results.seeds.iter().enumerate() {
         let run = |arm: usize| board.runs(arm).get(at);
         let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |own| own.cash);
-        let best = board.order.iter().copied().max_by(|one, other| cash(one).total_cmp(&cash(other)));
+        // Of equal ones the first in the table.
+        let best =
+            board.order.iter().copied().reduce(|best, own| if cash(&own) > cash(&best) { own } else { best });
         let Some(best) = best else { continue };
         let bankrupt =
             board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();

@@ -28,7 +28,9 @@ fn filled(page: &str, tables: &[(&str, String)]) -> String {
     let (mut text, mut lines) = (String::new(), page.lines().peekable());
     while let Some(line) = lines.next() {
         text += &format!("{line}\n");
-        let Some((_, rows)) = tables.iter().find(|(mark, _)| line == format!("<!-- {mark} -->")) else { continue };
+        let Some((_, rows)) = tables.iter().find(|(mark, _)| line == format!("<!-- {mark} -->")) else {
+            continue;
+        };
         for head in lines.by_ref().take(2) {
             text += &format!("{head}\n");
         }

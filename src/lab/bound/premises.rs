@@ -125,7 +125,7 @@ impl Premises {
             ),
             (
                 "what is reported",
-                format!("{} of what is left, as published; the paper takes the rest for what no player can know", self.reported_share),
+                format!("{} of what is left, the share that was published", self.reported_share),
             ),
         ]
     }

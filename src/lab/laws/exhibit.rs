@@ -7,6 +7,7 @@ use super::world_draws;
 use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
+use crate::notation::grouped;
 use crate::statistics::Sample;
 
 /// Bins of a histogram.
@@ -21,35 +22,49 @@ pub fn all_laws(luck: &Luck, draws: u64) -> Exhibit {
     let columns = vec![
         Column::words("name", "name"),
         Column::words("law", "law"),
-        Column::words("parameters", "parameters"),
         Column::words("histogram", "draws"),
         Column::numbers("mean", "mean", Measure::Number(4)),
-        Column::numbers("exact_mean", "exact mean", Measure::Number(4)),
+        Column::numbers("exact_mean", "exact", Measure::Number(4)),
         Column::numbers("std", "sd", Measure::Number(4)),
-        Column::numbers("exact_std", "exact sd", Measure::Number(4)),
-        Column::words("source", "source"),
+        Column::numbers("exact_std", "exact", Measure::Number(4)),
     ];
-    let mut table = Tabulation::new("laws", "", columns);
+    let mut laws = Tabulation::new("laws", "Moments of the draws beside the exact ones", columns);
+    let columns = ["name", "parameters", "source"].map(|name| Column::words(name, name));
+    let mut sources = Tabulation::new("parameters", "Parameters, and where they come from", columns.into());
     for own in world_draws() {
         let Some((member, name)) = own.family.members(&luck.params).into_iter().next() else { continue };
         let (law, drawn) = ((own.law)(&luck.params, member), own.draws(luck, member, draws));
         let (sample, exact) = (Sample::of(&drawn), law.moments());
         let shown = if name.is_empty() { own.name.to_owned() } else { format!("{} {name}", own.name) };
-        table.rows.push(vec![
-            Datum::words(shown),
+        let number = |value: f64| Datum::Measured(value, Measure::Number(decimals(exact.std)));
+        laws.rows.push(vec![
+            Datum::words(&shown),
             Datum::words(law.name()),
-            Datum::words(law.parameters()),
             Datum::words(small(&Histogram::of(&drawn, SMALL))),
-            Datum::number(sample.mean),
-            Datum::number(exact.mean),
-            Datum::number(sample.std),
-            Datum::number(exact.std),
+            number(sample.mean),
+            number(exact.mean),
+            number(sample.std),
+            number(exact.std),
+        ]);
+        sources.rows.push(vec![
+            Datum::words(shown),
+            Datum::words(law.parameters()),
             Datum::words(source(own)),
         ]);
     }
-    Exhibit::of(format!("Every distribution of the world, {draws} draws of each"), table)
+    let mut exhibit = Exhibit::of(
+        format!("Every distribution of the world, {} draws of each", grouped(draws as f64, 0)),
+        laws,
+    );
+    exhibit.tables.push(sources);
+    exhibit
         .with_note("Draws are made by the functions of the world; exact moments follow from the law. `lab laws NAME` shows one with its histogram, `--of MEMBER` for another group or tier.")
         .with_note("Two more streams choose words only: the wording of a post and the name of its author.")
+}
+
+/// Decimals that show three digits of a spread.
+fn decimals(spread: f64) -> usize {
+    if spread > 0.0 { (2.0 - libm::floor(libm::log10(spread))).clamp(0.0, 9.0) as usize } else { 2 }
 }
 
 /// Parameters, and the files that draw.

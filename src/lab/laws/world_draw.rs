@@ -2,7 +2,7 @@
 
 use super::law::Law;
 use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use crate::world::params::{Params, nearest};
 use crate::world::random::{Part, Streams};
 
 /// What the world draws with.
@@ -12,6 +12,13 @@ pub struct Luck {
     pub params: Params,
     /// Streams.
     pub streams: Streams,
+}
+
+impl Luck {
+    /// The luck of a seed.
+    pub fn of(params: Params, seed: u64) -> Luck {
+        Luck { params, streams: Streams::new(seed) }
+    }
 }
 
 /// What a draw is made for each of.
@@ -71,6 +78,15 @@ pub struct WorldDraw {
 }
 
 impl WorldDraw {
+    /// The draw of a name.
+    ///
+    /// # Errors
+    /// There is none: the names that look most like it.
+    pub fn find(name: &str) -> Result<&'static WorldDraw, Vec<&'static str>> {
+        let found = super::world_draws().find(|own| own.name == name);
+        found.ok_or_else(|| nearest(name, super::world_draws().map(|own| own.name)))
+    }
+
     /// The first so many draws for a member.
     pub fn draws(&self, luck: &Luck, member: usize, count: u64) -> Vec<f64> {
         (1..=count).map(|n| (self.draw)(luck, member, n)).collect()

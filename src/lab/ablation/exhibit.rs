@@ -57,7 +57,7 @@ pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> 
             .to_owned(),
     );
     exhibit.notes.push(format!(
-        "An event applies what it copies only if that is more than its own size. Subscribers are those at the end of day {day}; a bankrupt run keeps those of its last day out: it has none."
+        "An event applies what it copies only if that is more than its own size. Subscribers are those at the end of day {day}; a run that went bankrupt before has none."
     ));
     exhibit
 }
@@ -76,7 +76,6 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
         Column::intervals("difference_interval", "95 % interval of it", Measure::Count),
         Column::numbers("cash", "median final cash", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Share),
-        Column::numbers("survival", "mean survival, days", Measure::Number(1)),
     ];
     let mut table = Tabulation::new(axis.name, axis.caption.clone(), columns);
     let default = reference(axis.settings);
@@ -92,7 +91,6 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
             Datum::interval(difference.map(|own| own.interval)),
             Datum::number(median(&axis.results.of(arm, |run| run.cash))),
             Datum::number(mean(&axis.results.of(arm, |run| f64::from(u8::from(run.is_bankrupt()))))),
-            Datum::number(mean(&axis.results.of(arm, |run| f64::from(run.day)))),
         ]);
     }
     table
@@ -160,9 +158,10 @@ fn curves(axis: &Axis<'_>) -> Graph {
     });
     Graph {
         title: axis.caption.clone(),
-        summary: "Mean subscribers by day, one line for each setting of the rivals".to_owned(),
+        summary: "Mean subscribers by day on a logarithmic axis, one line for each setting of the rivals"
+            .to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
-        up: GraphAxis { label: "subscribers", scale: AxisScale::Linear },
+        up: GraphAxis { label: "subscribers", scale: AxisScale::Logarithmic },
         series: series.collect(),
         form: GraphForm::Lines,
     }

@@ -68,7 +68,7 @@ struct LevelEntry {
 }
 
 /// A level with where it stands in its file.
-struct Level {
+struct GridLevel {
     name: String,
     set: Table,
     calls: Vec<Value>,
@@ -150,8 +150,8 @@ impl Reader<'_> {
         axis: &str,
         entries: Vec<Spanned<LevelEntry>>,
         span: std::ops::Range<usize>,
-    ) -> Result<Vec<Level>, PolicyError> {
-        let mut levels: Vec<Level> = Vec::new();
+    ) -> Result<Vec<GridLevel>, PolicyError> {
+        let mut levels: Vec<GridLevel> = Vec::new();
         for entry in entries {
             let span = entry.span();
             let LevelEntry { name, set, call } = entry.into_inner();
@@ -159,7 +159,7 @@ impl Reader<'_> {
                 let problem = format!("axis {axis} has two levels of the name {name}");
                 return Err(self.at(Some(span), &problem));
             }
-            levels.push(Level { name, set, calls: call, span });
+            levels.push(GridLevel { name, set, calls: call, span });
         }
         if levels.is_empty() {
             return Err(self.at(Some(span), &format!("axis {axis} has no level")));
@@ -178,7 +178,7 @@ impl Reader<'_> {
     fn point(
         &self,
         number: usize,
-        axes: &[(String, Vec<Level>)],
+        axes: &[(String, Vec<GridLevel>)],
         base: &Table,
         grid: &str,
     ) -> Result<GridPoint, PolicyError> {

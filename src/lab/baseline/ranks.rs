@@ -31,7 +31,7 @@ pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
 fn tie_correction(places: &[f64]) -> f64 {
     let shared = |place: &f64| places.iter().filter(|other| **other == *place).count() as f64;
     // Each of the t members adds its share.
-    places.iter().map(|place| shared(place)).map(|count| count * count - 1.0).sum()
+    places.iter().map(shared).map(|count| count * count - 1.0).sum()
 }
 
 #[cfg(test)]

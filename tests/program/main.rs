@@ -8,6 +8,7 @@ mod exports;
 mod forged;
 mod golden;
 mod hardship;
+mod laboratory;
 #[cfg(unix)]
 mod large_studies;
 mod looking;

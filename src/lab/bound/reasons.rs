@@ -13,7 +13,7 @@ impl BoundAccount {
     pub(super) fn why(&self, line: AccountLine, own: f64, params: &Params) -> String {
         let millions = own / 1e6;
         if (millions - line.published()).abs() <= line.rounding() {
-            return "the published figure, rounded".to_owned();
+            return "rounds to the published figure".to_owned();
         }
         let ratio = line.published() / millions;
         match line {
@@ -29,11 +29,11 @@ impl BoundAccount {
                 )
             }
             AccountLine::TargetedDevelopment => format!(
-                "the gap of each group depends on the rivals: mean of {} lucks here; the paper does not print its gaps",
+                "the gap of each group depends on the rivals: mean of {} lucks here; how the paper reckons its gaps is not known",
                 super::climate::LUCKS
             ),
             AccountLine::Advertising => format!(
-                "published {} of ours: ours fills every market within the first {} days, where leads thin out; how fast the paper fills them is not printed",
+                "published {} of ours: ours fills every market within the first {} days, where leads thin out; how fast the paper fills them is not known",
                 percent(ratio, 0),
                 self.premises.renewals.first().unwrap_or(&0)
             ),
@@ -57,7 +57,7 @@ impl BoundAccount {
                 )
             }
             AccountLine::GroupResearch => format!(
-                "a study to level {} of every group that was found, at today's prices; the paper does not print its levels",
+                "a study to level {} of every group that was found, at the prices in force; which levels the paper pays for is not known",
                 self.premises.study_level
             ),
             AccountLine::Costs => "the sum of the costs above".to_owned(),

@@ -1,0 +1,89 @@
+//! Commands of the laboratory from a shell: tables, JSON, drawings, wrong grids.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::home::Home;
+
+/// What a command prints as JSON.
+fn json(home: &Home, arguments: &[&str]) -> Value {
+    let said = home.run(&[arguments, &["--json"]].concat());
+    assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
+    serde_json::from_str(&said.out).expect("JSON")
+}
+
+#[test]
+fn what_needs_no_run_is_told_in_every_form() {
+    let home = Home::new();
+    for (command, table) in [
+        (vec!["lab", "bound", "--slack", "4"], "account"),
+        (vec!["lab", "laws", "--draws", "200"], "laws"),
+        (vec!["lab", "laws", "c_max", "--of", "E2", "--draws", "2000"], "moments"),
+        (vec!["lab", "curves"], "curves"),
+        (vec!["lab", "curves", "D_S03"], "curve"),
+    ] {
+        let rows = json(&home, &command)["tables"][table]["rows"].as_array().map_or(0, Vec::len);
+        let csv = home.run(&[&command[..], &["--csv"]].concat());
+        assert_eq!((csv.out.lines().count(), csv.code), (rows + 1, 0), "{command:?}");
+        let text = home.run(&[&command[..], &["--width", "80"]].concat()).out;
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{command:?}\n{text}");
+    }
+    let drawing = home.0.path().join("curves.svg");
+    let path = drawing.to_string_lossy();
+    assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
+    assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
+    // Other parameters, another account.
+    let estimate = |arguments: &[&str]| {
+        let all = json(&home, &[&["lab", "bound"], arguments].concat());
+        all["tables"]["account"]["rows"][15]["own"].as_f64().expect("a number")
+    };
+    let off = estimate(&["--scenario", "competitor-off"]);
+    assert!(off > estimate(&[]), "without rivals development is cheap: {off}");
+}
+
+#[test]
+fn what_is_not_there_is_refused_with_what_is() {
+    let home = Home::new();
+    for (arguments, code, part) in [
+        (vec!["lab", "laws", "cmax"], 2, "did you mean c_max?"),
+        (vec!["lab", "laws", "c_max", "--of", "S9"], 2, "S1, S2"),
+        (vec!["lab", "laws", "lead_noise", "--of", "S1"], 2, "leave out --of"),
+        (vec!["lab", "curves", "S9"], 2, "S1, S2"),
+        (vec!["lab", "bound", "--slack", "5"], 2, "1..=4"),
+        (vec!["lab", "baseline", "--grid", "none"], 3, "content-ads, paper"),
+        (vec!["lab", "ablate", "--day", "141"], 2, "weeks end"),
+        (vec!["lab", "ablate", "--policy", "none"], 3, "P1a"),
+    ] {
+        let said = home.run(&arguments);
+        assert!(said.code == code && said.err.contains(part), "{arguments:?}: {} {}", said.code, said.err);
+    }
+}
+
+#[test]
+fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
+    let home = Home::new();
+    let path = home.0.path().join("grid.toml");
+    let file = path.to_string_lossy();
+    let grid = "name = \"floors\"\n\n[[axis]]\nname = \"floor\"\n\n[[axis.level]]\nname = \"none\"\n\
+                set = { rule_based = { cash_floor = -1 } }\n\n[[axis.level]]\nname = \"high\"\n\
+                set = { rule_based = { cash_floor = 990_000 } }\n";
+    fs::write(&path, grid).expect("a file");
+    let arguments = ["lab", "baseline", "--grid", &file, "--seeds", "1..2", "--days", "28"];
+    let first = json(&home, &arguments);
+    let cash =
+        |at: usize| first["tables"]["configurations"]["rows"][at]["median_cash"].as_f64().expect("cash");
+    assert!(cash(0) > cash(1), "a floor that is soon reached ends spending");
+    assert_eq!(first["tables"]["configurations"]["rows"][0]["configuration"], "high");
+    let store = home.runs().join(".lab/baseline.jsonl");
+    let kept = fs::read_to_string(&store).expect("results");
+    assert_eq!(json(&home, &arguments), first);
+    assert_eq!(fs::read_to_string(&store).expect("results"), kept, "nothing is played again");
+    fs::write(&path, grid.replace("990_000", "990_000, cashfloor = 1")).expect("a file");
+    let said = home.run(&arguments);
+    assert!(
+        said.code == 3 && said.err.contains("line 12") && said.err.contains("`cashfloor`"),
+        "{}",
+        said.err
+    );
+}

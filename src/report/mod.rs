@@ -11,6 +11,7 @@ mod card;
 pub(crate) mod chapters;
 pub mod class;
 pub(crate) mod collection;
+pub(crate) mod comparable;
 pub(crate) mod curve;
 pub(crate) mod deals;
 pub(crate) mod debrief;
@@ -95,4 +96,11 @@ pub fn session_as_markdown(logbook: &Logbook) -> String {
 /// How a run was played, for whoever led the session, as one page for a browser.
 pub fn session_as_html(logbook: &Logbook) -> String {
     html::write(&logbook::page_of(logbook))
+}
+
+/// The logbook of a short run on the disk.
+#[cfg(test)]
+pub(crate) fn logbook_of_tests() -> Logbook {
+    let (session, lines) = test_kit::recorded();
+    Logbook::of(&session, &lines, &[])
 }

@@ -132,7 +132,7 @@ fn rank(story: &Story) -> Vec<Block> {
     };
     let told = match standing.rank {
         Some(_) => format!("{}: cash at the end, the best of three runs of each agent.", capital(&standing.in_words())),
-        None if standing.has_score => format!("{}.", capital(&standing.in_words())),
+        None if !standing.obstacles.is_empty() => format!("{}.", capital(&standing.in_words())),
         None => "The run has no score to compare; these are the published results: cash at the end, the best of three \
                  runs of each agent."
             .to_owned(),

@@ -1,10 +1,14 @@
 //! A result beside those that were published.
 
+use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::words::{dollar_tick, whole};
+use super::comparable::{
+    Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obstacles_in_words,
+};
+use super::words::dollar_tick;
 use crate::session::Observation;
 
 /// Published results (read once).
@@ -12,7 +16,8 @@ use crate::session::Observation;
 pub struct Published {
     /// Where they come from.
     pub source: String,
-    start_cash: f64,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
     /// Cash of the rule-based policy, dollars.
     pub rule_based_baseline: f64,
     /// What a perfect player might reach, dollars.
@@ -38,15 +43,14 @@ pub struct Agent {
     pub max_survival_days: f64,
     /// Mean life of a run, days.
     pub mean_survival_days: f64,
+    /// Standard deviation of the lives over all runs, days; of all of them, not of a sample.
+    pub std_survival_days: f64,
     /// Turns of the agent in a week.
     pub turns_per_week: f64,
     /// Targeted share of development spend, where it was published.
     #[serde(default)]
     pub targeted_development_share: Option<f64>,
 }
-
-/// The run that the published results were made with: seed and days.
-const PUBLISHED_RUN: (u64, u32) = (42, 500);
 
 /// The published results.
 pub fn published() -> &'static Published {
@@ -86,9 +90,9 @@ pub struct Standing {
     pub places: Vec<RankedRun>,
     /// Place of this run, from 1.
     pub rank: Option<usize>,
-    /// The run has a score, whether it can be compared or not.
-    pub has_score: bool,
-    /// What differs between this run and the published ones.
+    /// What keeps this run from being ranked; nothing where it is, or will be once it has a score.
+    pub obstacles: Vec<Obstacle>,
+    /// What the published runs began with, where this one had other luck.
     pub caveat: Option<String>,
     /// Where the published results come from.
     pub source: String,
@@ -106,35 +110,38 @@ impl Standing {
     pub fn in_words(&self) -> String {
         match self.rank {
             Some(rank) => format!("rank {rank} of {} beside the published results", self.places.len()),
-            None if self.has_score => "not ranked: other length, start, scenario or parameters".to_owned(),
+            None if !self.obstacles.is_empty() => {
+                format!("not ranked: {}", obstacles_in_words(&self.obstacles))
+            }
             None => "the published results".to_owned(),
         }
     }
 }
 
 /// Where a score stands; of equal results the published ones come first.
-pub fn standing(score: Option<f64>, seen: &Observation, start_cash: f64) -> Standing {
+pub fn standing(score: Option<f64>, seen: &Observation) -> Standing {
     let place = |name: &str, cash: f64, whose: Whose| RankedRun { name: name.to_owned(), cash, whose };
     let mut places: Vec<RankedRun> =
         published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
     places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
-    let is_comparable = is_comparable((seen.last_day, start_cash), &seen.scenario, seen.has_own_parameters);
-    let ranked = score.filter(|_| is_comparable);
+    let obstacles = RunTerms::of_observation(seen).obstacles();
+    let ranked = score.filter(|_| obstacles.is_empty());
     places.extend(ranked.map(|score| place("You", score, Whose::Own)));
     places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
     let rank = ranked.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
-    let has_score = score.is_some();
-    Standing { places, rank, has_score, caveat: caveat(seen, start_cash), source: published().source.clone() }
+    Standing { places, rank, obstacles, caveat: caveat(seen), source: published().source.clone() }
 }
 
-/// Scenarios with the rules by which the published results were made.
-const COMPARABLE: [&str; 2] = ["default", "paper"];
+/// Of two results the better one is greater: more cash at the end, and of equal ones the longer life. So the published
+/// tables choose the best run of an agent; a bankrupt company ends with nothing.
+pub fn by_result(one: (f64, u32), other: (f64, u32)) -> Ordering {
+    one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
+}
 
-/// Whether a run is as long, begins as rich and plays by the same rules as the published ones: then it can be ranked
-/// among them, of another seed too.
-pub fn is_comparable((days, start_cash): (u32, f64), scenario: &str, has_own_parameters: bool) -> bool {
-    let terms = days == PUBLISHED_RUN.1 && start_cash == published().start_cash;
-    terms && COMPARABLE.contains(&scenario) && !has_own_parameters
+/// How many of the published best runs ended with less cash, and how many there are.
+pub fn beaten(cash: f64) -> (usize, usize) {
+    let agents = &published().agent;
+    (agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len())
 }
 
 /// Range of the published targeted shares of development spend: the lowest, the highest.
@@ -143,28 +150,20 @@ pub fn published_targeted_shares() -> (f64, f64) {
     shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share)))
 }
 
-fn caveat(seen: &Observation, start_cash: f64) -> Option<String> {
-    let (seed, days) = PUBLISHED_RUN;
-    let mut other = Vec::new();
-    if seen.seed != Some(seed) {
-        other.push(seen.seed.map_or("a seed that is not shown".to_owned(), |own| format!("seed {own}")));
-    }
-    if seen.last_day != days {
-        other.push(format!("{} days", whole(f64::from(seen.last_day))));
-    }
-    if start_cash != published().start_cash {
-        other.push(format!("{} at the start", dollar_tick(start_cash)));
-    }
-    if !COMPARABLE.contains(&seen.scenario.as_str()) {
-        other.push(format!("scenario {}", seen.scenario));
-    }
-    if seen.has_own_parameters {
-        other.push("changed parameters".to_owned());
-    }
+/// What the published runs are, and the luck of this one where it is another.
+fn caveat(seen: &Observation) -> Option<String> {
+    let own = match seen.seed {
+        Some(PUBLISHED_SEED) => return None,
+        Some(seed) => format!("seed {seed}"),
+        None => "a seed that is not shown".to_owned(),
+    };
+    Some(format!("{}; this run: {own}.", published_terms()))
+}
+
+/// What the published runs are, without a full stop.
+pub fn published_terms() -> String {
     let start = dollar_tick(published().start_cash);
-    (!other.is_empty()).then(|| {
-        format!("Published: seed {seed}, {days} days, {start} at the start; this run: {}.", other.join(", "))
-    })
+    format!("Published: seed {PUBLISHED_SEED}, {PUBLISHED_DAYS} days, {start} at the start")
 }
 
 #[cfg(test)]
@@ -178,38 +177,37 @@ mod tests {
         let mut seen = test_kit::played(0).observe();
         (seen.seed, seen.last_day) = (Some(42), 500);
         assert_eq!(seen.scenario, "default");
-        let good = standing(Some(14_208_331.0), &seen, 1_000_000.0);
+        let good = standing(Some(14_208_331.0), &seen);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
         assert_eq!(good.in_words(), "rank 2 of 18 beside the published results");
         let names: Vec<&str> = good.around(1, 1).iter().map(|place| place.name.as_str()).collect();
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
-        let ruined = standing(Some(0.0), &seen, 1_000_000.0);
+        let ruined = standing(Some(0.0), &seen);
         assert_eq!(ruined.rank, Some(14), "four published agents have nothing either");
         assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
-        assert_eq!(standing(None, &seen, 1_000_000.0).rank, None);
+        assert_eq!(standing(None, &seen).rank, None);
         seen.seed = Some(7);
-        assert_eq!(standing(Some(0.0), &seen, 1_000_000.0).rank, Some(14), "other luck is no other game");
+        assert_eq!(standing(Some(0.0), &seen).rank, Some(14), "other luck is no other game");
         assert!(published_targeted_shares().0 < published_targeted_shares().1);
     }
 
     #[test]
-    fn a_run_of_other_terms_is_not_ranked() {
+    fn a_run_of_other_terms_is_not_ranked_and_says_why() {
         let mut seen = test_kit::played(0).observe();
-        seen.last_day = 500;
-        for (days, cash, scenario, changed, ranked) in [
-            (500, 1_000_000.0, "paper", false, true),
-            (28, 1_000_000.0, "default", false, false),
-            (500, 2_000_000.0, "default", false, false),
-            (500, 1_000_000.0, "competitor-off", false, false),
-            (500, 1_000_000.0, "default", true, false),
-        ] {
-            (seen.last_day, seen.scenario) = (days, scenario.to_owned());
-            seen.has_own_parameters = changed;
-            let standing = standing(Some(2e6), &seen, cash);
-            assert_eq!(standing.rank.is_some(), ranked, "{days} {cash} {scenario}");
+        for (days, ranked) in [(500, true), (28, false)] {
+            seen.last_day = days;
+            let standing = standing(Some(2e6), &seen);
+            assert_eq!(standing.rank.is_some(), ranked, "{days}");
             assert_eq!(standing.places.iter().any(|place| place.whose == Whose::Own), ranked);
-            assert_eq!(standing.in_words().starts_with("not ranked"), !ranked);
+            assert_eq!(standing.in_words() == "not ranked: 28 days instead of 500", !ranked);
         }
+    }
+
+    #[test]
+    fn the_better_result_has_more_cash_and_then_the_longer_life() {
+        assert_eq!(by_result((5.0, 500), (4.0, 500)), Ordering::Greater);
+        assert_eq!(by_result((0.0, 90), (0.0, 131)), Ordering::Less);
+        assert_eq!((beaten(0.0), beaten(1.0), beaten(1e9)), ((0, 16), (4, 16), (16, 16)));
     }
 
     #[test]
@@ -228,12 +226,14 @@ mod tests {
     }
 
     #[test]
-    fn other_terms_are_named() {
-        let seen = test_kit::played(0).observe();
-        let caveat = standing(None, &seen, 2e6).caveat.expect("another seed");
+    fn other_luck_is_named() {
+        let mut seen = test_kit::played(0).observe();
+        let caveat = |seen: &Observation| standing(None, seen).caveat;
         assert_eq!(
-            caveat,
-            "Published: seed 42, 500 days, $1M at the start; this run: seed 7, 200 days, $2M at the start."
+            caveat(&seen).as_deref(),
+            Some("Published: seed 42, 500 days, $1M at the start; this run: seed 7.")
         );
+        seen.seed = Some(42);
+        assert_eq!(caveat(&seen), None);
     }
 }

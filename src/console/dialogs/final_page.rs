@@ -181,8 +181,7 @@ impl FinalPage {
         let roomy = height >= TWO_COLUMNS.1;
         let mut parts: Vec<Vec<TextLine<'a>>> = Vec::new();
         parts.extend(self.ruin(canvas, width, roomy));
-        let start_cash = company.cash_by_day.first().copied().unwrap_or(0.0);
-        let standing = standing(company.seen.score, &company.seen, start_cash);
+        let standing = standing(company.seen.score, &company.seen);
         // A ruin is explained before it is ranked.
         let best = match (roomy, company.seen.ended) {
             (_, Some(Ended::Bankruptcy)) => usize::from(roomy),
@@ -296,7 +295,10 @@ fn ranking<'a>(
 ) -> Vec<TextLine<'a>> {
     let most = standing.places.iter().map(|place| place.cash).fold(1.0, f64::max);
     let room = (width as usize).saturating_sub(39).min(50);
-    let mut lines = vec![TextLine::from(canvas.span(standing.in_words(), Role::Header))];
+    let mut lines: Vec<TextLine<'a>> = wrapped(&standing.in_words(), width as usize)
+        .into_iter()
+        .map(|line| TextLine::from(canvas.span(line, Role::Header)))
+        .collect();
     for place in standing.around(best, 1) {
         let own = place.whose == Whose::Own;
         let role = if own { Role::Good } else { Role::Text };
@@ -446,7 +448,7 @@ mod tests {
         for (text, name) in [(&small, "80×24"), (&large, "120×40")] {
             for part in [
                 "Day 35. You end with $",
-                "not ranked: other length, start, scenario or parameters",
+                "not ranked: 35 days instead of 500",
                 "Rule-based baseline",
                 "1 wk ",
                 "ads on best channel",

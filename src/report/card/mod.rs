@@ -196,7 +196,7 @@ mod tests {
         let mut story = Story::of(&test_kit::finished());
         assert!(!as_text(&story).contains("rank"));
         (story.seen.last_day, story.seen.seed) = (500, Some(42));
-        story.standing = crate::report::ranking::standing(Some(14_208_331.0), &story.seen, 1_000_000.0);
+        story.standing = crate::report::ranking::standing(Some(14_208_331.0), &story.seen);
         assert!(as_text(&story).contains("rank 2 of 18") && as_svg(&story).contains("rank 2 of 18"));
     }
 }

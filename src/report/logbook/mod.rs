@@ -51,6 +51,8 @@ pub struct Logbook {
     pub version: String,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
+    /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
     /// Earlier runs of the seed and scenario on the machine.
     pub earlier_runs: u32,
     /// Run it branched from.
@@ -179,6 +181,7 @@ impl Logbook {
             start_cash: manifest.cash,
             version: manifest.version.clone(),
             parameters_digest: manifest.parameters_digest.clone(),
+            has_own_parameters: session.observe().has_own_parameters,
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
             created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),

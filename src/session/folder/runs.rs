@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::derived::Derived;
 use super::lock::lock_run;
+use super::manifest::Manifest;
 use super::mode::Mode;
 use crate::session::error::RunError;
 use crate::session::resume::open::Access;
@@ -141,7 +142,7 @@ fn summarise(folder: &Path) -> RunSummary {
     RunSummary {
         id,
         has_own_parameters: manifest.has_own_parameters()
-            || (manifest.mode == Mode::Debug && sets_parameters(&folder.join("trajectory.jsonl"))),
+            || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
         created: manifest.created.clone(),
         played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
@@ -162,7 +163,12 @@ fn summarise(folder: &Path) -> RunSummary {
     }
 }
 
-/// Whether a debug run has set a parameter while it went on.
+/// Whether parameters may have been set while a run went on: in debug runs, in lessons, and in what branches from them.
+fn may_set_parameters(manifest: &Manifest) -> bool {
+    manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
+}
+
+/// Whether a run has set a parameter while it went on.
 fn sets_parameters(trajectory: &Path) -> bool {
     let Ok(bytes) = read_regular_file(trajectory) else { return false };
     let kind = br#""kind":"override""#;

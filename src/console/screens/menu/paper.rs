@@ -8,7 +8,8 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, dollars};
-use crate::report::ranking::{self, published};
+use crate::report::comparable::{Obstacle, RunTerms, left_out_in_words};
+use crate::report::ranking::{published, published_terms};
 use crate::session::{Ended, Mode, RunSummary};
 
 /// A line of the table.
@@ -36,25 +37,22 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<Ranked> {
         note: format!("{} of {} bankrupt", agent.bankruptcies, agent.runs),
         own: false,
     }));
-    results.extend(runs.iter().filter(|run| is_comparable(run)).map(|run| Ranked {
-        name: format!("You · {}", run.id),
-        cash: if run.ended == Some(Ended::Bankruptcy) { 0.0 } else { run.cash },
-        note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
-        own: true,
+    results.extend(runs.iter().filter(|run| obstacles(run).is_some_and(|own| own.is_empty())).map(|run| {
+        Ranked {
+            name: format!("You · {}", run.id),
+            cash: if run.ended == Some(Ended::Bankruptcy) { 0.0 } else { run.cash },
+            note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
+            own: true,
+        }
     }));
     results.sort_by(|left, right| right.cash.total_cmp(&left.cash).then_with(|| left.name.cmp(&right.name)));
     results
 }
 
-fn is_finished(run: &RunSummary) -> bool {
-    matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy)) && run.problem.is_none()
-}
-
-fn is_comparable(run: &RunSummary) -> bool {
-    is_finished(run) && {
-        let terms = (run.days, run.starting_cash);
-        ranking::is_comparable(terms, &run.scenario, run.has_own_parameters)
-    }
+/// What keeps a run from being ranked; none of a run that has no score.
+fn obstacles(run: &RunSummary) -> Option<Vec<Obstacle>> {
+    let has_score = matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson));
+    (has_score && run.problem.is_none()).then(|| RunTerms::of_summary(run).obstacles())
 }
 
 impl Menu {
@@ -64,33 +62,35 @@ impl Menu {
         let note = if own > 0 { format!("{own} of yours") } else { String::new() };
         let inside = canvas.pane(area, "Published results and yours", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let list = Rect { height: inside.height.saturating_sub(4), ..inside };
+        let lines = wrapped(&format!("{}\n{}", self.yours(own), source()), inside.width as usize);
+        let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
         let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
         let from = first_row(self.selected, list.height as usize, results.len());
         for (row, (at, result)) in rows_of(list).zip(results.iter().enumerate().skip(from)) {
             draw_result(canvas, row, at, result, most);
         }
-        let left_out = self.list().iter().filter(|run| is_finished(run) && !is_comparable(run)).count();
-        let yours = match (own, left_out) {
-            (0, 0) => "Finish a 500-day run to appear here.".to_owned(),
-            (_, 0) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
-            (_, 1) => "One finished run of another length, start or scenario, or of changed parameters, is not shown.".to_owned(),
-            (_, count) => {
-                format!("{count} finished runs of another length, start or scenario, or of changed parameters, are not shown.")
-            }
-        };
-        let bound = published().estimated_upper_bound;
-        let source = format!(
-            "Best cash of three runs each, seed 42, 500 days, $1,000,000 start. Estimated upper bound ${}.",
-            compact(bound)
-        );
         let used = list.height + 1;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
-        let lines = wrapped(&format!("{yours}\n{source}"), below.width as usize);
         for (row, line) in rows_of(below).zip(lines) {
             canvas.text(row, &line, Role::Dim);
         }
     }
+
+    /// Which of the runs are among the results, and why others are not.
+    fn yours(&self, ranked: usize) -> String {
+        let finished: Vec<Vec<Obstacle>> = self.list().iter().filter_map(obstacles).collect();
+        match (ranked, left_out_in_words(&finished)) {
+            (_, Some(left_out)) => left_out,
+            (0, None) => "Finish a 500-day run to appear here.".to_owned(),
+            (_, None) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
+        }
+    }
+}
+
+/// What the published results are.
+fn source() -> String {
+    let bound = compact(published().estimated_upper_bound);
+    format!("{}, best cash of three runs each. Estimated upper bound ${bound}.", published_terms())
 }
 
 fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &Ranked, most: f64) {
@@ -135,6 +135,8 @@ mod tests {
             finished("ruin", -5.0, 500, Some(Ended::Bankruptcy)),
         ];
         let results = ranked(&runs);
+        let why: Vec<Option<usize>> = runs.iter().map(|run| obstacles(run).map(|own| own.len())).collect();
+        assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
         assert_eq!((results[0].name.as_str(), results[0].own), ("You · rich", true));
         assert_eq!(results.iter().filter(|result| result.own).count(), 2);
         let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt one");

@@ -1,0 +1,213 @@
+//! Whether a run is ranked among the published results: one rule for the final page, the menu, reports and the laboratory.
+
+use super::logbook::Logbook;
+use super::ranking::published;
+use super::words::{dollar_tick, whole};
+use crate::session::{DEFAULT_SCENARIO, Mode, Observation, RunSummary};
+
+/// Last day of the published runs.
+pub const PUBLISHED_DAYS: u32 = 500;
+
+/// Seed of the published runs.
+pub const PUBLISHED_SEED: u64 = 42;
+
+/// Scenarios with the rules by which the published results were made: of any luck, and of the release's own.
+const PUBLISHED_RULES: [&str; 2] = [DEFAULT_SCENARIO, "reference-seed42"];
+
+/// What decides whether a run is ranked among the published results.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunTerms<'a> {
+    /// Last day of the run.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
+    /// Scenario.
+    pub scenario: &'a str,
+    /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
+    /// It belongs to a lesson.
+    pub is_lesson: bool,
+}
+
+impl<'a> RunTerms<'a> {
+    /// Of an open run.
+    pub fn of_observation(seen: &'a Observation) -> RunTerms<'a> {
+        RunTerms {
+            days: seen.last_day,
+            start_cash: seen.starting_cash,
+            scenario: &seen.scenario,
+            has_own_parameters: seen.has_own_parameters,
+            is_lesson: seen.mode == Mode::Lesson,
+        }
+    }
+
+    /// Of a run in a list.
+    pub fn of_summary(run: &'a RunSummary) -> RunTerms<'a> {
+        RunTerms {
+            days: run.days,
+            start_cash: run.starting_cash,
+            scenario: &run.scenario,
+            has_own_parameters: run.has_own_parameters,
+            is_lesson: run.mode == Some(Mode::Lesson),
+        }
+    }
+
+    /// Of a run that was read.
+    pub fn of_logbook(book: &'a Logbook) -> RunTerms<'a> {
+        RunTerms {
+            days: book.days,
+            start_cash: book.start_cash,
+            scenario: &book.scenario,
+            has_own_parameters: book.has_own_parameters,
+            is_lesson: book.mode == Mode::Lesson,
+        }
+    }
+
+    /// What keeps the run from being ranked; nothing of a run that is. Another seed does not: other luck is no other game.
+    pub fn obstacles(&self) -> Vec<Obstacle> {
+        let mut obstacles = Vec::new();
+        if self.is_lesson {
+            obstacles.push(Obstacle::Lesson);
+        }
+        if self.days != PUBLISHED_DAYS {
+            obstacles.push(Obstacle::Length(self.days));
+        }
+        if self.start_cash != published().start_cash {
+            obstacles.push(Obstacle::Start(self.start_cash));
+        }
+        if !PUBLISHED_RULES.contains(&self.scenario) {
+            obstacles.push(Obstacle::Scenario(self.scenario.to_owned()));
+        }
+        if self.has_own_parameters {
+            obstacles.push(Obstacle::Parameters);
+        }
+        obstacles
+    }
+}
+
+/// A reason not to rank a run among the published ones.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Obstacle {
+    /// It belongs to a lesson.
+    Lesson,
+    /// It has another number of days.
+    Length(u32),
+    /// It began with other cash, dollars.
+    Start(f64),
+    /// It plays another scenario.
+    Scenario(String),
+    /// Parameters were changed.
+    Parameters,
+}
+
+impl Obstacle {
+    /// The reason in words: `28 days instead of 500`.
+    pub fn in_words(&self) -> String {
+        match self {
+            Obstacle::Lesson => "part of a lesson".to_owned(),
+            Obstacle::Length(days) => {
+                format!("{} days instead of {PUBLISHED_DAYS}", whole(f64::from(*days)))
+            }
+            Obstacle::Start(cash) => {
+                format!("{} at the start instead of {}", dollar_tick(*cash), dollar_tick(published().start_cash))
+            }
+            Obstacle::Scenario(name) => format!("scenario {name}"),
+            Obstacle::Parameters => "changed parameters".to_owned(),
+        }
+    }
+
+    /// The kind of reason in words, for several runs.
+    fn kind(&self) -> &'static str {
+        match self {
+            Obstacle::Lesson => "part of a lesson",
+            Obstacle::Length(_) => "another length",
+            Obstacle::Start(_) => "another start",
+            Obstacle::Scenario(_) => "another scenario",
+            Obstacle::Parameters => "changed parameters",
+        }
+    }
+}
+
+/// Reasons in one line.
+pub fn obstacles_in_words(obstacles: &[Obstacle]) -> String {
+    obstacles.iter().map(Obstacle::in_words).collect::<Vec<_>>().join(", ")
+}
+
+/// Why runs that are over are not ranked, in a sentence; none where each of them is. Of several runs the reasons are counted.
+pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
+    let left_out: Vec<&Vec<Obstacle>> = runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
+    match left_out.as_slice() {
+        [] => None,
+        [one] => Some(format!("One finished run is not ranked: {}.", obstacles_in_words(one))),
+        several => {
+            let mut counted: Vec<(&'static str, usize)> = Vec::new();
+            for kind in several.iter().flat_map(|obstacles| obstacles.iter().map(Obstacle::kind)) {
+                match counted.iter_mut().find(|(known, _)| *known == kind) {
+                    Some((_, count)) => *count += 1,
+                    None => counted.push((kind, 1)),
+                }
+            }
+            counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+            let reasons: Vec<String> =
+                counted.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
+            Some(format!("{} finished runs are not ranked: {}.", several.len(), reasons.join(", ")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Configuration, NewRun, Session};
+
+    const COMPARABLE: RunTerms<'static> = RunTerms {
+        days: 500,
+        start_cash: 1_000_000.0,
+        scenario: "default",
+        has_own_parameters: false,
+        is_lesson: false,
+    };
+
+    #[test]
+    fn only_a_run_of_the_published_terms_is_ranked() {
+        for (terms, reason) in [
+            (COMPARABLE, ""),
+            (RunTerms { scenario: "reference-seed42", ..COMPARABLE }, ""),
+            (RunTerms { scenario: "paper", ..COMPARABLE }, "scenario paper"),
+            (RunTerms { scenario: "competitor-off", ..COMPARABLE }, "scenario competitor-off"),
+            (RunTerms { days: 28, ..COMPARABLE }, "28 days instead of 500"),
+            (RunTerms { start_cash: 2e6, ..COMPARABLE }, "$2M at the start instead of $1M"),
+            (RunTerms { has_own_parameters: true, ..COMPARABLE }, "changed parameters"),
+            (
+                RunTerms { is_lesson: true, days: 14, ..COMPARABLE },
+                "part of a lesson, 14 days instead of 500",
+            ),
+        ] {
+            assert_eq!(obstacles_in_words(&terms.obstacles()), reason, "{terms:?}");
+        }
+    }
+
+    #[test]
+    fn the_default_run_can_be_ranked_and_every_shipped_scenario_that_counts_exists() {
+        for scenario in PUBLISHED_RULES {
+            let new = NewRun { scenario: scenario.to_owned(), ..NewRun::default() };
+            let seen = Session::create(new, &Configuration::shipped()).expect("a run").observe();
+            assert_eq!(RunTerms::of_observation(&seen).obstacles(), [], "{scenario}");
+        }
+    }
+
+    #[test]
+    fn reasons_of_several_runs_are_counted() {
+        assert_eq!(left_out_in_words(&[vec![]]), None);
+        let short = vec![Obstacle::Length(28)];
+        assert_eq!(
+            left_out_in_words(&[vec![], short.clone()]).as_deref(),
+            Some("One finished run is not ranked: 28 days instead of 500.")
+        );
+        let other = vec![Obstacle::Length(35), Obstacle::Scenario("short".to_owned())];
+        assert_eq!(
+            left_out_in_words(&[short, other]).as_deref(),
+            Some("2 finished runs are not ranked: another length (2), another scenario (1).")
+        );
+    }
+}

@@ -5,6 +5,9 @@ mod baseline;
 mod bound;
 mod comparison;
 mod curves;
+mod behaviour;
+mod comparison;
+mod consistency;
 mod difference;
 mod experiments;
 mod forecasts;
@@ -12,6 +15,7 @@ mod laws;
 mod metrics;
 mod output;
 mod study;
+mod results;
 
 use std::path::{Path, PathBuf};
 
@@ -49,6 +53,12 @@ enum Laboratory {
     Forecasts(forecasts::Options),
     /// Put runs side by side: cash by week, decisions, behaviour measures, and the paper's published figures.
     Compare(comparison::Options),
+    /// Set own runs beside the published results: bankruptcies, best run, lives, calls a week.
+    Table(results::Options),
+    /// Tell how runs were played: ads, forecasts, tools, notes, customers, cash.
+    Behaviour(behaviour::Options),
+    /// Try by playing whether two policies with the same seed have the same luck.
+    Consistency(consistency::Options),
     /// Print the figures of a run day by day, hidden ones included: a debug run, or one that is over.
     Metrics(metrics::Options),
     /// Play policies by scenarios by parameters by seeds into one tidy table, whole or in shards.
@@ -101,6 +111,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Laboratory::Golden(golden) => run_golden(golden, context),
         Laboratory::Forecasts(options) => forecasts::run(options, context),
         Laboratory::Compare(options) => comparison::run(options, context),
+        Laboratory::Table(options) => results::run(options, context),
+        Laboratory::Behaviour(options) => behaviour::run(options, context),
+        Laboratory::Consistency(options) => consistency::run(options, context),
         Laboratory::Metrics(options) => metrics::run(options, context),
         Laboratory::Study(options) => study::run(options, context),
         Laboratory::Merge(options) => study::merge(options),

@@ -6,10 +6,12 @@
 pub mod ablation;
 mod answers;
 pub mod baseline;
+pub(crate) mod behaviour;
 pub mod bench;
 pub mod bound;
 pub(crate) mod comparison;
 pub mod curves;
+pub(crate) mod consistency;
 #[cfg(test)]
 mod example_tests;
 pub mod exhibit;
@@ -21,6 +23,7 @@ mod lesson_check;
 mod metrics;
 mod normal;
 mod policy;
+pub(crate) mod results;
 mod routine;
 mod runner;
 mod seeds;

@@ -12,10 +12,22 @@ use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
 use crate::session::{
-    Configuration, DayReport, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
-    WeekFigures,
+    Configuration, DayReport, Ended, Line, Mode, NewRun, Record, Refusal, RunError as SessionError, Session,
+    Storage, Via, WeekFigures,
 };
 use crate::tools::ToolId;
+
+/// What the rationale of a policy's week says before the policy's name.
+const POLICY_RATIONALE: &str = "policy ";
+
+/// The policy that played a run, by the rationale of its first week; none of a run that a person or an agent played.
+pub(super) fn policy_of(lines: &[Line]) -> Option<&str> {
+    let first = lines.iter().find_map(|line| match &line.record {
+        Record::Advance(week) => Some(week),
+        _ => None,
+    })?;
+    first.rationale.strip_prefix(POLICY_RATIONALE).filter(|_| first.via == Via::Policy)
+}
 
 /// What to run.
 #[derive(Debug, Clone)]
@@ -281,8 +293,8 @@ fn call(
     }
 }
 
-/// A week, or the days up to the one to stop after.
-fn advance(
+/// A week, or the days up to the one to stop after; `watch` sees every day.
+pub(super) fn advance(
     policy: &Policy,
     seed: u64,
     until: u32,
@@ -294,7 +306,7 @@ fn advance(
         session.step(until - day, watch)
     } else {
         let forecasts = session.naive_forecasts();
-        session.advance(&format!("policy {}", policy.name), &forecasts, Via::Policy, watch)
+        session.advance(&format!("{POLICY_RATIONALE}{}", policy.name), &forecasts, Via::Policy, watch)
     };
     ran.map(|_| ()).map_err(|refusal| RunError::Refused {
         seed,

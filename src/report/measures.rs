@@ -308,6 +308,27 @@ impl Wording {
     }
 }
 
+/// The sentences of a text that hold a word of planning, in their order. A sentence ends at a full stop, a question or
+/// exclamation mark before a blank, a semicolon, or the end of its line.
+pub fn planning_sentences(text: &str) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for line in text.lines() {
+        let mut sentence = String::new();
+        for word in line.split_whitespace() {
+            if !sentence.is_empty() {
+                sentence.push(' ');
+            }
+            sentence += word;
+            if word.ends_with(['.', '!', '?', ';']) {
+                sentences.push(std::mem::take(&mut sentence));
+            }
+        }
+        sentences.push(sentence);
+    }
+    sentences.retain(|sentence| Wording::of(sentence).planning > 0);
+    sentences
+}
+
 impl std::ops::AddAssign for Wording {
     fn add_assign(&mut self, other: Wording) {
         self.words += other.words;
@@ -443,6 +464,16 @@ mod tests {
         assert_eq!(planning.planning_each, 0.5, "if, otherwise");
         assert_eq!(filled_naively(session.journal()), (4, 4));
         assert_eq!(super::planning(&[]), Planning::default());
+    }
+
+    #[test]
+    fn sentences_that_plan_are_found() {
+        let text = "Ads of 0.5 work. If rivals move, cut them;\nwait\nWe should ask! Why? Price 12.50 is likely fine";
+        assert_eq!(
+            planning_sentences(text),
+            ["If rivals move, cut them;", "We should ask!", "Price 12.50 is likely fine"]
+        );
+        assert!(planning_sentences("").is_empty());
     }
 
     #[test]

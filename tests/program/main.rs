@@ -12,6 +12,7 @@ mod laboratory;
 #[cfg(unix)]
 mod large_studies;
 mod looking;
+mod own_runs;
 mod plain;
 mod preparation;
 mod scenarios;

@@ -1,5 +1,7 @@
 //! `novamind lab compare`: runs side by side.
 
+use std::io::IsTerminal;
+
 use clap::Args;
 use serde_json::json;
 
@@ -24,6 +26,18 @@ pub struct Options {
     /// Print as comma-separated values: one figure or day per row.
     #[arg(long)]
     csv: bool,
+    /// Widest line of the text: runs stand side by side if they have room, else one a row [default: the terminal's].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(40..))]
+    width: Option<u16>,
+}
+
+/// Columns of a page that is not read in a terminal.
+const PAGE_WIDTH: usize = 160;
+
+/// Columns of the terminal; those of a page where there is none.
+fn terminal_width() -> usize {
+    let size = std::io::stdout().is_terminal().then(crossterm::terminal::size).and_then(Result::ok);
+    size.map_or(PAGE_WIDTH, |(width, _)| usize::from(width))
 }
 
 /// Runs the command; nothing of the runs is changed.
@@ -45,7 +59,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&as_csv(&as_rows(&all))?);
     }
     if !options.json {
-        return print(&printable(&as_text(&all)));
+        return print(&printable(&as_text(&all, options.width.map_or_else(terminal_width, usize::from))));
     }
     let agents = json!({ "source": published().source, "agents": published().agent });
     let runs: Vec<_> = compared.iter().map(|logbook| json!({ "logbook": logbook })).collect();

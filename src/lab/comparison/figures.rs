@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Range, Row, range};
+use super::compared::{Range, Row, range};
 use crate::report::Logbook;
 use crate::report::ranking::published;
 use crate::session::ForecastScore;
@@ -16,7 +16,27 @@ pub struct ComparedFigure {
     published: fn() -> Option<Range>,
 }
 
+/// A figure of the whole run by its name and horizon; a test holds that every name used is there.
+pub fn figure_of(name: &str, of: &str) -> Option<&'static ComparedFigure> {
+    FIGURES.iter().find(|figure| figure.name == name && figure.of == of)
+}
+
 impl ComparedFigure {
+    /// Its name, with its horizon.
+    pub fn title(&self) -> String {
+        if self.of.is_empty() { self.name.to_owned() } else { format!("{}, {} days", self.name, self.of) }
+    }
+
+    /// Its unit.
+    pub fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// Its value for a run; none where there is none.
+    pub fn value(&self, run: &Logbook) -> Option<f64> {
+        (self.value)(run)
+    }
+
     pub(super) fn row(&self, runs: &[Logbook]) -> Row {
         Row {
             figure: self.name.to_owned(),
@@ -140,6 +160,16 @@ pub const FIGURES: &[ComparedFigure] = &[
     figure("forecast error", "28", "share", |run| forecast(run, 28, error), nothing),
     figure("forecast error", "84", "share", |run| forecast(run, 84, error), nothing),
     figure("forecast error", "182", "share", |run| forecast(run, 182, error), nothing),
+    figure(
+        "forecast error of the first four weeks",
+        "28",
+        "share",
+        |run| {
+            let mut scores = run.measures.first_forecasts.iter();
+            scores.find(|score| score.horizon_days == 28 && score.scored > 0).map(error)
+        },
+        nothing,
+    ),
     figure("forecast coverage", "7", "share", |run| forecast(run, 7, coverage), || Some(NOMINAL)),
     figure("forecast coverage", "28", "share", |run| forecast(run, 28, coverage), || Some(NOMINAL)),
     figure("forecast coverage", "84", "share", |run| forecast(run, 84, coverage), || Some(NOMINAL)),
@@ -160,6 +190,8 @@ pub const FIGURES: &[ComparedFigure] = &[
         nothing,
     ),
     figure("\"if\" in rationales", "", "count", |run| Some(run.wording.ifs as f64), nothing),
+    figure("\"if\" in notes", "", "count", |run| Some(run.notes.wording?.ifs as f64), nothing),
+    figure("evenness of tools", "", "share", |run| run.measures.tools.evenness, nothing),
 ];
 
 fn chance() -> Option<Range> {

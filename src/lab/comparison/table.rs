@@ -1,17 +1,30 @@
 //! Runs side by side as text for people and as rows for programs.
 
-use super::{Comparison, Range, Row};
+use super::compared::{Comparison, Range, Row};
+use super::rows::one_a_row;
 use crate::notation::{dollars, grouped, percent};
 use crate::report::ranking::published;
 
 /// Most days whose cash the text tells; of longer runs it leaves weeks out.
 const CASH_ROWS: usize = 20;
 
-/// Letters of a line of decisions.
-const LINE: usize = 110;
+/// Most letters of a line of decisions.
+const LINE: usize = 124;
 
-/// The comparison as text: aligned columns.
-pub fn as_text(beside: &Comparison) -> String {
+/// The comparison as text for so many columns: the runs side by side if they have room, else one row a run.
+pub fn as_text(beside: &Comparison, width: usize) -> String {
+    let table = side_by_side(beside);
+    if table.lines().any(|line| line.chars().count() > width) {
+        let mut exhibit = one_a_row(beside);
+        exhibit.notes.extend(foot(beside));
+        return exhibit.as_text(width);
+    }
+    let foot: String = foot(beside).into_iter().map(|line| line + "\n").collect();
+    table + &decisions(beside, width.min(LINE)) + &agents() + &foot
+}
+
+/// The runs in columns.
+fn side_by_side(beside: &Comparison) -> String {
     let mut head = vec![String::new()];
     head.extend(beside.runs.iter().cloned());
     head.push("published".to_owned());
@@ -26,14 +39,14 @@ pub fn as_text(beside: &Comparison) -> String {
     let every = beside.cash.len().div_ceil(CASH_ROWS).max(1);
     let told = beside.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
     rows.extend(told.map(|(_, row)| text_row(row)));
-    let mut text = aligned(&rows);
-    text += &decisions(beside);
-    text += &agents();
-    for caveat in &beside.caveats {
-        text += &format!("{caveat}\n");
-    }
-    text += &format!("Published: {}.\n", published().source);
-    text
+    aligned(&rows)
+}
+
+/// What keeps runs from being compared, and where the published ones come from.
+fn foot(beside: &Comparison) -> Vec<String> {
+    let mut lines = beside.caveats.clone();
+    lines.push(format!("Published: {}.", published().source));
+    lines
 }
 
 fn text_row(row: &Row) -> Vec<String> {
@@ -85,13 +98,13 @@ fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-fn decisions(beside: &Comparison) -> String {
+fn decisions(beside: &Comparison, line: usize) -> String {
     let mut text = "\nDecisions\n".to_owned();
     let width = beside.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
     for decided in &beside.decisions {
         text += &format!("  day {}\n", decided.day);
         for (run, own) in beside.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
-            let lines = in_lines(&counted(own), LINE);
+            let lines = in_lines(&counted(own), line.saturating_sub(width + 6));
             for (at, line) in lines.iter().enumerate() {
                 let name = if at == 0 { run.as_str() } else { "" };
                 text += &format!("    {name:<width$}  {line}\n");

@@ -1,0 +1,54 @@
+//! `novamind lab consistency`: the claims on common luck, tried by playing.
+
+use clap::Args;
+
+use super::output::OutputOptions;
+use crate::cli::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use crate::cli::{Context, Failure};
+use crate::lab::Policy;
+use crate::lab::consistency::{ConsistencySpec, PLAYS_OF_A_SEED, check_consistency, contrasting_policies};
+
+/// Options of `lab consistency`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Seed, or a range with both ends: 1..4.
+    #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
+    seeds: Seeds,
+    /// A policy, by name or path; give two [default: two that differ in all that is tried].
+    #[arg(long, value_name = "NAME|FILE")]
+    policy: Vec<String>,
+    /// Scenario [default: as the policies say].
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
+    /// Stop after this day; the horizon stays.
+    #[arg(long, value_name = "N")]
+    until: Option<u32>,
+    /// Runs played at the same time [default: as many as there are processors].
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let find = |name: &String| Policy::find(name, &context.configuration);
+    let policies = match options.policy.as_slice() {
+        [] => contrasting_policies()?,
+        [one, other] => [find(one)?, find(other)?],
+        _ => return Err(Failure::usage("--policy is given twice or not at all")),
+    };
+    let seeds: Vec<u64> = (options.seeds.first..=options.seeds.last).collect();
+    let progress = progress_bar(seeds.len() as u64 * PLAYS_OF_A_SEED, "runs");
+    let spec = ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
+    let on_played = || progress.inc(1);
+    let check = thread_pool(options.jobs)?
+        .install(|| check_consistency(&policies, &spec, &context.configuration, &on_played))?;
+    progress.finish_and_clear();
+    options.output.show(&check.exhibit())?;
+    match check.failures().count() {
+        0 => Ok(()),
+        1 => Err(Failure::failed("one claim on common luck does not hold")),
+        count => Err(Failure::failed(format!("{count} claims on common luck do not hold"))),
+    }
+}

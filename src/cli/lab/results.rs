@@ -1,0 +1,86 @@
+//! `novamind lab table`: the results table of the paper for own runs.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::output::OutputOptions;
+use crate::cli::run::progress_bar;
+use crate::cli::{Context, Failure};
+use crate::lab::Policy;
+use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsBy, ResultsTable, idle_company};
+use crate::report::comparable::{Obstacle, RunTerms};
+use crate::session::{
+    Access, Configuration, Ended, RunSummary, Session, Trajectory, all_run_folders, list_runs, run_folder,
+};
+
+/// Options of `lab table`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// What runs are put together by.
+    #[arg(long, value_enum, default_value = "participant")]
+    by: Whom,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// What runs are put together by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Whom {
+    /// Who played: participants, and policies under their names.
+    Participant,
+    /// The policy: what people played is left out.
+    Policy,
+}
+
+/// Runs the command; nothing of the runs is changed.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let finished = finished_runs(&context.runs()?)?;
+    let mut left_out: Vec<Vec<Obstacle>> = Vec::new();
+    let mut comparable = Vec::new();
+    for (folder, summary) in &finished {
+        let obstacles = RunTerms::of_summary(summary).obstacles();
+        if obstacles.is_empty() { comparable.push(folder) } else { left_out.push(obstacles) }
+    }
+    let progress = progress_bar(comparable.len() as u64 + 1, "runs");
+    let (mut results, mut closed) = (Vec::new(), 0);
+    for folder in comparable {
+        match context.check_look(folder) {
+            Ok(()) => results.extend(result_of(folder)?),
+            Err(_) => closed += 1,
+        }
+        progress.inc(1);
+    }
+    let shipped = Configuration::shipped();
+    let idle = idle_company(&Policy::find(IDLE_POLICY, &shipped)?, &shipped)?;
+    progress.finish_and_clear();
+    let by = match options.by {
+        Whom::Participant => ResultsBy::Participant,
+        Whom::Policy => ResultsBy::Policy,
+    };
+    let mut exhibit = ResultsTable::of(&results, &left_out, &idle, by).exhibit();
+    if closed > 0 {
+        exhibit.notes.push(format!("Runs whose study shows no results are left out: {closed}."));
+    }
+    options.output.show(&exhibit)
+}
+
+/// Runs that are over, of everybody whose runs belong with this folder's.
+fn finished_runs(runs: &Path) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
+    let mut finished = Vec::new();
+    for folder in all_run_folders(runs) {
+        let is_over = |run: &RunSummary| {
+            run.problem.is_none()
+                && matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson))
+        };
+        let own = list_runs(&folder)?.into_iter().filter(is_over);
+        finished.extend(own.map(|run| (run_folder(&folder, &run.id), run)));
+    }
+    Ok(finished)
+}
+
+fn result_of(folder: &Path) -> Result<Option<FinishedRun>, Failure> {
+    let session = Session::open(folder, Access::Read, false)?;
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
+    Ok(FinishedRun::of(&session, &trajectory.lines))
+}

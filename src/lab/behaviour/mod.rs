@@ -1,0 +1,338 @@
+//! How runs were played: the behaviour measures of the paper over one or many runs (docs/laboratory/behaviour.md).
+//!
+//! Nothing is measured here: figures are those of `report::measures`, by the names under which `lab compare` tells them.
+
+mod correlation;
+mod drawn;
+
+use crate::lab::comparison::{ComparedFigure, figure_of, measure_of};
+use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use crate::report::Logbook;
+use crate::report::books::{Books, GroupBook};
+use crate::report::measures::{Wording, planning_sentences};
+use crate::report::ranking::published;
+use crate::session::{Line, Record, Session};
+use crate::statistics::Sample;
+use correlation::rank_correlation;
+
+/// A run with what its behaviour is told by.
+pub struct ObservedRun {
+    /// How it was played.
+    pub book: Logbook,
+    /// Its groups by week.
+    pub groups: Vec<GroupBook>,
+    /// Cash at the end of each day, day 0 first.
+    pub cash_by_day: Vec<f64>,
+    /// The notes each time they were kept.
+    pub notes: Vec<KeptNote>,
+}
+
+/// The notes as they were kept once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptNote {
+    /// Decision day.
+    pub day: u32,
+    /// Words.
+    pub wording: Wording,
+    /// The sentences that plan.
+    pub plans: Vec<String>,
+}
+
+impl ObservedRun {
+    /// A run from its lines and as they make it. Asks the database.
+    pub fn of(session: &Session, lines: &[Line]) -> ObservedRun {
+        ObservedRun {
+            book: Logbook::of(session, lines, &[]),
+            groups: Books::of(session).groups,
+            cash_by_day: session.cash_by_day().to_vec(),
+            notes: notes_of(lines),
+        }
+    }
+}
+
+/// Every version of the notes whose text the lines hold.
+fn notes_of(lines: &[Line]) -> Vec<KeptNote> {
+    let kept = lines.iter().filter_map(|line| match &line.record {
+        Record::Note(note) => Some((line.day, note.text.as_deref()?)),
+        _ => None,
+    });
+    kept.map(|(day, text)| KeptNote { day, wording: Wording::of(text), plans: planning_sentences(text) })
+        .collect()
+}
+
+/// Figures of a run, with their headings; the names are those of `lab compare`.
+const FIGURES: [(&str, &str, &str); 10] = [
+    ("survival", "", "life, days"),
+    ("ad spend on the truly best channel", "", "ads on best channel"),
+    ("ad spend on the best channel, as measured", "", "on best tried"),
+    ("targeted share of development", "", "targeted dev."),
+    ("forecast error of the first four weeks", "28", "4-week error, first weeks"),
+    ("calls that act, a week", "", "calls a week"),
+    ("evenness of tools", "", "evenness of tools"),
+    ("words of planning in 100", "", "planning in 100 words"),
+    ("\"if\" in rationales", "", "\"if\", rationales"),
+    ("\"if\" in notes", "", "\"if\", notes"),
+];
+
+/// Most tools that are told.
+const MOST_TOOLS: usize = 10;
+
+/// How runs were played, as tables and graphs.
+pub fn exhibit_of(runs: &[ObservedRun]) -> Exhibit {
+    let mut exhibit = Exhibit::of("How the runs were played", figures(runs));
+    exhibit.tables.extend([tools(runs), customers(runs), cash(runs), notes(runs)]);
+    exhibit.tables.retain(|table| !table.rows.is_empty());
+    exhibit.graphs = drawn::graphs(runs);
+    exhibit.notes.push(format!(
+        "Ads on the best channel are by chance {:.0}%: there are five channels. The truly best one is known of runs that are \
+         over; best tried compares those that were paid for.",
+        published().best_channel_random_share * 100.0
+    ));
+    exhibit.notes.push(correlation_in_words(runs));
+    exhibit
+}
+
+/// A row for each run, and the mean and the spread of several.
+fn figures(runs: &[ObservedRun]) -> Tabulation {
+    let figures: Vec<(&ComparedFigure, &str)> =
+        FIGURES.iter().filter_map(|(name, of, heading)| Some((figure_of(name, of)?, *heading))).collect();
+    let column = |(figure, heading): &(&ComparedFigure, &str)| {
+        Column::numbers(&figure.title(), heading, measure_of(figure.unit()))
+    };
+    let mut columns = vec![Column::words("run", "run"), Column::words("participant", "who")];
+    columns.extend(figures.iter().map(column));
+    let values =
+        |run: &ObservedRun| figures.iter().map(|(figure, _)| figure.value(&run.book)).collect::<Vec<_>>();
+    let by_run: Vec<Vec<Option<f64>>> = runs.iter().map(values).collect();
+    let row = |(run, own): (&ObservedRun, &Vec<Option<f64>>)| {
+        let mut cells = vec![Datum::words(&*run.book.run), Datum::words(who(run))];
+        cells.extend(own.iter().map(|value| Datum::number(*value)));
+        cells
+    };
+    let mut rows: Vec<Vec<Datum>> = runs.iter().zip(&by_run).map(row).collect();
+    if runs.len() > 1 {
+        let samples: Vec<Sample> = (0..figures.len())
+            .map(|at| Sample::of(&by_run.iter().filter_map(|own| own[at]).collect::<Vec<_>>()))
+            .collect();
+        let told = |name: &str, least: usize, of: fn(&Sample) -> f64| {
+            let cells = samples.iter().map(|own| Datum::number((own.count >= least).then(|| of(own))));
+            [Datum::words(name), Datum::words("")].into_iter().chain(cells).collect()
+        };
+        rows.push(told("mean", 1, |own| own.mean));
+        rows.push(told("± sd", 2, |own| own.std));
+    }
+    Tabulation { rows, ..Tabulation::new("measures", "", columns) }
+}
+
+fn who(run: &ObservedRun) -> &str {
+    run.book.participant.as_deref().unwrap_or("–")
+}
+
+/// The ten tools that were used most, over all runs.
+fn tools(runs: &[ObservedRun]) -> Tabulation {
+    let mut names: Vec<&str> = runs
+        .iter()
+        .flat_map(|run| run.book.measures.tools.tools.iter().map(|(name, _)| name.as_str()))
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let calls_of = |run: &ObservedRun, name: &str| {
+        let mut tools = run.book.measures.tools.tools.iter();
+        tools.find(|(own, _)| own == name).map_or(0, |(_, calls)| *calls)
+    };
+    let weeks = |run: &ObservedRun| run.book.weeks.len().max(1) as f64;
+    let all: u32 = runs.iter().map(|run| run.book.measures.tools.calls).sum();
+    let mut told: Vec<(&str, u32, Sample)> = names
+        .into_iter()
+        .map(|name| {
+            let a_week: Vec<f64> =
+                runs.iter().map(|run| f64::from(calls_of(run, name)) / weeks(run)).collect();
+            (name, runs.iter().map(|run| calls_of(run, name)).sum(), Sample::of(&a_week))
+        })
+        .collect();
+    told.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(other.0)));
+    let row = |(name, calls, a_week): &(&str, u32, Sample)| {
+        vec![
+            Datum::words(*name),
+            Datum::Number(f64::from(*calls)),
+            Datum::Number(f64::from(*calls) / f64::from(all.max(1))),
+            Datum::Number(a_week.mean),
+            Datum::number((a_week.count > 1).then_some(a_week.std)),
+        ]
+    };
+    let columns = vec![
+        Column::words("tool", "tool"),
+        Column::numbers("calls", "calls", Measure::Count),
+        Column::numbers("share", "of all calls", Measure::Share),
+        Column::numbers("calls_a_week", "calls a week", Measure::Number(2)),
+        Column::numbers("sd_a_week", "± sd", Measure::Number(2)),
+    ];
+    let rows = told.iter().take(MOST_TOOLS).map(row).collect();
+    Tabulation { rows, ..Tabulation::new("tools", "Tools, the most used first", columns) }
+}
+
+/// Shares of a run at which customers are told.
+const MOMENTS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+
+/// Customers of each group at five moments of each run.
+fn customers(runs: &[ObservedRun]) -> Tabulation {
+    let mut columns = vec![Column::words("run", "run"), Column::words("group", "group")];
+    columns.extend(MOMENTS.map(|share| {
+        let percent = format!("{:.0}", share * 100.0);
+        Column::numbers(&format!("after_{percent}"), &format!("after {percent}%"), Measure::Count)
+    }));
+    columns.push(Column::numbers("leads", "leads, all", Measure::Count));
+    let row = |run: &ObservedRun, group: &GroupBook| {
+        let last = group.active.len().saturating_sub(1) as f64;
+        let then = |share: f64| group.active.get((share * last).round() as usize).copied();
+        let mut cells = vec![Datum::words(&*run.book.run), Datum::words(group.group.id())];
+        cells.extend(MOMENTS.map(|share| Datum::number(then(share))));
+        cells.push(Datum::Number(group.leads));
+        cells
+    };
+    let rows = runs.iter().flat_map(|run| run.groups.iter().map(move |group| row(run, group))).collect();
+    let caption = "Active subscriptions by group, after shares of the weeks that ran";
+    Tabulation { rows, ..Tabulation::new("customers", caption, columns) }
+}
+
+/// Heights of a small curve, the lowest first.
+const HEIGHTS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// Points of a small curve.
+const POINTS: usize = 36;
+
+/// The curves of cash beside each other, all on one scale.
+fn cash(runs: &[ObservedRun]) -> Tabulation {
+    let all = || runs.iter().flat_map(|run| run.cash_by_day.iter().copied());
+    let (least, most) = (all().fold(0.0, f64::min), all().fold(1.0, f64::max));
+    let height = |value: f64| {
+        let place = (value - least) / (most - least) * (HEIGHTS.len() - 1) as f64;
+        HEIGHTS[(place.round() as usize).min(HEIGHTS.len() - 1)]
+    };
+    // A run that ended early has a shorter curve.
+    let longest = runs.iter().map(|run| run.cash_by_day.len()).max().unwrap_or(1).max(2);
+    let curve = |run: &ObservedRun| {
+        let day = |point: usize| point * (longest - 1) / (POINTS - 1);
+        (0..POINTS)
+            .map_while(|point| run.cash_by_day.get(day(point)))
+            .map(|cash| height(*cash))
+            .collect::<String>()
+    };
+    let columns = vec![
+        Column::words("run", "run"),
+        Column::words("participant", "who"),
+        Column::words("curve", "cash by day"),
+        Column::numbers("least", "lowest", Measure::Dollars),
+        Column::numbers("most", "highest", Measure::Dollars),
+        Column::numbers("last", "at the end", Measure::Dollars),
+    ];
+    let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
+    ordered.sort_by(|one, other| who(one).cmp(who(other)));
+    let row = |run: &ObservedRun| {
+        let of = |fold: fn(f64, f64) -> f64| run.cash_by_day.iter().copied().reduce(fold);
+        vec![
+            Datum::words(&*run.book.run),
+            Datum::words(who(run)),
+            Datum::words(curve(run)),
+            Datum::number(of(f64::min)),
+            Datum::number(of(f64::max)),
+            Datum::number(run.cash_by_day.last().copied()),
+        ]
+    };
+    let rows = ordered.into_iter().map(row).collect();
+    Tabulation { rows, ..Tabulation::new("cash", "Cash, all curves on one scale", columns) }
+}
+
+/// What the notes say, each time they were kept.
+fn notes(runs: &[ObservedRun]) -> Tabulation {
+    let columns = vec![
+        Column::words("run", "run"),
+        Column::numbers("day", "day", Measure::Count),
+        Column::numbers("words", "words", Measure::Count),
+        Column::numbers("ifs", "\"if\"", Measure::Count),
+        Column::words("plans", "sentences that plan"),
+    ];
+    let row = |run: &ObservedRun, note: &KeptNote| {
+        vec![
+            Datum::words(&*run.book.run),
+            Datum::Number(f64::from(note.day)),
+            Datum::Number(note.wording.words as f64),
+            Datum::Number(note.wording.ifs as f64),
+            Datum::words(note.plans.join(" · ")),
+        ]
+    };
+    let rows = runs.iter().flat_map(|run| run.notes.iter().map(move |note| row(run, note))).collect();
+    Tabulation { rows, ..Tabulation::new("notes", "The notes, each time they were kept", columns) }
+}
+
+/// Forecast error of the first weeks and life of each run that has both.
+fn errors_and_lives(runs: &[ObservedRun]) -> Vec<(f64, f64)> {
+    let of = |name, horizon, run: &ObservedRun| figure_of(name, horizon)?.value(&run.book);
+    runs.iter()
+        .filter_map(|run| {
+            Some((of("forecast error of the first four weeks", "28", run)?, of("survival", "", run)?))
+        })
+        .collect()
+}
+
+fn correlation_in_words(runs: &[ObservedRun]) -> String {
+    let pairs = errors_and_lives(runs);
+    let told =
+        "The error of 4-week forecasts filed before the first four weeks, against the life of the company";
+    match rank_correlation(&pairs) {
+        Some(value) => format!("{told}: rank correlation {value:.2} over {} runs.", pairs.len()),
+        None => format!("{told}: no correlation, for it needs three runs that differ in both."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::test_kit;
+
+    fn observed() -> Vec<ObservedRun> {
+        let (session, lines) = test_kit::recorded();
+        let first = ObservedRun::of(&session, &lines);
+        let (session, lines) = test_kit::recorded();
+        let mut second = ObservedRun::of(&session, &lines);
+        second.book.measures.survival_days = 7;
+        vec![first, second]
+    }
+
+    #[test]
+    fn every_figure_is_known() {
+        for (name, of, _) in FIGURES {
+            assert!(figure_of(name, of).is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn measures_have_a_mean_and_a_spread() {
+        let runs = observed();
+        let exhibit = exhibit_of(&runs);
+        let rows = exhibit.table("measures").expect("measures").as_csv();
+        assert_eq!(rows.len(), 1 + 2 + 2);
+        let of = |row: usize, column: &str| {
+            let at = rows[0].iter().position(|name| name == column).expect(column);
+            rows[row][at].clone()
+        };
+        assert_eq!([of(1, "survival"), of(2, "survival"), of(3, "survival")], ["14", "7", "10.5"]);
+        assert_eq!(of(4, "survival"), Sample::of(&[14.0, 7.0]).std.to_string());
+        assert_eq!(of(1, "\"if\" in rationales"), "1");
+        assert_eq!(of(1, "\"if\" in notes"), "0");
+        let alone = exhibit_of(&runs[..1]);
+        assert_eq!(alone.table("measures").expect("measures").rows.len(), 1);
+    }
+
+    #[test]
+    fn tools_customers_cash_and_notes_have_tables() {
+        let runs = observed();
+        let exhibit = exhibit_of(&runs);
+        let rows = |name: &str| exhibit.table(name).expect(name).as_csv();
+        assert_eq!(rows("tools")[1][..3], ["set_prices", "2", "1"]);
+        let groups = runs[0].groups.len();
+        assert_eq!(rows("customers").len(), 1 + 2 * groups);
+        assert_eq!(rows("cash").len(), 1 + 2);
+        assert_eq!(rows("notes")[1][1..], ["14", "2", "0", ""].map(str::to_owned));
+    }
+}

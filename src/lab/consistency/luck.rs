@@ -1,0 +1,175 @@
+//! What chance brought while a policy was played, read of its world day by day.
+
+use std::collections::BTreeMap;
+
+use crate::lab::policy::Policy;
+use crate::lab::runner::{RunError, RunSpec, advance, decide, is_over, new_run};
+use crate::session::{Configuration, DayReport, DrawnPart, Follows, KeyedDraws, Refusal, Session, Xray};
+use crate::world::identifiers::{Channel, Group};
+
+/// What something is called: a day, an attempt, a customer of a group.
+pub type LuckKey = [u32; 2];
+
+/// What chance made of it, bit by bit.
+pub type LuckValue = [u64; 4];
+
+/// Values by what they are of.
+pub type Drawn = BTreeMap<LuckKey, LuckValue>;
+
+/// What chance brought in one play.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PlayedLuck {
+    /// Attempts of market research by their number, from 1: the group that was found, from 1, or 0.
+    pub attempts: Drawn,
+    /// Customers by group and running number: demand, seats, profile.
+    pub customers: Drawn,
+    /// The index of the economy by day.
+    pub economy: Drawn,
+    /// Moves of rivals by day: size before copying, share of the bank that they can copy.
+    pub rivals: Drawn,
+    /// Demand surges by day: last day, factor.
+    pub surges: Drawn,
+    /// Yields by day, and group and channel; on the days on which they move.
+    pub yields: Drawn,
+    /// Share of the payments that fail, by group and day of a decision.
+    pub failed_payments: Drawn,
+    /// R&D projects by tier and start: days, gain.
+    pub projects: Drawn,
+    /// Noise of the quality on the day after a decision.
+    pub noise: Drawn,
+    /// The chance above which the day after a decision has an outage.
+    pub outages: Drawn,
+    /// Hash of the whole state after the last day.
+    pub state: Drawn,
+    /// What the policy made of it.
+    pub end: LuckEnd,
+}
+
+/// What a policy made of its luck.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LuckEnd {
+    /// Last simulated day.
+    pub day: u32,
+    /// Cash after it, dollars.
+    pub cash: f64,
+    /// Everybody who came.
+    pub customers: u64,
+    /// Groups that were found.
+    pub found: u32,
+}
+
+/// Plays a policy and keeps what chance brought.
+///
+/// # Errors
+/// The run cannot begin, or a tool refuses a call that may not fail.
+pub fn play_for_luck(
+    policy: &Policy,
+    spec: &RunSpec,
+    configuration: &Configuration,
+) -> Result<PlayedLuck, RunError> {
+    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
+    let mut luck = PlayedLuck::default();
+    let until = spec.until.unwrap_or(u32::MAX);
+    let refused = |session: &Session, tool: &str, refusal: Refusal| RunError::Refused {
+        seed: spec.seed,
+        day: session.day(),
+        tool: tool.to_owned(),
+        refusal,
+    };
+    while !is_over(&session, spec) {
+        decide(policy, spec.seed, &mut session)?;
+        luck.note_decisions(&session).map_err(|refusal| refused(&session, "research_market", refusal))?;
+        luck.note_draws(&mut session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
+        advance(policy, spec.seed, until, &mut session, &mut |report| luck.note_day(report))?;
+    }
+    luck.note_end(&session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
+    Ok(luck)
+}
+
+impl PlayedLuck {
+    /// Attempts that were made since the last day.
+    fn note_decisions(&mut self, session: &Session) -> Result<(), Refusal> {
+        for attempt in &session.xray()?.facts().attempts {
+            let found = attempt.found.map_or(0, |group| group.index() as u64 + 1);
+            self.attempts.insert([attempt.earlier + 1, 0], [found, 0, 0, 0]);
+        }
+        Ok(())
+    }
+
+    /// Draws of the next day that leave no trace of their own in the world.
+    fn note_draws(&mut self, session: &mut Session) -> Result<(), Refusal> {
+        let day = session.day();
+        for KeyedDraws { group, follows, .. } in session.next_draws(DrawnPart::Renewals, Some(1))?.streams {
+            if let (Some(group), Follows::FailedPayments { rate, .. }) = (group, follows) {
+                self.failed_payments.insert([group.index() as u32, day], bits([rate]));
+            }
+        }
+        for part in [DrawnPart::Quality, DrawnPart::Service] {
+            for drawn in session.next_draws(part, Some(1))?.streams {
+                match drawn.follows {
+                    Follows::Noise(noise) => self.noise.insert([day + 1, 0], bits([noise])),
+                    Follows::OutageAbove(chance) => self.outages.insert([day + 1, 0], bits([chance])),
+                    _ => None,
+                };
+            }
+        }
+        Ok(())
+    }
+
+    fn note_day(&mut self, report: &DayReport<'_>) {
+        let Some(xray) = report.xray else { return };
+        let (day, params) = (report.figures.day, xray.params());
+        for arrival in &xray.facts().arrivals {
+            let key = [arrival.group.index() as u32, arrival.n];
+            let [a, b, c, d, e, f, g] = arrival.persona.0;
+            let profile = u64::from_le_bytes([a, b, c, d, e, f, g, 0]);
+            let value = [arrival.usage_demand.to_bits(), u64::from(arrival.seats), profile, 0];
+            self.customers.insert(key, value);
+            self.end.customers += 1;
+        }
+        self.economy.insert([day, 0], bits([xray.world().market.economy.pmi]));
+        if day.is_multiple_of(params.leads.monthly_channel_noise_interval_days) {
+            self.note_yields(day, xray);
+        }
+    }
+
+    fn note_yields(&mut self, day: u32, xray: Xray<'_>) {
+        for group in Group::all() {
+            for channel in Channel::ALL {
+                let pair = (group.index() * Channel::ALL.len() + channel.index()) as u32;
+                self.yields.insert([day, pair], bits([xray.channel_yield(channel, group)]));
+            }
+        }
+    }
+
+    /// What the world still knows of after the last day.
+    fn note_end(&mut self, session: &Session) -> Result<(), Refusal> {
+        let world = session.xray()?.world();
+        for event in &world.market.competitors {
+            self.rivals.insert([event.day, 0], bits([event.sampled, event.u]));
+        }
+        for surge in &world.market.surges {
+            self.surges.insert([surge.day, 0], [u64::from(surge.end_day), surge.multiplier.to_bits(), 0, 0]);
+        }
+        for project in &world.product.research {
+            let key = [u32::from(project.tier), project.number];
+            let days = u64::from(project.due_day - project.started_day);
+            self.projects.insert(key, [days, project.boost.to_bits(), 0, 0]);
+        }
+        let (hash, _) = session.state_hash();
+        let word = |at: usize| {
+            let digits = hash.get(16 * at..16 * (at + 1)).unwrap_or_default();
+            u64::from_str_radix(digits, 16).unwrap_or(0)
+        };
+        self.state.insert([session.day(), 0], std::array::from_fn(word));
+        self.end.day = session.day();
+        self.end.cash = session.cash_by_day().last().copied().unwrap_or_default();
+        self.end.found = self.attempts.values().filter(|found| found[0] > 0).count() as u32;
+        Ok(())
+    }
+}
+
+/// Numbers bit by bit.
+fn bits<const COUNT: usize>(values: [f64; COUNT]) -> LuckValue {
+    std::array::from_fn(|at| values.get(at).map_or(0, |value| value.to_bits()))
+}

@@ -1,0 +1,437 @@
+//! Whether two policies share their luck, claim by claim, found out by playing both (docs/laboratory/consistency.md).
+//!
+//! Each claim is tried on two plays with the same seed, and a third play with another seed shows that the claim could have
+//! failed: where it brings the same values too, being alike says nothing.
+
+mod exhibit;
+mod luck;
+
+use super::policy::{Policy, PolicyError};
+use super::runner::{RunError, RunSpec};
+use crate::session::Configuration;
+use crate::world::identifiers::{Channel, Group};
+use crate::world::params::ParameterSource;
+use luck::{Drawn, LuckKey, PlayedLuck, play_for_luck};
+use rayon::prelude::*;
+
+pub use luck::LuckEnd;
+
+/// How far the seed of the control is from the one that is tried.
+const CONTROL: u64 = 1_000_003;
+
+/// Which values of two plays are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Compared {
+    /// Those that both have: a play that makes fewer attempts has fewer.
+    OfBoth,
+    /// All until the day on which the first of the two ended: what only one has is a difference.
+    Dated,
+}
+
+/// A claim on common luck.
+struct Claim {
+    /// What is claimed, in words.
+    says: &'static str,
+    /// What is compared, for one of them and for several.
+    counts: (&'static str, &'static str),
+    /// Values of a play.
+    of: fn(&PlayedLuck) -> &Drawn,
+    compared: Compared,
+    /// Whether it is about the same decisions made again.
+    same_decisions: bool,
+    /// A key in words.
+    name: fn(LuckKey) -> String,
+}
+
+const CLAIMS: &[Claim] = &[
+    Claim {
+        says: "the n-th attempt of market research finds the same group, or none",
+        counts: ("attempt", "attempts"),
+        of: |luck| &luck.attempts,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: |[attempt, _]| format!("attempt {attempt}"),
+    },
+    Claim {
+        says: "the n-th customer of a group has the same demand, seats and profile",
+        counts: ("customer", "customers"),
+        of: |luck| &luck.customers,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: |[group, n]| format!("customer {n} of {}", group_name(group)),
+    },
+    Claim {
+        says: "the index of the economy does not depend on play",
+        counts: ("day", "days"),
+        of: |luck| &luck.economy,
+        compared: Compared::Dated,
+        same_decisions: false,
+        name: day_name,
+    },
+    Claim {
+        says: "rivals move on the same days, as far as they would go without copying",
+        counts: ("move", "moves"),
+        of: |luck| &luck.rivals,
+        compared: Compared::Dated,
+        same_decisions: false,
+        name: day_name,
+    },
+    Claim {
+        says: "demand surges come on the same days, as long and as strong",
+        counts: ("surge", "surges"),
+        of: |luck| &luck.surges,
+        compared: Compared::Dated,
+        same_decisions: false,
+        name: day_name,
+    },
+    Claim {
+        says: "the yield of each channel for each group wanders alike",
+        counts: ("yield", "yields"),
+        of: |luck| &luck.yields,
+        compared: Compared::Dated,
+        same_decisions: false,
+        name: |[day, pair]| {
+            let (group, channel) = (pair / Channel::ALL.len() as u32, pair as usize % Channel::ALL.len());
+            format!("{} for {} on day {day}", Channel::ALL[channel].id(), group_name(group))
+        },
+    },
+    Claim {
+        says: "the same share of payments fails in each group and month",
+        counts: ("rate", "rates"),
+        of: |luck| &luck.failed_payments,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: |[group, day]| format!("{} after day {day}", group_name(group)),
+    },
+    Claim {
+        says: "the n-th project of an R&D tier takes as long and gains as much",
+        counts: ("project", "projects"),
+        of: |luck| &luck.projects,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: |[tier, number]| format!("project {number} of tier {tier}"),
+    },
+    Claim {
+        says: "quality trembles alike from day to day",
+        counts: ("day", "days"),
+        of: |luck| &luck.noise,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: day_name,
+    },
+    Claim {
+        says: "the service fails on a day at the same chance of an outage",
+        counts: ("day", "days"),
+        of: |luck| &luck.outages,
+        compared: Compared::OfBoth,
+        same_decisions: false,
+        name: day_name,
+    },
+    Claim {
+        says: "the same decisions make the same company, on one thread and on all",
+        counts: ("state", "states"),
+        of: |luck| &luck.state,
+        compared: Compared::OfBoth,
+        same_decisions: true,
+        name: day_name,
+    },
+];
+
+fn group_name(index: u32) -> String {
+    Group::at(index as usize).map_or(index.to_string(), |group| group.to_string())
+}
+
+fn day_name([day, _]: LuckKey) -> String {
+    format!("day {day}")
+}
+
+/// What became of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClaimVerdict {
+    /// Everything that was compared is alike, and under another seed it is not.
+    Holds,
+    /// Something differs.
+    Fails,
+    /// The plays have nothing in common that it is about.
+    Untried,
+    /// It is alike under another seed too: a record is replayed, or there is no chance in it.
+    SameUnderEverySeed,
+}
+
+impl ClaimVerdict {
+    /// The verdict in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            ClaimVerdict::Holds => "holds",
+            ClaimVerdict::Fails => "FAILS",
+            ClaimVerdict::Untried => "not tried",
+            ClaimVerdict::SameUnderEverySeed => "no chance in it",
+        }
+    }
+}
+
+/// A claim after it was tried.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TriedClaim {
+    /// What is claimed.
+    pub claim: &'static str,
+    /// Values that were compared, over all seeds.
+    pub compared: usize,
+    /// What they are.
+    pub of: &'static str,
+    /// How many of them differ.
+    pub different: usize,
+    /// Values that were compared with those of another seed.
+    pub compared_with_other_seed: usize,
+    /// How many of those differ.
+    pub different_under_other_seed: usize,
+    /// The first that differs, in words.
+    pub first_difference: Option<String>,
+    /// What follows.
+    pub verdict: ClaimVerdict,
+}
+
+/// Two plays and every claim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConsistencyCheck {
+    /// Names of the two policies.
+    pub policies: [String; 2],
+    /// What each of them made of the luck of the first seed: so different are they.
+    pub ends: [LuckEnd; 2],
+    /// The claims.
+    pub claims: Vec<TriedClaim>,
+}
+
+impl ConsistencyCheck {
+    /// Claims that do not hold.
+    pub fn failures(&self) -> impl Iterator<Item = &TriedClaim> {
+        self.claims.iter().filter(|claim| claim.verdict == ClaimVerdict::Fails)
+    }
+}
+
+/// The two policies that are played unless others are named: as different as two plays are that try every claim.
+///
+/// # Errors
+/// They are wrong; a test reads them.
+pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
+    let read = |name: &str, text: &str| {
+        Policy::parse(&ParameterSource {
+            name: format!("assets/consistency/{name}.toml"),
+            text: text.to_owned(),
+        })
+    };
+    Ok([
+        read("early", include_str!("../../../assets/consistency/early.toml"))?,
+        read("late", include_str!("../../../assets/consistency/late.toml"))?,
+    ])
+}
+
+/// What is tried.
+#[derive(Debug, Clone)]
+pub struct ConsistencySpec {
+    /// Seeds.
+    pub seeds: Vec<u64>,
+    /// Scenario; none: as the policies say.
+    pub scenario: Option<String>,
+    /// Last day that is played; the horizon stays.
+    pub until: Option<u32>,
+}
+
+/// Plays two policies and tries every claim.
+///
+/// # Errors
+/// A run cannot begin, or a tool refuses a call that may not fail.
+pub fn check_consistency(
+    policies: &[Policy; 2],
+    spec: &ConsistencySpec,
+    configuration: &Configuration,
+    on_played: &(dyn Fn() + Sync),
+) -> Result<ConsistencyCheck, RunError> {
+    let plays: Result<Vec<SeedPlays>, RunError> = spec
+        .seeds
+        .iter()
+        .map(|seed| SeedPlays::of(policies, *seed, spec, configuration, on_played))
+        .collect();
+    let plays = plays?;
+    let ends = plays.first().map(|first| [first.one.end, first.other.end]).unwrap_or_default();
+    Ok(ConsistencyCheck {
+        policies: policies.clone().map(|policy| policy.name),
+        ends,
+        claims: CLAIMS.iter().map(|claim| claim.tried(&plays)).collect(),
+    })
+}
+
+/// Plays of a seed that is tried, for each seed.
+pub const PLAYS_OF_A_SEED: u64 = 4;
+
+/// The plays of a seed.
+struct SeedPlays {
+    seed: u64,
+    one: PlayedLuck,
+    other: PlayedLuck,
+    /// The first policy again, on one thread.
+    again: PlayedLuck,
+    /// The first policy under another seed.
+    control: PlayedLuck,
+}
+
+impl SeedPlays {
+    fn of(
+        policies: &[Policy; 2],
+        seed: u64,
+        spec: &ConsistencySpec,
+        configuration: &Configuration,
+        on_played: &(dyn Fn() + Sync),
+    ) -> Result<SeedPlays, RunError> {
+        let play = |policy: &Policy, seed: u64| {
+            let run =
+                RunSpec { scenario: spec.scenario.clone(), until: spec.until, ..RunSpec::of_seed(seed) };
+            let luck = play_for_luck(policy, &run, configuration);
+            on_played();
+            luck
+        };
+        let [first, second] = policies;
+        let games = [(first, seed), (second, seed), (first, seed.wrapping_add(CONTROL))];
+        let played: Result<Vec<PlayedLuck>, RunError> =
+            games.par_iter().with_max_len(1).map(|(policy, seed)| play(policy, *seed)).collect();
+        // Without a pool of one thread the claim on threads is tried on all of them.
+        let again = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+            Ok(pool) => pool.install(|| play(first, seed)),
+            Err(_) => play(first, seed),
+        }?;
+        let [one, other, control] = <[PlayedLuck; 3]>::try_from(played?).unwrap_or_default();
+        Ok(SeedPlays { seed, one, other, again, control })
+    }
+}
+
+/// How many values of two plays differ.
+#[derive(Debug, Default)]
+struct Differences {
+    compared: usize,
+    different: usize,
+    first: Option<LuckKey>,
+}
+
+impl Differences {
+    fn between(one: &PlayedLuck, other: &PlayedLuck, claim: &Claim) -> Differences {
+        let (own, others) = ((claim.of)(one), (claim.of)(other));
+        let last = one.end.day.min(other.end.day);
+        let mut found = Differences::default();
+        let mut note = |key: &LuckKey, differs: bool| {
+            found.compared += 1;
+            found.different += usize::from(differs);
+            if differs && found.first.is_none_or(|first| *key < first) {
+                found.first = Some(*key);
+            }
+        };
+        let is_dated = claim.compared == Compared::Dated;
+        for (key, value) in own {
+            match others.get(key) {
+                Some(other) => note(key, value != other),
+                None if is_dated && key[0] <= last => note(key, true),
+                None => {}
+            }
+        }
+        if is_dated {
+            others
+                .keys()
+                .filter(|key| key[0] <= last && !own.contains_key(*key))
+                .for_each(|key| note(key, true));
+        }
+        found
+    }
+}
+
+impl Claim {
+    fn tried(&self, plays: &[SeedPlays]) -> TriedClaim {
+        let (mut compared, mut different, mut first_difference) = (0, 0, None);
+        let (mut controls, mut different_controls) = (0, 0);
+        for own in plays {
+            let other = if self.same_decisions { &own.again } else { &own.other };
+            let found = Differences::between(&own.one, other, self);
+            compared += found.compared;
+            different += found.different;
+            if let (None, Some(key)) = (&first_difference, found.first) {
+                first_difference = Some(format!("{}, seed {}", (self.name)(key), own.seed));
+            }
+            let control = Differences::between(&own.one, &own.control, self);
+            controls += control.compared;
+            different_controls += control.different;
+        }
+        let verdict = match (compared, different, different_controls) {
+            (0, ..) => ClaimVerdict::Untried,
+            (_, 0, 0) => ClaimVerdict::SameUnderEverySeed,
+            (_, 0, _) => ClaimVerdict::Holds,
+            _ => ClaimVerdict::Fails,
+        };
+        TriedClaim {
+            claim: self.says,
+            compared,
+            of: if compared == 1 { self.counts.0 } else { self.counts.1 },
+            different,
+            compared_with_other_seed: controls,
+            different_under_other_seed: different_controls,
+            first_difference,
+            verdict,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(until: u32) -> ConsistencySpec {
+        ConsistencySpec { seeds: vec![42], scenario: None, until: Some(until) }
+    }
+
+    fn check(spec: &ConsistencySpec) -> ConsistencyCheck {
+        let policies = contrasting_policies().expect("the shipped ones");
+        check_consistency(&policies, spec, &Configuration::shipped(), &|| ()).expect("it plays")
+    }
+
+    #[test]
+    fn every_claim_is_tried_and_holds() {
+        let found = check(&spec(280));
+        for claim in &found.claims {
+            assert_eq!(claim.verdict, ClaimVerdict::Holds, "{claim:?}");
+        }
+        let [early, late] = found.ends;
+        assert!(early.cash != late.cash && early.customers != late.customers, "{early:?} {late:?}");
+        assert!(early.found > 0 && late.found > 0, "{early:?} {late:?}");
+    }
+
+    #[test]
+    fn what_a_record_replays_has_no_chance_in_it() {
+        let replayed = ConsistencySpec { scenario: Some("reference-seed42".to_owned()), ..spec(119) };
+        let found = check(&replayed);
+        let verdict = |part: &str| {
+            found.claims.iter().find(|claim| claim.claim.contains(part)).map(|claim| claim.verdict)
+        };
+        assert_eq!(verdict("economy"), Some(ClaimVerdict::SameUnderEverySeed));
+        assert_eq!(verdict("n-th customer"), Some(ClaimVerdict::Holds));
+    }
+
+    #[test]
+    fn a_difference_is_found_and_named() {
+        let luck = |economy: &[(u32, u64)]| PlayedLuck {
+            economy: economy.iter().map(|(day, value)| ([*day, 0], [*value, 0, 0, 0])).collect(),
+            end: LuckEnd { day: 9, ..LuckEnd::default() },
+            ..PlayedLuck::default()
+        };
+        let plays = |other: &[(u32, u64)]| {
+            let [one, other] = [luck(&[(1, 5), (2, 6), (12, 7)]), luck(other)];
+            [SeedPlays { seed: 3, again: one.clone(), control: luck(&[(1, 9)]), one, other }]
+        };
+        let claim = CLAIMS.iter().find(|claim| claim.says.contains("economy")).expect("a claim");
+        let tried = |other: &[(u32, u64)]| claim.tried(&plays(other));
+        assert_eq!(tried(&[(1, 5), (2, 6)]).verdict, ClaimVerdict::Holds, "day 12 came after the end");
+        for (other, day) in
+            [(&[(1, 5), (2, 8)][..], "day 2"), (&[(1, 5)], "day 2"), (&[(1, 5), (2, 6), (4, 1)], "day 4")]
+        {
+            let found = tried(other);
+            assert_eq!((found.verdict, found.different), (ClaimVerdict::Fails, 1));
+            assert_eq!(found.first_difference, Some(format!("{day}, seed 3")));
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! The results table of the paper for own runs: who went bankrupt how often, the best run, lives, calls a week, beside the
+//! published rows (docs/laboratory/results-table.md).
+
+mod exhibit;
+
+use std::collections::BTreeMap;
+
+use super::metrics::Collector;
+use super::policy::Policy;
+use super::runner::{RunEnd, RunError, RunSpec, play, policy_of};
+use crate::report::comparable::{Obstacle, PUBLISHED_SEED, left_out_in_words};
+use crate::report::measures::{survival_days, tool_use};
+use crate::report::ranking::{Whose, beaten, by_result, published};
+use crate::session::{Configuration, Ended, Line, Session};
+use crate::statistics::Sample;
+
+/// A run that is over and has a score.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FinishedRun {
+    /// Its name.
+    pub run: String,
+    /// Who played, as the experimenter named them.
+    pub participant: Option<String>,
+    /// The policy that played it, if one did.
+    pub policy: Option<String>,
+    /// Seed.
+    pub seed: u64,
+    /// Cash after the last day, dollars; 0 of a bankrupt company.
+    pub score: f64,
+    /// Cash fell below zero.
+    pub is_bankrupt: bool,
+    /// Days that the company lived.
+    pub survival_days: u32,
+    /// Calls that did something, for each week that ran.
+    pub calls_per_week: f64,
+}
+
+impl FinishedRun {
+    /// The result of a run; none while it has no score.
+    pub fn of(session: &Session, lines: &[Line]) -> Option<FinishedRun> {
+        let manifest = session.manifest();
+        Some(FinishedRun {
+            run: manifest.id.clone(),
+            participant: manifest.participant.clone(),
+            policy: policy_of(lines).map(str::to_owned),
+            seed: manifest.seed,
+            score: session.score()?,
+            is_bankrupt: session.ended() == Some(Ended::Bankruptcy),
+            survival_days: survival_days(session.ended(), session.day(), manifest.days),
+            calls_per_week: tool_use(session.journal()).per_week,
+        })
+    }
+}
+
+/// What runs are put together by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResultsBy {
+    /// Who played: participants, and policies under their names.
+    Participant,
+    /// The policy: what people played is left out.
+    Policy,
+}
+
+impl ResultsBy {
+    fn name(self, run: &FinishedRun) -> Option<String> {
+        let policy = run.policy.as_ref().map(|name| format!("policy {name}"));
+        match self {
+            ResultsBy::Participant => {
+                Some(run.participant.clone().or(policy).unwrap_or("unnamed".to_owned()))
+            }
+            ResultsBy::Policy => policy,
+        }
+    }
+}
+
+/// A row: the runs of somebody.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultsRow {
+    /// Whose they are.
+    pub name: String,
+    /// Published, or own.
+    pub whose: Whose,
+    /// Runs.
+    pub runs: u32,
+    /// Those that went bankrupt; none where it was not published.
+    pub bankruptcies: Option<u32>,
+    /// Cash at the end of the best run, dollars.
+    pub best_cash: f64,
+    /// The best run, of own ones.
+    pub best_run: Option<String>,
+    /// Longest life, days.
+    pub max_survival_days: Option<f64>,
+    /// Mean life, days.
+    pub mean_survival_days: Option<f64>,
+    /// Standard deviation of the lives, of all runs.
+    pub std_survival_days: Option<f64>,
+    /// Calls a week: own ones that act, published turns of an agent.
+    pub calls_per_week: Option<f64>,
+    /// Published best runs that ended with less.
+    pub beats: usize,
+}
+
+/// The table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultsTable {
+    /// Rows, the best first.
+    pub rows: Vec<ResultsRow>,
+    /// What is said under it.
+    pub notes: Vec<String>,
+}
+
+/// The policy that does nothing at all.
+pub const IDLE_POLICY: &str = "P0";
+
+/// Name of the row of the idle company.
+const IDLE_NAME: &str = "idle company";
+
+/// The company that does nothing, played on the seed of the published runs.
+///
+/// # Errors
+/// The run cannot begin.
+pub fn idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
+    let spec = RunSpec { surges: Some(true), ..RunSpec::of_seed(PUBLISHED_SEED) };
+    let outcome = play(policy, &spec, configuration, &mut Collector::idle())?;
+    Ok(FinishedRun {
+        run: String::new(),
+        participant: None,
+        policy: Some(outcome.policy),
+        seed: outcome.seed,
+        score: outcome.cash.max(0.0),
+        is_bankrupt: outcome.ended == RunEnd::Bankruptcy,
+        survival_days: outcome.day,
+        calls_per_week: 0.0,
+    })
+}
+
+impl ResultsTable {
+    /// Own runs and the idle company beside the published rows; of runs that cannot be compared only the reasons are told.
+    pub fn of(
+        runs: &[FinishedRun],
+        left_out: &[Vec<Obstacle>],
+        idle: &FinishedRun,
+        by: ResultsBy,
+    ) -> ResultsTable {
+        let mut groups: BTreeMap<String, Vec<&FinishedRun>> = BTreeMap::new();
+        let mut played_by_people = 0;
+        for run in runs {
+            match by.name(run) {
+                Some(name) => groups.entry(name).or_default().push(run),
+                None => played_by_people += 1,
+            }
+        }
+        let mut rows: Vec<ResultsRow> =
+            groups.into_iter().filter_map(|(name, own)| row_of(name, &own)).collect();
+        rows.extend(row_of(IDLE_NAME.to_owned(), &[idle]).map(|row| ResultsRow { best_run: None, ..row }));
+        rows.extend(published_rows());
+        rows.sort_by(|one, other| {
+            let result = |row: &ResultsRow| (row.best_cash, row.max_survival_days.unwrap_or(0.0) as u32);
+            by_result(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
+        });
+        let mut notes = notes();
+        notes.extend(left_out_in_words(left_out));
+        if played_by_people > 0 {
+            notes.push(format!("Runs that people played are left out: {played_by_people}."));
+        }
+        if runs.iter().any(|run| run.seed != PUBLISHED_SEED) {
+            notes.push(format!(
+                "Own runs of other seeds than {PUBLISHED_SEED} had other luck than the published ones."
+            ));
+        }
+        notes.push(format!("Published: {}.", published().source));
+        ResultsTable { rows, notes }
+    }
+}
+
+/// The best of some runs, by the rule of the published table.
+fn best_of<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
+    let result = |run: &FinishedRun| (run.score, run.survival_days);
+    // Of equal ones the first by name.
+    let order = |one: &&FinishedRun, other: &&FinishedRun| {
+        by_result(result(one), result(other)).then_with(|| other.run.cmp(&one.run))
+    };
+    runs.iter().copied().max_by(|one, other| order(one, other))
+}
+
+fn row_of(name: String, runs: &[&FinishedRun]) -> Option<ResultsRow> {
+    let best = best_of(runs)?;
+    let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
+    let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
+    Some(ResultsRow {
+        name,
+        whose: Whose::Own,
+        runs: runs.len() as u32,
+        bankruptcies: Some(runs.iter().filter(|run| run.is_bankrupt).count() as u32),
+        best_cash: best.score,
+        best_run: Some(best.run.clone()),
+        max_survival_days: lives.iter().copied().reduce(f64::max),
+        mean_survival_days: Some(Sample::of(&lives).mean),
+        std_survival_days: Some(spread_of_all(&lives)),
+        calls_per_week: Some(Sample::of(&calls).mean),
+        beats: beaten(best.score).0,
+    })
+}
+
+/// Standard deviation of a whole population, as the published tables have it; a sample's would be larger.
+fn spread_of_all(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    Sample::of(values).std * ((count - 1.0) / count).sqrt()
+}
+
+fn published_rows() -> Vec<ResultsRow> {
+    let paper = published();
+    let mut rows: Vec<ResultsRow> = paper
+        .agent
+        .iter()
+        .map(|agent| ResultsRow {
+            name: agent.name.clone(),
+            whose: Whose::Agent,
+            runs: agent.runs,
+            bankruptcies: Some(agent.bankruptcies),
+            best_cash: agent.best_cash,
+            best_run: None,
+            max_survival_days: Some(agent.max_survival_days),
+            mean_survival_days: Some(agent.mean_survival_days),
+            std_survival_days: Some(agent.std_survival_days),
+            calls_per_week: Some(agent.turns_per_week),
+            beats: beaten(agent.best_cash).0,
+        })
+        .collect();
+    rows.push(ResultsRow {
+        name: "rule-based baseline".to_owned(),
+        whose: Whose::Baseline,
+        runs: 1,
+        bankruptcies: None,
+        best_cash: paper.rule_based_baseline,
+        best_run: None,
+        max_survival_days: None,
+        mean_survival_days: None,
+        std_survival_days: None,
+        calls_per_week: None,
+        beats: beaten(paper.rule_based_baseline).0,
+    });
+    rows
+}
+
+/// What figures mean.
+fn notes() -> Vec<String> {
+    vec![
+        "The best run has the most cash at the end; where every run is bankrupt, the longest life. The spread of lives is \
+         that of all runs, not of a sample."
+            .to_owned(),
+        "Calls a week: of own runs accepted calls that changed something, the mean over the runs; published are turns of an \
+         agent, which may hold several calls."
+            .to_owned(),
+        format!(
+            "{IDLE_NAME}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. beats: published best runs \
+             that ended with less, of {}.",
+            published().agent.len()
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(name: &str, who: Option<&str>, score: f64, days: u32) -> FinishedRun {
+        FinishedRun {
+            run: name.to_owned(),
+            participant: who.map(str::to_owned),
+            policy: None,
+            seed: 42,
+            score,
+            is_bankrupt: days < 500,
+            survival_days: days,
+            calls_per_week: 2.0,
+        }
+    }
+
+    fn named<'a>(table: &'a ResultsTable, name: &str) -> &'a ResultsRow {
+        table.rows.iter().find(|row| row.name == name).expect(name)
+    }
+
+    #[test]
+    fn runs_are_put_together_and_the_best_is_chosen_by_cash_then_life() {
+        let idle = run("", None, 900_000.0, 500);
+        let runs = [
+            run("a1", Some("P01"), 0.0, 385),
+            run("a2", Some("P01"), 3e6, 500),
+            run("a3", Some("P01"), 2e6, 500),
+            run("b1", Some("P02"), 0.0, 120),
+            run("b2", Some("P02"), 0.0, 131),
+            FinishedRun { policy: Some("mine".to_owned()), ..run("d1", None, 1.0, 500) },
+        ];
+        let table = ResultsTable::of(&runs, &[vec![Obstacle::Length(28)]], &idle, ResultsBy::Participant);
+        let first = named(&table, "P01");
+        assert_eq!((first.bankruptcies, first.runs, first.best_run.as_deref()), (Some(1), 3, Some("a2")));
+        assert_eq!((first.best_cash, first.beats), (3e6, 14));
+        // The lives and the spread that were published of an agent with one bankruptcy in three runs.
+        assert_eq!(first.mean_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(461.7));
+        assert_eq!(first.std_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(54.2));
+        let second = named(&table, "P02");
+        assert_eq!((second.best_run.as_deref(), second.max_survival_days), (Some("b2"), Some(131.0)));
+        assert!(table.notes.iter().any(|note| note.contains("28 days instead of 500")), "{:?}", table.notes);
+        assert!(table.rows.is_sorted_by(|one, other| one.best_cash >= other.best_cash));
+        let policies = ResultsTable::of(&runs, &[], &idle, ResultsBy::Policy);
+        assert_eq!(named(&policies, "policy mine").runs, 1);
+        assert!(policies.rows.iter().all(|row| row.name != "P01"));
+    }
+
+    #[test]
+    fn the_idle_company_is_played_and_beats_thirteen_of_sixteen() {
+        let configuration = Configuration::shipped();
+        let policy = Policy::find(IDLE_POLICY, &configuration).expect("a shipped policy");
+        let idle = idle_company(&policy, &configuration).expect("it plays");
+        assert_eq!((idle.survival_days, idle.is_bankrupt, idle.score.round()), (500, false, 957_500.0));
+        let table = ResultsTable::of(&[], &[], &idle, ResultsBy::Participant);
+        assert_eq!(named(&table, IDLE_NAME).beats, 13);
+        assert_eq!(table.rows.len(), 16 + 2);
+    }
+}

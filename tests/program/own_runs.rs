@@ -1,0 +1,126 @@
+//! The laboratory's tables of own runs: results beside the published ones, behaviour, common luck.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use crate::support::home::{Home, Said, id};
+
+/// Rows of comma-separated values by the names of their columns.
+fn rows(said: &Said) -> Vec<BTreeMap<String, String>> {
+    assert_eq!(said.code, 0, "{}", said.err);
+    let mut reader = csv::Reader::from_reader(said.out.as_bytes());
+    reader.deserialize().map(|row| row.expect("a row")).collect()
+}
+
+fn named<'a>(rows: &'a [BTreeMap<String, String>], name: &str) -> &'a BTreeMap<String, String> {
+    rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name} in {rows:?}"))
+}
+
+#[test]
+fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
+    let home = Home::new();
+    let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
+    assert_eq!(saved.code, 0, "{}", saved.err);
+    // A changed parameter, and another length.
+    for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
+        let said = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+    }
+    let table = rows(&home.run(&["lab", "table", "--csv"]));
+    let own = named(&table, "policy P0");
+    assert_eq!((own["bankrupt"].as_str(), own["source"].as_str()), ("0/1", "own"));
+    let idle = named(&table, "idle company");
+    for column in ["best_cash", "beats", "max_survival_days", "calls_per_week"] {
+        assert_eq!(own[column], idle[column], "{column}: doing nothing knows no luck");
+    }
+    assert_eq!(idle["beats"], "13");
+    assert_eq!(named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");
+    assert_eq!(table.len(), 1 + 1 + 16 + 1);
+    let cash: Vec<f64> = table.iter().map(|row| row["best_cash"].parse().expect("a number")).collect();
+    assert!(cash.is_sorted_by(|one, other| one >= other), "{cash:?}");
+
+    let text = home.run(&["lab", "table", "--by", "policy"]).out;
+    assert!(
+        text.contains("2 finished runs are not ranked: another length (1), changed parameters (1)."),
+        "{text}"
+    );
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let drawing = home.0.path().join("table.svg");
+    let said = home.run(&["lab", "table", "--svg", &drawing.to_string_lossy()]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(fs::read_to_string(drawing).expect("a drawing").starts_with("<svg"));
+}
+
+const PLAY: &str = "set_prices A=12 B=25 C=55
+set_targeted_ad_spend {\"content_marketing\": {\"S1\": 750}, \"linkedin\": {\"S1\": 100}}
+memo Costs are fine. If rivals move, cut ads.
+next \"If it goes well, we wait\" naive
+next \"as planned\" naive
+";
+
+#[test]
+fn behaviour_is_told_of_one_run_and_of_many() {
+    let home = Home::new();
+    for seed in ["3", "4"] {
+        assert_eq!(home.play(&["--seed", seed, "--days", "14", "--participant", "P01"], PLAY).code, 0);
+    }
+    let list = home.run(&["runs", "list"]).out;
+    let runs: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    let table =
+        |name: &str| rows(&home.run(&["lab", "behaviour", runs[0], runs[1], "--csv", "--table", name]));
+    let measures = table("measures");
+    assert_eq!(measures.len(), 4);
+    let share =
+        |row: usize| measures[row]["ad spend on the truly best channel"].parse::<f64>().expect("a share");
+    assert!(
+        (share(0) - 750.0 / 850.0).abs() < 1e-9 && share(2) == share(0) && share(3) == 0.0,
+        "{measures:?}"
+    );
+    assert_eq!(measures[0]["\"if\" in notes"], "1");
+    assert_eq!(table("tools")[0]["tool"], "set_prices");
+    let notes = table("notes");
+    assert_eq!((notes.len(), notes[0]["plans"].as_str()), (2, "If rivals move, cut ads."));
+    assert!(table("customers").iter().any(|row| row["group"] == "S1"));
+    home.run(&["lab", "behaviour", runs[0], "--csv", "--table", "nothing"]).fails(2, &["measures", "notes"]);
+    let drawing = home.0.path().join("behaviour.svg");
+    let said = home.run(&["lab", "behaviour", runs[0], runs[1], "--svg", &drawing.to_string_lossy()]);
+    assert!(said.out.contains("rank correlation") || said.out.contains("no correlation"), "{}", said.out);
+    let drawn = fs::read_to_string(drawing).expect("a drawing");
+    assert!(drawn.contains("Cash by day, P01") && drawn.contains(&format!("run {}", runs[1])), "{drawn}");
+}
+
+#[test]
+fn common_luck_is_tried_with_policies_of_ones_own() {
+    let home = Home::new();
+    let said =
+        home.run(&["lab", "consistency", "--policy", "P0", "--policy", "P1b", "--until", "98", "--csv"]);
+    let claims = rows(&said);
+    let verdict = |part: &str| {
+        let claim = claims.iter().find(|row| row["claim"].contains(part)).expect(part);
+        (claim["verdict"].clone(), claim["different"].clone())
+    };
+    assert_eq!(verdict("index of the economy"), ("holds".to_owned(), "0".to_owned()));
+    assert_eq!(verdict("same company"), ("holds".to_owned(), "0".to_owned()));
+    assert_eq!(verdict("R&D tier").0, "not tried", "neither starts a project");
+    home.run(&["lab", "consistency", "--policy", "P0"]).fails(2, &["twice"]);
+}
+
+#[test]
+fn many_runs_are_compared_in_rows_that_fit() {
+    let home = Home::new();
+    for seed in 1..=3 {
+        home.run(&["run", "--policy", "P1b", "--seed", &seed.to_string(), "--days", "14", "--save"]);
+    }
+    let folders = fs::read_dir(home.runs()).expect("a folder").flatten().map(|entry| entry.path());
+    let runs: Vec<String> = folders.filter(|path| path.is_dir()).map(|path| id(&path)).collect();
+    let compare: Vec<&str> =
+        [&["lab", "compare", "--width", "80"], &*runs.iter().map(String::as_str).collect::<Vec<_>>()]
+            .concat();
+    let said = home.run(&compare);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.lines().all(|line| line.chars().count() <= 80), "{}", said.out);
+    assert!(said.out.starts_with("3 runs, the best result first"), "{}", said.out);
+    for run in &runs {
+        assert!(said.out.contains(run), "{}", said.out);
+    }
+}

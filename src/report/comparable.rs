@@ -109,7 +109,11 @@ impl Obstacle {
                 format!("{} days instead of {PUBLISHED_DAYS}", whole(f64::from(*days)))
             }
             Obstacle::Start(cash) => {
-                format!("{} at the start instead of {}", dollar_tick(*cash), dollar_tick(published().start_cash))
+                format!(
+                    "{} at the start instead of {}",
+                    dollar_tick(*cash),
+                    dollar_tick(published().start_cash)
+                )
             }
             Obstacle::Scenario(name) => format!("scenario {name}"),
             Obstacle::Parameters => "changed parameters".to_owned(),
@@ -133,12 +137,12 @@ pub fn obstacles_in_words(obstacles: &[Obstacle]) -> String {
     obstacles.iter().map(Obstacle::in_words).collect::<Vec<_>>().join(", ")
 }
 
-/// Why runs that are over are not ranked, in a sentence; none where each of them is. Of several runs the reasons are counted.
-pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
+/// How many runs have obstacles, and which: of one its own, of several their kinds, counted. None where no run has any.
+pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<Obstacle>> = runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
     match left_out.as_slice() {
         [] => None,
-        [one] => Some(format!("One finished run is not ranked: {}.", obstacles_in_words(one))),
+        [one] => Some((1, obstacles_in_words(one))),
         several => {
             let mut counted: Vec<(&'static str, usize)> = Vec::new();
             for kind in several.iter().flat_map(|obstacles| obstacles.iter().map(Obstacle::kind)) {
@@ -150,9 +154,17 @@ pub fn left_out_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
             counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
             let reasons: Vec<String> =
                 counted.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
-            Some(format!("{} finished runs are not ranked: {}.", several.len(), reasons.join(", ")))
+            Some((several.len(), reasons.join(", ")))
         }
     }
+}
+
+/// Why runs that are over are not ranked, in a sentence; none where each of them is.
+pub fn not_ranked_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
+    left_out_in_words(runs).map(|(count, why)| match count {
+        1 => format!("One finished run is not ranked: {why}."),
+        count => format!("{count} finished runs are not ranked: {why}."),
+    })
 }
 
 #[cfg(test)]
@@ -198,15 +210,15 @@ mod tests {
 
     #[test]
     fn reasons_of_several_runs_are_counted() {
-        assert_eq!(left_out_in_words(&[vec![]]), None);
+        assert_eq!(not_ranked_in_words(&[vec![]]), None);
         let short = vec![Obstacle::Length(28)];
         assert_eq!(
-            left_out_in_words(&[vec![], short.clone()]).as_deref(),
+            not_ranked_in_words(&[vec![], short.clone()]).as_deref(),
             Some("One finished run is not ranked: 28 days instead of 500.")
         );
         let other = vec![Obstacle::Length(35), Obstacle::Scenario("short".to_owned())];
         assert_eq!(
-            left_out_in_words(&[short, other]).as_deref(),
+            not_ranked_in_words(&[short, other]).as_deref(),
             Some("2 finished runs are not ranked: another length (2), another scenario (1).")
         );
     }

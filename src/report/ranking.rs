@@ -5,9 +5,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::comparable::{
-    Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obstacles_in_words,
-};
+use super::comparable::{Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obstacles_in_words};
 use super::words::dollar_tick;
 use crate::session::Observation;
 

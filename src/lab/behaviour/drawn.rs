@@ -5,12 +5,16 @@ use std::collections::BTreeMap;
 use super::{ObservedRun, who};
 use crate::lab::exhibit::{AxisScale, Graph, GraphAxis, GraphForm, Series};
 
-/// For each participant the cash of their runs, and for each run its customers by group.
+/// Most runs whose customers are drawn: each has a graph of its own.
+pub(super) const MOST_WITH_CUSTOMERS: usize = 4;
+
+/// For each participant the cash of their runs; for each of a few runs its customers by group.
 pub(super) fn graphs(runs: &[ObservedRun]) -> Vec<Graph> {
     let mut players: BTreeMap<&str, Vec<&ObservedRun>> = BTreeMap::new();
     runs.iter().for_each(|run| players.entry(who(run)).or_default().push(run));
     let mut graphs: Vec<Graph> = players.into_iter().map(|(who, own)| cash(who, &own)).collect();
-    graphs.extend(runs.iter().filter(|run| !run.groups.is_empty()).map(customers));
+    let few = if runs.len() > MOST_WITH_CUSTOMERS { &[] } else { runs };
+    graphs.extend(few.iter().filter(|run| !run.groups.is_empty()).map(customers));
     graphs
 }
 

@@ -83,6 +83,12 @@ pub fn exhibit_of(runs: &[ObservedRun]) -> Exhibit {
     exhibit.tables.extend([tools(runs), customers(runs), cash(runs), notes(runs)]);
     exhibit.tables.retain(|table| !table.rows.is_empty());
     exhibit.graphs = drawn::graphs(runs);
+    if runs.len() > drawn::MOST_WITH_CUSTOMERS {
+        exhibit.notes.push(format!(
+            "Graphs of customers by group are drawn of up to {} runs.",
+            drawn::MOST_WITH_CUSTOMERS
+        ));
+    }
     exhibit.notes.push(format!(
         "Ads on the best channel are by chance {:.0}%: there are five channels. The truly best one is known of runs that are \
          over; best tried compares those that were paid for.",
@@ -97,7 +103,12 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
     let figures: Vec<(&ComparedFigure, &str)> =
         FIGURES.iter().filter_map(|(name, of, heading)| Some((figure_of(name, of)?, *heading))).collect();
     let column = |(figure, heading): &(&ComparedFigure, &str)| {
-        Column::numbers(&figure.title(), heading, measure_of(figure.unit()))
+        // A mean of counts or days is no whole number.
+        let measure = match measure_of(figure.unit()) {
+            Measure::Count | Measure::Days => Measure::Number(1),
+            other => other,
+        };
+        Column::numbers(&figure.title(), heading, measure)
     };
     let mut columns = vec![Column::words("run", "run"), Column::words("participant", "who")];
     columns.extend(figures.iter().map(column));

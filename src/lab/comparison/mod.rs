@@ -10,7 +10,7 @@ pub use figures::{ComparedFigure, FIGURES, figure_of};
 pub use table::{as_rows, as_text};
 
 use crate::report::Logbook;
-use crate::report::comparable::{PUBLISHED_SEED, RunTerms, obstacles_in_words};
+use crate::report::comparable::{PUBLISHED_SEED, RunTerms, left_out_in_words};
 use crate::report::ranking::{by_result, published_terms};
 
 /// Puts runs side by side.
@@ -66,12 +66,11 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     note(any(&|own, first| own.start_cash != first.start_cash), "cash at the start");
     note(any(&|own, first| own.parameters_digest != first.parameters_digest), "parameters");
     note(any(&|own, first| own.mode != first.mode), "mode");
-    let left_out = runs.iter().filter_map(|run| {
-        let obstacles = RunTerms::of_logbook(run).obstacles();
-        let why = (!obstacles.is_empty()).then(|| obstacles_in_words(&obstacles))?;
-        Some(format!("{} is not comparable with the published runs: {why}.", run.run))
-    });
-    caveats.extend(left_out);
+    let obstacles: Vec<_> = runs.iter().map(|run| RunTerms::of_logbook(run).obstacles()).collect();
+    caveats.extend(left_out_in_words(&obstacles).map(|(count, why)| match count {
+        1 => format!("One run is not comparable with the published ones: {why}."),
+        count => format!("{count} runs are not comparable with the published ones: {why}."),
+    }));
     if runs.iter().any(|run| run.seed != PUBLISHED_SEED) {
         caveats.push(format!("{}.", published_terms()));
     }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::metrics::Collector;
 use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play, policy_of};
-use crate::report::comparable::{Obstacle, PUBLISHED_SEED, left_out_in_words};
+use crate::report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
 use crate::report::measures::{survival_days, tool_use};
 use crate::report::ranking::{Whose, beaten, by_result, published};
 use crate::session::{Configuration, Ended, Line, Session};
@@ -159,7 +159,7 @@ impl ResultsTable {
             by_result(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
         });
         let mut notes = notes();
-        notes.extend(left_out_in_words(left_out));
+        notes.extend(not_ranked_in_words(left_out));
         if played_by_people > 0 {
             notes.push(format!("Runs that people played are left out: {played_by_people}."));
         }

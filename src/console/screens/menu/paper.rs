@@ -8,7 +8,7 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::table::first_row;
 use crate::notation::{compact, dollars};
-use crate::report::comparable::{Obstacle, RunTerms, left_out_in_words};
+use crate::report::comparable::{Obstacle, RunTerms, not_ranked_in_words};
 use crate::report::ranking::{published, published_terms};
 use crate::session::{Ended, Mode, RunSummary};
 
@@ -79,7 +79,7 @@ impl Menu {
     /// Which of the runs are among the results, and why others are not.
     fn yours(&self, ranked: usize) -> String {
         let finished: Vec<Vec<Obstacle>> = self.list().iter().filter_map(obstacles).collect();
-        match (ranked, left_out_in_words(&finished)) {
+        match (ranked, not_ranked_in_words(&finished)) {
             (_, Some(left_out)) => left_out,
             (0, None) => "Finish a 500-day run to appear here.".to_owned(),
             (_, None) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),

@@ -356,7 +356,8 @@ actions! {
         ResetCurve "reset-curve" "reset" "Put the plans back where they stand."
     }
     Xray {
-        TypeChoice "type" "type" "Type a group, a part, the number of a customer, or the condition of a breakpoint."
+        TypeChoice "type" "type" "Type a group or the number of a customer, with a day or none, for instance S2 84 or 1372 304; a day, a part, or the condition of a breakpoint."
+        SeekDay "seek-day" "day …" "Go to a day by number."
         DayWeekBefore "week-before" "week before" "Show the day a week earlier; left shows the day before."
         DayWeekAfter "week-after" "week after" "Show the day a week later, at most the last one; right shows the day after."
         HoldFactor "hold" "hold" "Hold the selected factor of the leads at a value and show the expected leads beside, or let it go."

@@ -53,6 +53,8 @@ pub struct LookFound {
     pub curves: Vec<LookCurve>,
     /// Spills as a map, which is shown in place of the words.
     pub map: Option<SpillMap>,
+    /// The day that is shown, where it can be another one than was asked for: a customer who has left shows its last one.
+    pub day: Option<u32>,
     /// The breakpoints that are set; only told where breakpoints are asked for.
     pub breakpoints: Vec<Breakpoint>,
 }

@@ -127,7 +127,9 @@ fn answer(session: &mut Session, question: &LookQuestion) -> Result<LookFound, R
         LookQuestion::Customer(customer, day) => match session.lens(*customer, Some(*day))? {
             Lens::Individual(lens) => {
                 let days = lens.days.iter().map(|own| own.satisfaction).collect();
-                return Ok(with_curve(customer_in_words(&lens), SATISFACTION, days));
+                let day = lens.shown().map_or(lens.first.day, |own| own.day);
+                let found = with_curve(customer_in_words(&lens), SATISFACTION, days);
+                return Ok(LookFound { day: Some(day), ..found });
             }
             Lens::Company(lens) => company_in_words(&lens),
         },

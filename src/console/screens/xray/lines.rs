@@ -6,7 +6,7 @@ use super::view::View;
 use super::{Xray, heat};
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, rows_of};
-use crate::console::look_inside::{LookCurve, LookFound, LookQuestion};
+use crate::console::look_inside::{LookCurve, LookFound};
 use crate::console::screens::Look;
 use crate::console::screens::panes::Seat;
 use crate::console::text::wrapped;
@@ -98,14 +98,14 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Content<'a> {
     let is_of_words = xray.view() == View::Words;
     let wanted = xray.wanted();
     let seen = match is_of_words {
-        true => xray.said.as_ref().filter(|_| !matches!(xray.asked, Some(LookQuestion::Words(..)))),
+        true => xray.said.as_ref().filter(|_| xray.words_asked().is_none()),
         false => xray.seen.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),
     };
     match seen.map(|seen| &seen.found) {
         Some(Ok(found)) => Content::Found(found),
         Some(Err(problem)) => sentence(problem, Role::Bad),
         None if wanted.is_some() => sentence("simulating days again …", Role::Dim),
-        None if is_of_words && xray.asked.is_some() => sentence("simulating days again …", Role::Dim),
+        None if is_of_words && xray.words_asked().is_some() => sentence("simulating days again …", Role::Dim),
         None if is_of_words => {
             let text = format!(
                 "{} types words as plain mode takes them, for instance find churn(S1) > 5% over 7, who cash 84, diff 83 84, \
@@ -116,7 +116,11 @@ fn shown<'a>(xray: &'a Xray, look: &Look<'_>) -> Content<'a> {
         }
         None if xray.last_day == 0 => sentence("no day has run yet", Role::Dim),
         None if xray.view() == View::Customer => {
-            Content::Sentence(format!("{} types the number of a customer", key(Action::TypeChoice)), Role::Dim)
+            let text = format!(
+                "{} types the number of a customer, and a day or none: without one the last day that has run, or its departure",
+                key(Action::TypeChoice)
+            );
+            Content::Sentence(text, Role::Dim)
         }
         None => sentence("nothing is chosen", Role::Dim),
     }

@@ -1,8 +1,9 @@
 //! Hidden state of a run, where it may be shown: the views of plain mode in the same words, day by day, and breakpoints.
 //!
 //! The session's thread simulates days again for a look. One question is asked at a time; of those that come up meanwhile
-//! only the newest is asked next.
+//! only the newest is asked next. What was confirmed, or is done with breakpoints, waits its turn.
 
+mod asking;
 mod heat;
 mod lines;
 mod panes;
@@ -10,6 +11,8 @@ mod panes;
 mod tests;
 mod typing;
 mod view;
+
+use std::collections::VecDeque;
 
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
@@ -29,7 +32,7 @@ use crate::console::theme::Role;
 use crate::console::widgets::scroll::Scroll;
 use crate::console::widgets::{Cell, Column, Field, Table};
 use crate::report::xray::AskedWords;
-use crate::session::{Breakpoint, DrawnPart, LeadFactor, Refusal};
+use crate::session::{Breakpoint, DrawnPart, LeadFactor};
 use crate::world::identifiers::Group;
 
 /// Its panes, in the order of the tab key.
@@ -50,9 +53,6 @@ const WIDE: u16 = 90;
 const LISTS: u16 = 16;
 /// Lowest window in which both lists stand below each other.
 const HIGH: u16 = 20;
-
-/// Said where a question is being answered.
-const ASKED_ALREADY: &str = "days are simulated again; try again when that is done";
 
 /// What a look has brought.
 struct Seen {
@@ -85,6 +85,8 @@ pub struct Xray {
     problem: Option<String>,
     /// The question that is being answered.
     asked: Option<LookQuestion>,
+    /// What was typed or done meanwhile, in the order in which it is asked next.
+    waiting: VecDeque<LookQuestion>,
     seen: Option<Seen>,
     /// What was answered to words.
     said: Option<Seen>,
@@ -149,6 +151,12 @@ impl Xray {
         })
     }
 
+    /// The day of what is seen: that of a customer who left ends with its last day as a subscriber.
+    fn day_seen(&self) -> u32 {
+        let seen = self.seen.as_ref().filter(|seen| self.wanted().as_ref() == Some(&seen.question));
+        seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
+    }
+
     /// Asks for what is to be shown and is not yet, unless a question is being answered.
     fn ask(&mut self) -> Vec<Effect> {
         let wanted = self.wanted();
@@ -157,44 +165,6 @@ impl Xray {
             Some(question) => self.send(question),
             None => Vec::new(),
         }
-    }
-
-    fn send(&mut self, question: LookQuestion) -> Vec<Effect> {
-        self.asked = Some(question.clone());
-        vec![Effect::LookInside(question)]
-    }
-
-    /// Has something done with breakpoints.
-    fn work(&mut self, work: BreakpointWork) -> Vec<Effect> {
-        match &self.asked {
-            Some(_) => vec![Effect::Complain(ASKED_ALREADY.to_owned())],
-            None => self.send(LookQuestion::Breakpoints(work)),
-        }
-    }
-
-    fn take(&mut self, found: &Result<LookFound, Refusal>) -> Vec<Effect> {
-        let Some(mut question) = self.asked.take() else { return Vec::new() };
-        let shown = || found.clone().map_err(|refusal| refusal.message);
-        if let LookQuestion::Words(_, asked) = &question {
-            if asked.changes_run() {
-                self.seen = None;
-            }
-            self.said = Some(Seen { found: shown(), question });
-            return self.ask();
-        }
-        if let LookQuestion::Breakpoints(work) = &mut question {
-            // What was done is shown like the list, and not done again.
-            *work = BreakpointWork::List;
-            if let Ok(found) = found {
-                self.breakpoints = found.breakpoints.clone();
-                self.list_breakpoints();
-            }
-        }
-        if self.wanted().as_ref() == Some(&question) {
-            self.seen = Some(Seen { question, found: shown() });
-            return Vec::new();
-        }
-        self.ask()
     }
 
     /// Shows why days stopped that were run from here.
@@ -252,10 +222,21 @@ impl Xray {
         if self.last_day == 0 || !self.view().has_day() {
             return Vec::new();
         }
-        let last = self.last_day;
-        let day = (i64::from(self.day()) + days).clamp(1, i64::from(last)) as u32;
-        self.day = (day != last).then_some(day);
+        let day = (i64::from(self.day_seen()) + days).clamp(1, i64::from(self.last_day)) as u32;
+        self.turn_to(Some(day));
         self.ask()
+    }
+
+    /// Turns to a day; the last one is followed.
+    fn turn_to(&mut self, day: Option<u32>) {
+        self.day = day.filter(|day| *day != self.last_day);
+    }
+
+    fn seek(&mut self) -> Vec<Effect> {
+        match self.view().has_day() {
+            true => self.type_in(Some(Expected::Day)),
+            false => vec![Effect::Complain("this view does not show a day that is chosen".to_owned())],
+        }
     }
 
     fn hold(&mut self) -> Vec<Effect> {
@@ -272,7 +253,7 @@ impl Xray {
 
     fn type_in(&mut self, expected: Option<Expected>) -> Vec<Effect> {
         let Some(expected) = expected else {
-            return vec![Effect::Complain("nothing is chosen in this view but the day".to_owned())];
+            return vec![Effect::Complain("nothing is chosen in this view".to_owned())];
         };
         (self.focus, self.problem) = (XrayPane::Seen, None);
         self.typing = Some(TypedLine { expected, field: Field::default() });
@@ -281,7 +262,8 @@ impl Xray {
 
     fn commit(&mut self) -> Vec<Effect> {
         let Some(typing) = self.typing.take() else { return Vec::new() };
-        let typed = match typing.expected.read(typing.field.text()) {
+        let read = typing.expected.read(typing.field.text()).and_then(|typed| typed.within(self.last_day));
+        let typed = match read {
             Ok(typed) => typed,
             Err(problem) => {
                 (self.typing, self.problem) = (Some(typing), Some(problem));
@@ -290,11 +272,20 @@ impl Xray {
         };
         self.problem = None;
         match typed {
-            Typed::Group(group) => select(&mut self.groups, Group::all().position(|own| own == group)),
+            Typed::Group(group, day) => {
+                select(&mut self.groups, Group::all().position(|own| own == group));
+                if day.is_some() {
+                    self.turn_to(day);
+                }
+            }
+            Typed::Day(day) => self.turn_to(Some(day)),
             Typed::Part(part) => {
                 select(&mut self.parts, DrawnPart::ALL.iter().position(|own| *own == part));
             }
-            Typed::Customer(customer) => self.customer = Some(customer),
+            Typed::Customer(customer, day) => {
+                self.customer = Some(customer);
+                self.turn_to(day);
+            }
             Typed::Condition(condition) => return self.work(BreakpointWork::Set(condition)),
             Typed::Held(factor, value) => self.held.push((factor, value)),
             Typed::Words(words, asked) => return self.say_words(words, asked),
@@ -312,11 +303,8 @@ impl Xray {
     }
 
     fn send_asked(&mut self, words: String, asked: AskedWords) -> Vec<Effect> {
-        if self.asked.is_some() {
-            return vec![Effect::Complain(ASKED_ALREADY.to_owned())];
-        }
         self.scroll = Scroll::default();
-        self.send(LookQuestion::Words(words, asked))
+        self.send_in_turn(LookQuestion::Words(words, asked))
     }
 
     /// Sends words that were confirmed.
@@ -415,6 +403,7 @@ impl Paned for Xray {
             Action::Right => self.walk(1),
             Action::DayWeekBefore => self.walk(-7),
             Action::DayWeekAfter => self.walk(7),
+            Action::SeekDay => self.seek(),
             Action::HoldFactor => self.hold(),
             Action::AskWords => {
                 self.show(View::Words);

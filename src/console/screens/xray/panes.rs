@@ -41,6 +41,7 @@ fn keys_of(view: View) -> &'static [Action] {
             Action::Right,
             Action::HoldFactor,
             Action::TypeChoice,
+            Action::SeekDay,
             Action::AskWords,
         ],
         View::Streams => &[Action::TypeChoice, Action::AskWords],
@@ -52,10 +53,10 @@ fn keys_of(view: View) -> &'static [Action] {
             Action::RemoveBreakpoint,
             Action::AskWords,
         ],
-        _ if Expected::in_view(view).is_none() => {
-            &[Action::Left, Action::Right, Action::DayWeekBefore, Action::AskWords]
+        _ if view.choices() == Choices::Nothing && view != View::Customer => {
+            &[Action::Left, Action::Right, Action::DayWeekBefore, Action::SeekDay, Action::AskWords]
         }
-        _ => &[Action::Left, Action::Right, Action::TypeChoice, Action::AskWords],
+        _ => &[Action::Left, Action::Right, Action::TypeChoice, Action::SeekDay, Action::AskWords],
     }
 }
 
@@ -237,8 +238,9 @@ impl Pane<Xray> for SeenPane {
         let view = xray.view();
         let title = match (view, view.choices()) {
             (View::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
-            (View::Words, _) => match xray.said.as_ref().map(|said| &said.question) {
-                Some(LookQuestion::Words(words, _)) => format!(": {words}"),
+            (View::Words, _) => match (xray.words_asked(), xray.said.as_ref().map(|said| &said.question)) {
+                (Some(words), _) => format!(": {words}"),
+                (None, Some(LookQuestion::Words(words, _))) => format!(": {words}"),
                 _ => String::new(),
             },
             (_, Choices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
@@ -247,7 +249,7 @@ impl Pane<Xray> for SeenPane {
         };
         let note = match (&xray.asked, view.has_day()) {
             (Some(_), _) => "simulating days again …".to_owned(),
-            (None, true) => format!("day {} of {}", xray.day(), xray.last_day),
+            (None, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
             (None, false) => format!("after day {}", xray.last_day),
         };
         let label = |action| look.keys.label(action).unwrap_or_default();

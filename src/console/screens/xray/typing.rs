@@ -1,4 +1,5 @@
-//! What is typed on the X-ray screen: a group, a part, the number of a customer, a condition, a number, words.
+//! What is typed on the X-ray screen: a group or the number of a customer with a day or none, a day, a part, a condition, a
+//! number, words.
 
 use super::view::{Choices, View};
 use crate::console::widgets::Field;
@@ -10,12 +11,14 @@ use crate::world::identifiers::Group;
 /// What is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expected {
-    /// A group.
+    /// A group, and a day or none.
     Group,
     /// A part of the world that draws.
     Part,
-    /// The number of a customer.
+    /// The number of a customer, and a day or none.
     Customer,
+    /// A day.
+    Day,
     /// The condition of a breakpoint.
     Condition,
     /// A number of days.
@@ -29,12 +32,14 @@ pub enum Expected {
 /// What was typed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Typed {
-    /// A group.
-    Group(Group),
+    /// A group, and the day on which it is looked at, if one was typed.
+    Group(Group, Option<u32>),
     /// A part of the world that draws.
     Part(DrawnPart),
-    /// The number of a customer.
-    Customer(u32),
+    /// The number of a customer, and the day on which it is looked at, if one was typed.
+    Customer(u32, Option<u32>),
+    /// A day.
+    Day(u32),
     /// The condition of a breakpoint.
     Condition(Condition),
     /// A number of days, at least 1.
@@ -64,6 +69,7 @@ impl Expected {
         match (view, view.choices()) {
             (View::Customer, _) => Some(Expected::Customer),
             (View::Words, _) => Some(Expected::Words),
+            (_, Choices::Nothing) if view.has_day() => Some(Expected::Day),
             (_, Choices::Groups) => Some(Expected::Group),
             (_, Choices::Parts) => Some(Expected::Part),
             (_, Choices::Breakpoints) => Some(Expected::Condition),
@@ -74,9 +80,10 @@ impl Expected {
     /// What stands before the line.
     pub fn prompt(self) -> &'static str {
         match self {
-            Expected::Group => "group",
+            Expected::Group => "group [day]",
             Expected::Part => "part",
-            Expected::Customer => "customer",
+            Expected::Customer => "customer [day]",
+            Expected::Day => "day",
             Expected::Condition => "stop when",
             Expected::Days => "days to run",
             Expected::Held(factor) => HELD[factor as usize],
@@ -92,19 +99,23 @@ impl Expected {
         let text = text.trim();
         match self {
             Expected::Group => {
-                let found = Group::all().find(|group| group.id().eq_ignore_ascii_case(text));
+                let (id, day) = with_day(text)?;
+                let found = Group::all().find(|group| group.id().eq_ignore_ascii_case(id));
                 let ids = || Group::all().map(Group::id);
-                found.map(Typed::Group).ok_or_else(|| unknown("group", text, &nearest(text, ids())))
+                let typed = found.map(|group| Typed::Group(group, day));
+                typed.ok_or_else(|| unknown("group", id, &nearest(id, ids())))
             }
             Expected::Part => {
                 let ids = || DrawnPart::ALL.into_iter().map(DrawnPart::id);
                 let found = DrawnPart::parse(&text.to_ascii_lowercase());
                 found.map(Typed::Part).ok_or_else(|| unknown("part", text, &nearest(text, ids())))
             }
-            Expected::Customer => text
-                .parse()
-                .map(Typed::Customer)
-                .map_err(|_| "type the number of a customer, for instance 4711".to_owned()),
+            Expected::Customer => {
+                let (number, day) = with_day(text)?;
+                let customer = number.parse().map(|customer| Typed::Customer(customer, day));
+                customer.map_err(|_| "type the number of a customer, for instance 4711".to_owned())
+            }
+            Expected::Day => day_of(text).map(Typed::Day),
             Expected::Condition => text.parse().map(Typed::Condition).map_err(problem_in_words),
             Expected::Held(factor) => match text {
                 "" => Ok(Typed::Held(factor, 1.0)),
@@ -124,6 +135,38 @@ impl Expected {
             }
         }
     }
+}
+
+impl Typed {
+    /// The same, if its day has run.
+    ///
+    /// # Errors
+    /// Which days there are.
+    pub fn within(self, last_day: u32) -> Result<Typed, String> {
+        match self {
+            Typed::Group(_, Some(day)) | Typed::Customer(_, Some(day)) | Typed::Day(day)
+                if !(1..=last_day).contains(&day) =>
+            {
+                Err(match last_day {
+                    0 => "no day has run yet".to_owned(),
+                    last => format!("there is no day {day}; choose a day from 1 to {last}"),
+                })
+            }
+            typed => Ok(typed),
+        }
+    }
+}
+
+/// The first word, and the day behind it, if there is one.
+fn with_day(text: &str) -> Result<(&str, Option<u32>), String> {
+    match text.split_once(char::is_whitespace) {
+        Some((first, day)) => Ok((first, Some(day_of(day.trim())?))),
+        None => Ok((text, None)),
+    }
+}
+
+fn day_of(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| "a day is a whole number, for instance 84".to_owned())
 }
 
 fn problem_in_words(problem: ConditionProblem) -> String {

@@ -1,0 +1,80 @@
+//! Questions one after the other: what is asked while another is answered, and what became of it.
+
+use super::{Seen, Xray};
+use crate::console::effect::Effect;
+use crate::console::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use crate::session::Refusal;
+
+impl Xray {
+    pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {
+        self.asked = Some(question.clone());
+        vec![Effect::LookInside(question)]
+    }
+
+    /// Asks at once, or after the question that is being answered. Of words that only ask, the newest replaces those before.
+    pub(super) fn send_in_turn(&mut self, question: LookQuestion) -> Vec<Effect> {
+        if self.asked.is_none() {
+            return self.send(question);
+        }
+        self.waiting.retain(|own| !only_asks(own));
+        self.waiting.push_back(question);
+        Vec::new()
+    }
+
+    /// Has something done with breakpoints.
+    pub(super) fn work(&mut self, work: BreakpointWork) -> Vec<Effect> {
+        self.send_in_turn(LookQuestion::Breakpoints(work))
+    }
+
+    /// Words that were asked and are not answered yet.
+    pub(super) fn words_asked(&self) -> Option<&str> {
+        self.waiting.iter().rev().chain(&self.asked).find_map(|question| match question {
+            LookQuestion::Words(words, _) => Some(words.as_str()),
+            _ => None,
+        })
+    }
+
+    pub(super) fn take(&mut self, found: &Result<LookFound, Refusal>) -> Vec<Effect> {
+        let Some(question) = self.asked.take() else { return Vec::new() };
+        let shown = self.keep(question, found);
+        match self.waiting.pop_front() {
+            Some(next) => self.send(next),
+            None if shown => Vec::new(),
+            None => self.ask(),
+        }
+    }
+
+    /// Keeps what was answered; true if it is what the view shows.
+    fn keep(&mut self, mut question: LookQuestion, found: &Result<LookFound, Refusal>) -> bool {
+        let shown = || found.clone().map_err(|refusal| refusal.message);
+        if let LookQuestion::Words(_, asked) = &question {
+            if asked.changes_run() {
+                self.seen = None;
+            }
+            self.said = Some(Seen { found: shown(), question });
+            return false;
+        }
+        if let LookQuestion::Breakpoints(work) = &mut question {
+            // What was done is shown like the list, and not done again.
+            *work = BreakpointWork::List;
+            if let Ok(found) = found {
+                self.breakpoints = found.breakpoints.clone();
+                self.list_breakpoints();
+            }
+        }
+        let is_wanted = self.wanted().as_ref() == Some(&question);
+        if is_wanted {
+            self.seen = Some(Seen { question, found: shown() });
+        }
+        is_wanted
+    }
+}
+
+/// Whether nothing is changed by a question.
+fn only_asks(question: &LookQuestion) -> bool {
+    match question {
+        LookQuestion::Words(_, asked) => !asked.changes_run(),
+        LookQuestion::Breakpoints(work) => matches!(work, BreakpointWork::List | BreakpointWork::LookBack),
+        _ => true,
+    }
+}

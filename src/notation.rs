@@ -10,9 +10,18 @@ use serde_json::{Number, Value, json};
 
 pub use crate::world::params::nearest;
 
-/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`.
+/// Size from which a number is written in powers of ten.
+const POWERS_FROM: f64 = 1e15;
+
+/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`; from 1e15 on in powers of ten, `1.5e15`.
+/// Zero has no sign.
 pub fn grouped(value: f64, decimals: usize) -> String {
+    if value.abs() >= POWERS_FROM && value.is_finite() {
+        return in_powers(value);
+    }
     let text = format!("{value:.decimals$}");
+    let is_zero = text.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
+    let text = if is_zero { text.trim_start_matches('-').to_owned() } else { text };
     let (sign, digits) = text.strip_prefix('-').map_or(("", text.as_str()), |digits| ("-", digits));
     let (whole, fraction) =
         digits.split_once('.').map_or((digits, None), |(whole, rest)| (whole, Some(rest)));
@@ -26,6 +35,17 @@ pub fn grouped(value: f64, decimals: usize) -> String {
     match fraction {
         Some(fraction) => format!("{sign}{grouped}.{fraction}"),
         None => format!("{sign}{grouped}"),
+    }
+}
+
+/// At most four digits, and the power of ten: `1.234e15`.
+fn in_powers(value: f64) -> String {
+    let text = format!("{value:.3e}");
+    match text.split_once('e') {
+        Some((digits, power)) => {
+            format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+        }
+        None => text,
     }
 }
 
@@ -60,7 +80,8 @@ pub fn signed_dollars(value: f64) -> String {
 
 /// A share as a percentage: `0.1234` with one decimal is `12.3%`.
 pub fn percent(share: f64, decimals: usize) -> String {
-    format!("{:.decimals$}%", share * 100.0)
+    // Nobody reads separators in a share.
+    format!("{}%", grouped(share * 100.0, decimals).replace(',', ""))
 }
 
 /// A large number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
@@ -68,6 +89,9 @@ pub fn compact(value: f64) -> String {
     // Zero has no sign.
     let value = value + 0.0;
     let size = value.abs();
+    if size >= POWERS_FROM && value.is_finite() {
+        return in_powers(value);
+    }
     let (scaled, suffix) = match size {
         _ if size >= 999_500_000.0 => (value / 1e9, "B"),
         _ if size >= 999_500.0 => (value / 1e6, "M"),

@@ -204,6 +204,7 @@ actions! {
         Journal "journal" "Journal" "Show what was done and how forecasts turned out."
         Xray "xray" "X-ray" "Show the hidden state of the run: in debug runs and in runs that are over."
         Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set one, run to it, or see since when its condition holds. In debug runs and in runs that are over."
+        HiddenValues "hidden-values" "true values" "Show hidden true values on the screens Customers and Market, or hide them again; each day that is shown is a recorded look. In debug runs and in runs that are over."
         NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast, and run the week."
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
         Help "help" "help" "Show every key that works here, those of the focused pane first."

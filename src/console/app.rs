@@ -10,6 +10,7 @@ mod lesson;
 mod limits;
 mod news;
 mod orders;
+mod overlay;
 mod record;
 mod stopped;
 mod trail;
@@ -163,6 +164,8 @@ pub struct Run {
     pub viewer: Option<Viewer>,
     /// What the person has of the lesson it belongs to.
     pub lesson: lesson::LessonView,
+    /// Whether true values stand on the screens.
+    overlay: overlay::Overlay,
     /// Time that is left to each limit of the rules.
     pub time_left: Vec<TimeLeft>,
     /// Why the database is behind, while it is.
@@ -470,6 +473,7 @@ impl App {
         }
         let asks = self.with_screen(|screen, look| screen.ask_run(look)).unwrap_or_default();
         self.follow(asks);
+        self.ask_hidden_values();
     }
 
     /// The screen that is shown, and what it may look at.

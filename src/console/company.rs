@@ -13,8 +13,9 @@ use crate::report::funnel::{Funnel, funnels};
 use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode,
-    Numbers, Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, HiddenValues, JournalEntry,
+    LessonPage, Mode, Numbers, Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits,
+    WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -91,6 +92,8 @@ pub struct Company {
     pub replayed: bool,
     /// Whether hidden state may be shown.
     pub may_look_inside: bool,
+    /// True values of the day, while they stand on the screens.
+    pub hidden: Option<Arc<HiddenValues>>,
     /// By which rules it is played.
     pub rules: SessionRules,
     /// The study it belongs to.
@@ -142,6 +145,7 @@ impl Company {
             remarks: session.remarks().to_vec(),
             replayed: false,
             may_look_inside: session.may_look_inside(),
+            hidden: None,
             rules: session.rules(),
             study: session.manifest().study.clone(),
             lesson: None,

@@ -12,8 +12,8 @@ use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, CurveExplorer, Debrief, DueQuestion, Interrupt, Kin, Library, NextStep, PlaybackPosition,
-    Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
+    Change, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library, NextStep,
+    PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
 
@@ -117,6 +117,8 @@ pub enum News {
     Kin(String, Vec<Kin>),
     /// What was seen of the run from within; the number says which question it answers. With the company where it has changed.
     LookedInside(u64, Box<Result<LookFound, Refusal>>, Option<Arc<Company>>),
+    /// True values of a day were seen, or are not shown.
+    HiddenValues(Box<Result<Arc<HiddenValues>, Refusal>>),
     /// Days of a debug run were simulated up to a breakpoint.
     Ran(Result<DaysRan, Refusal>, Arc<Company>),
     /// How far a question why has come; the number says which.

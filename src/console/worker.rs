@@ -17,6 +17,7 @@ mod mending;
 mod player;
 mod queries;
 mod run;
+mod values;
 mod visit;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -74,6 +75,8 @@ pub enum Job {
     ReadKin,
     /// Look at hidden state of the run.
     LookInside(u64, LookQuestion),
+    /// Look at the true values of a day.
+    ReadHiddenValues(u32),
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
@@ -296,6 +299,7 @@ impl SessionThread {
             Job::ReadKin => self.read_kin(),
             Job::AskInside(number, sql) => self.ask_inside(number, &sql),
             Job::LookInside(number, question) => self.look_inside(number, &question),
+            Job::ReadHiddenValues(day) => self.read_hidden_values(day),
             Job::TakeUp(interface) => self.take_up(interface),
             Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
             Job::NotePresence(event, idle_ms, window) => {

@@ -164,6 +164,7 @@ pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerm
 pub use xray::customer_lens::CustomerLens;
 pub use xray::difference::{CustomerDifference, Difference, RunDifference};
 pub use xray::drift_state::{DriftState, GroupDrifted};
+pub use xray::hidden_values::{HiddenValues, TrueGroup};
 pub use xray::last_day::Xray;
 pub use xray::lead_equation::{LeadEquation, LeadFactor};
 pub use xray::lens::Lens;

@@ -290,6 +290,7 @@ impl App {
             Action::Why => self.show_why(),
             Action::Branches => self.show_branches(),
             Action::Breakpoints => self.show_breakpoints(),
+            Action::HiddenValues => self.toggle_hidden_values(),
             Action::Curves => self.show_curve(None),
             Action::Glossary => self.show_glossary(),
             Action::Lesson => self.toggle_lesson(),

@@ -112,6 +112,7 @@ impl App {
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
             News::Visit(news) => self.visited(news),
+            News::HiddenValues(found) => self.take_hidden_values(*found),
             other => self.heard(other),
         }
     }
@@ -263,6 +264,7 @@ impl App {
             tour,
             viewer,
             lesson: LessonView::default(),
+            overlay: Default::default(),
             time_left: Vec::new(),
             behind: None,
         }));
@@ -318,7 +320,7 @@ impl App {
     /// The run has changed.
     pub(super) fn changed(&mut self, company: Arc<Company>) {
         if let Stage::Run(run) = &mut self.stage {
-            run.company = company;
+            run.take_company(company);
             run.changes += 1;
         }
         self.renew();
@@ -334,7 +336,7 @@ impl App {
         self.load();
     }
 
-    fn renew(&mut self) {
+    pub(super) fn renew(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             let company = run.company.clone();
             let look = Look { company: &company, keys: &self.keys, page: self.page };

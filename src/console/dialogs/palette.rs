@@ -236,7 +236,7 @@ fn is_outside_lesson(effect: &Effect, company: &Company) -> bool {
 fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntry> {
     let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
     let hidden = |action: Action| match action {
-        Action::Xray | Action::Breakpoints => !company.may_look_inside,
+        Action::Xray | Action::Breakpoints | Action::HiddenValues => !company.may_look_inside,
         Action::Lesson | Action::LessonPage => company.lesson.is_none(),
         _ => false,
     };

@@ -1,5 +1,6 @@
 //! Conditions, why a run stopped, and since when they hold, in words.
 
+use super::settled;
 use crate::notation::point_number;
 use crate::report::words::count;
 use crate::session::{
@@ -32,7 +33,7 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
     let from = run.from + 1;
     let ran = format!("ran day {from} to {day}");
     let mut lines = match (run.hits.is_empty(), breakpoints) {
-        (false, _) => return run.hits.iter().map(hit).collect(),
+        (false, _) => return settled(run.hits.iter().map(hit).collect()),
         (true, 0) => vec![format!("{ran}; no breakpoint is set")],
         (true, 1) if run.true_before.is_empty() => {
             vec![format!("{ran}; the breakpoint was true on none of them")]
@@ -40,18 +41,25 @@ pub fn stop_in_words(run: &RunUntil, day: u32, breakpoints: usize) -> Vec<String
         (true, count) if run.true_before.is_empty() => {
             vec![format!("{ran}; none of the {count} breakpoints was true on any of them")]
         }
+        (true, 1) if run.true_before.iter().all(|own| own.began.is_some()) => {
+            vec![format!("{ran}; the breakpoint did not become true: its figure began so")]
+        }
         (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
         (true, count) => vec![format!("{ran}; none of the {count} breakpoints became true")],
     };
     lines.extend(run.true_before.iter().map(|own| true_before(own, day)));
-    lines
+    settled(lines)
 }
 
 fn true_before(own: &TrueBefore, day: u32) -> String {
     let Hit { breakpoint, judged } = &own.hit;
-    let until = match own.until == day {
-        true => "true on all these days and the day before them".to_owned(),
-        false => format!("true until day {}", own.until),
+    let until = match (own.until == day, own.began) {
+        (true, None) => "true on all these days and the day before them".to_owned(),
+        (false, None) => format!("true until day {}", own.until),
+        (true, Some(began)) => format!("true from day {began} on, on which its figure has a value first"),
+        (false, Some(began)) => {
+            format!("true from day {began}, on which its figure has a value first, until day {}", own.until)
+        }
     };
     format!("breakpoint {} was {until}: {}", breakpoint.number, sides(&breakpoint.condition, judged))
 }
@@ -72,7 +80,7 @@ pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
             own.since()
         ),
     });
-    lines
+    settled(lines)
 }
 
 /// The days on which a condition became true.
@@ -83,7 +91,7 @@ pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) ->
         often => format!("{condition} became true on {often} of {days}"),
     };
     let line = |own: &Judged| format!("  day {:<4} {}", own.day, sides(condition, own));
-    std::iter::once(head).chain(found.iter().map(line)).collect()
+    settled(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 
 /// Both sides in numbers: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A comparison that does not hold says so.
@@ -149,8 +157,14 @@ mod tests {
     #[test]
     fn both_sides_of_a_fall_are_told_apart_and_no_finer() {
         let condition: Condition = "reputation(S3) falls".parse().expect("a condition");
-        let mut judged =
-            Judged { day: 39, value: Some(0.507881), before: Some(0.507912), is_true: true, was_true: false };
+        let mut judged = Judged {
+            day: 39,
+            value: Some(0.507881),
+            before: Some(0.507912),
+            is_true: true,
+            was_true: false,
+            begins: false,
+        };
         let said = sides(&condition, &judged);
         assert_eq!(said, "reputation(S3) = 0.50788, falls (day before 0.50791)");
         (judged.before, judged.is_true) = (None, false);

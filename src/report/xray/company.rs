@@ -1,6 +1,6 @@
 //! A company from within, in words.
 
-use super::table;
+use super::{settled, table};
 use crate::session::{CompanyAnswer, CompanyDay, CompanyLens};
 use crate::world::identifiers::Plan;
 
@@ -16,7 +16,7 @@ pub fn company_in_words(lens: &CompanyLens) -> Vec<String> {
             None => format!("no thread was open up to day {day}"),
         });
     }
-    lines
+    settled(lines)
 }
 
 fn thread_in_words(own: &CompanyDay) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! An individual from within, in words: what it decided and why, term by term.
 
-use super::table;
+use super::{settled, table};
 use crate::session::{CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed};
 use crate::world::identifiers::Plan;
 
@@ -17,7 +17,7 @@ pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
     let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
     let Some(shown) = lens.shown() else {
         lines.extend(first_in_words(first));
-        return lines;
+        return settled(lines);
     };
     let curve = shown.weighed.curve;
     lines.push(format!(
@@ -32,7 +32,7 @@ pub fn customer_in_words(lens: &CustomerLens) -> Vec<String> {
     }
     lines.push(satisfaction(lens));
     lines.extend(events(lens));
-    lines
+    settled(lines)
 }
 
 /// What became of it on the day that is shown, and what would have turned it.

@@ -8,6 +8,11 @@ use crate::session::{CustomerDifference, Difference, RunDifference};
 
 /// Figures that are told; a state has some hundred.
 const FIGURES_TOLD: usize = 40;
+/// Decimals of a figure at least, and those of one of a thousand and more.
+const DECIMALS: usize = 4;
+const DECIMALS_OF_LARGE: usize = 2;
+/// Decimals at most, where fewer would not tell two numbers apart.
+const MOST_DECIMALS: usize = 12;
 /// Parameters that are told.
 const PARAMETERS_TOLD: usize = 20;
 
@@ -84,7 +89,9 @@ fn parameters(found: &Difference, names: (&str, &str)) -> Vec<String> {
 }
 
 fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
-    let row = |(name, own, other): &(String, f64, f64)| vec![name.clone(), number(*own), number(*other)];
+    let row = |(name, own, other): &(String, f64, f64)| {
+        vec![name.clone(), told_apart(*own, *other), told_apart(*other, *own)]
+    };
     let rows: Vec<Vec<String>> = found.figures.iter().take(FIGURES_TOLD).map(row).collect();
     if rows.is_empty() {
         return vec!["figures are alike".to_owned()];
@@ -114,16 +121,38 @@ fn customer(own: &CustomerDifference, names: (&str, &str)) -> String {
         (true, false) => format!("subscribes only in {}", names.0),
         (false, _) => format!("subscribes only in {}", names.1),
         (true, true) => {
-            let columns = own.columns.iter().map(|(name, one, other)| format!("{name} {one} → {other}"));
+            let columns = own.columns.iter().map(|(name, one, other)| {
+                let (one, other) = cells_apart(one, other);
+                format!("{name} {one} → {other}")
+            });
             columns.collect::<Vec<String>>().join(", ")
         }
     };
     format!("  {} {}: {what}", own.customer, own.group)
 }
 
-fn number(value: f64) -> String {
-    let whole = value.fract() == 0.0 && value.abs() < 1e15;
-    if whole { grouped(value, 0) } else { value.to_string() }
+/// A number with as few decimals as tell it from another.
+fn told_apart(value: f64, other: f64) -> String {
+    if value.fract() == 0.0 {
+        return grouped(value, 0);
+    }
+    let least = if value.abs() >= 1000.0 { DECIMALS_OF_LARGE } else { DECIMALS };
+    let differs = |decimals: &usize| grouped(value, *decimals) != grouped(other, *decimals);
+    match (least..=MOST_DECIMALS).find(differs) {
+        Some(decimals) => grouped(value, decimals),
+        None => value.to_string(),
+    }
+}
+
+/// The same of two cells, as far as they are numbers with a fraction.
+fn cells_apart(one: &str, other: &str) -> (String, String) {
+    let number = |cell: &str| cell.parse::<f64>().ok().filter(|value| value.is_finite());
+    match (number(one), number(other)) {
+        (Some(own), Some(twin)) if own.fract() != 0.0 || twin.fract() != 0.0 => {
+            (told_apart(own, twin), told_apart(twin, own))
+        }
+        _ => (one.to_owned(), other.to_owned()),
+    }
 }
 
 #[cfg(test)]
@@ -157,7 +186,7 @@ mod tests {
                 "differs: money, customers",
                 "alike: market",
                 "  figure  one    other",
-                "  cash    1,000  999.5",
+                "  cash    1,000  999.5000",
                 "customers: 1 differ, 1 subscribe only in one, 0 only in other",
                 "  4 S1: plan A → B",
                 "  9 S1: subscribes only in one",

@@ -1,5 +1,6 @@
 //! The equation of a group's leads, in words.
 
+use super::settled;
 use crate::session::{LeadEquation, LeadFactor};
 
 /// Place of the line that tells of a factor among the words of an equation.
@@ -17,6 +18,12 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
     }
     lines.push(equation(own));
     lines.extend(LeadFactor::ALL.map(|factor| over_days(days, factor)));
+    if own.is_without_limit {
+        lines.push(
+            "  D is 1 however many subscribe: base_market_cap is 0, and a market without a size has no limit"
+                .to_owned(),
+        );
+    }
     let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.6}"));
     let by_group: Vec<String> = by_group.collect();
     lines.push(match by_group.is_empty() {
@@ -28,7 +35,12 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
         let with = own.holding(held);
         lines.push(format!("with {}: λ {with:.2} instead of {:.2}", held_at.join(", "), own.expected()));
     }
-    lines
+    lines.push(format!(
+        "  p {:.2}: the share of draws around λ that are as far from it as {}, or farther",
+        own.p_value(),
+        own.came
+    ));
+    settled(lines)
 }
 
 /// `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, came 104 (p 0.56)`

@@ -1,6 +1,6 @@
 //! Rivals and drift, in words.
 
-use super::table;
+use super::{settled, table};
 use crate::session::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
 /// Moves that are listed.
@@ -27,7 +27,7 @@ pub fn rivals_in_words(own: &RivalState) -> Vec<String> {
         Some(next) => next_move(next, own),
         None => vec!["  no move is to come before the end of the run".to_owned()],
     });
-    lines
+    settled(lines)
 }
 
 fn moves(own: &RivalState) -> Vec<String> {
@@ -111,5 +111,5 @@ pub fn drift_in_words(own: &DriftState) -> Vec<String> {
         row
     };
     lines.extend(table(&head, &groups.iter().map(row).collect::<Vec<_>>()));
-    lines
+    settled(lines)
 }

@@ -10,6 +10,7 @@ mod market;
 mod quality;
 mod reputation;
 mod satisfaction;
+mod settled;
 mod spillover;
 mod streams;
 mod writes;
@@ -28,6 +29,7 @@ pub use spillover::{HEAT, SpillCell, SpillMap, SpillRow, spillover_in_words};
 pub use streams::streams_in_words;
 pub use writes::{writes_in_words, written_by};
 
+use self::settled::{settle, settled};
 use crate::report::words::count;
 
 /// How the line begins that tells of the last evenings of a group.
@@ -43,6 +45,8 @@ fn evenings_in_words(values: impl Iterator<Item = f64> + Clone) -> Option<String
 
 /// A table, indented.
 fn table(head: &[&str], rows: &[Vec<String>]) -> Vec<String> {
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| settle(cell)).collect()).collect();
     let wide = |at: usize| rows.iter().filter_map(move |row| row.get(at)).map(|cell| cell.chars().count());
     let width = |at: usize| wide(at).chain([head[at].chars().count()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..head.len()).map(width).collect();

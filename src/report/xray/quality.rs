@@ -1,6 +1,6 @@
 //! What is delivered to a group on each plan, in words.
 
-use super::table;
+use super::{settled, table};
 use crate::session::{PlanDelivered, QualityEquation, SharedGains};
 use crate::world::identifiers::Plan;
 
@@ -40,5 +40,5 @@ pub fn quality_in_words(own: &QualityEquation) -> Vec<String> {
         own.expectation.quality - own.everyone,
         own.expectation.c_max
     ));
-    lines
+    settled(lines)
 }

@@ -1,6 +1,6 @@
 //! What moved the reputation of a group, in words.
 
-use super::{evenings_in_words, table};
+use super::{evenings_in_words, settled, table};
 use crate::session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill};
 use crate::world::identifiers::Group;
 
@@ -13,9 +13,7 @@ pub fn reputation_in_words(own: &ReputationEquation) -> Vec<String> {
     rows.extend(departures("lost companies", &own.lost));
     rows.push(row(&contribution(&own.own, least), own.own.made()));
     let heard = own.spills.iter().filter(|spill| spill.counts);
-    rows.extend(
-        heard.map(|spill| row(&format!("from {}, weight {}", spill.from, spill.weight), spill.change)),
-    );
+    rows.extend(heard.map(|spill| row(&product(spill), spill.change)));
     // Rounding of the additions is no bound.
     if own.bounds.abs() > 1e-12 {
         rows.push(row("floor and ceiling", own.bounds));
@@ -26,7 +24,13 @@ pub fn reputation_in_words(own: &ReputationEquation) -> Vec<String> {
     lines.extend(evenings_in_words(own.evenings.iter().copied()));
     let dropped: Vec<&Spill> = own.spills.iter().filter(|spill| !spill.counts).collect();
     lines.extend(dropped_in_words(&dropped, least));
-    lines
+    settled(lines)
+}
+
+/// `spill-over: +0.00476883 of S1 × weight 0.4 × 0.3`
+fn product(spill: &Spill) -> String {
+    let Spill { from, source_change, weight, factor, .. } = spill;
+    format!("spill-over: {source_change:+.8} of {from} × weight {weight} × {factor}")
 }
 
 fn row(name: &str, value: f64) -> Vec<String> {

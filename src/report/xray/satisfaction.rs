@@ -1,6 +1,6 @@
 //! What moved the satisfaction of a group, in words.
 
-use super::{evenings_in_words, table};
+use super::{evenings_in_words, settled, table};
 use crate::session::{MoodTerm, SatisfactionEquation};
 
 /// The mean before, each term, the mean after, and what came of it by the evening.
@@ -30,7 +30,7 @@ pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {
         subscribers_in_words(subscribers)
     ));
     lines.extend(evenings_in_words(own.evenings.iter().flatten().copied()));
-    lines
+    settled(lines)
 }
 
 fn subscribers_in_words(count: u32) -> String {

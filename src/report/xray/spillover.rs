@@ -1,7 +1,7 @@
 //! How changes of reputation spilled over between groups: a heat map, and the same in words.
 
 use super::reputation::{dropped_in_words, small};
-use super::table;
+use super::{settled, table};
 use crate::session::{Spill, Spillover};
 use crate::world::identifiers::Group;
 
@@ -132,5 +132,5 @@ pub fn spillover_in_words(own: &Spillover) -> Vec<String> {
         lines.extend(table(&head, &rows.iter().map(row).collect::<Vec<Vec<String>>>()));
     }
     lines.extend(notes);
-    lines
+    settled(lines)
 }

@@ -1,6 +1,6 @@
 //! The next draws of a part, in words.
 
-use super::table;
+use super::{settled, table};
 use crate::session::{Follows, KeyedDraws, NextDraws};
 
 /// Draws of a stream that stand in one row.
@@ -21,7 +21,7 @@ pub fn streams_in_words(own: &NextDraws) -> Vec<String> {
         true => streams.iter().for_each(|own| lines.extend(in_full(own))),
         false => lines.extend(side_by_side(streams)),
     }
-    lines
+    settled(lines)
 }
 
 /// A row for each stream.

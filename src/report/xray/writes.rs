@@ -1,6 +1,6 @@
 //! Who wrote a figure on a day, in words.
 
-use super::table;
+use super::{settled, table};
 use crate::notation::{cents, grouped};
 use crate::report::words::category_name;
 use crate::session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
@@ -21,7 +21,7 @@ pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
         vec![written_by(write), amount, value(write.after), notes(*target, write)]
     };
     lines.extend(table(&["by", "amount", "after", ""], &writes.iter().map(row).collect::<Vec<_>>()));
-    lines
+    settled(lines)
 }
 
 /// What wrote, in words: `departures (17)`, `spill-over from S1`, `payments`.

@@ -38,6 +38,11 @@ pub struct ChangedParameters {
     pub waiting: Vec<ChangedParameter>,
 }
 
+/// Whether a value is a table, or tables in a table, without any parameter.
+fn names_nothing(value: &toml::Value) -> bool {
+    value.as_table().is_some_and(|table| table.values().all(names_nothing))
+}
+
 impl Session {
     /// Sets a parameter, or a list or table of them, from now on, or from a later day on. The change is recorded before it
     /// acts.
@@ -84,6 +89,10 @@ impl Session {
         let value = value_of_json(value).ok_or_else(|| {
             Refusal::at(key, "parameter_not_allowed", format!("{key} cannot be null, nor hold it"))
         })?;
+        if names_nothing(&value) {
+            let message = format!("a table that names no parameter sets none; name one of {key}");
+            return Err(Refusal::at(key, "parameter_not_allowed", message));
+        }
         let change = ParameterChange { seq: self.position.seq + 1, key: key.to_owned(), value, from_day };
         let mut overrides = self.simulation.overrides.clone();
         let Taken { now, changed } = overrides.take(&self.simulation.params, change).map_err(not_allowed)?;

@@ -12,7 +12,7 @@ use crate::world::customers::Customers;
 use crate::world::customers::columns::Block;
 use crate::world::day::watch::DayWatch;
 use crate::world::enterprise::{Enterprise, Negotiation, Thread};
-use crate::world::events::{Facts, Reading, Sender};
+use crate::world::events::{Facts, Reading, Sender, Snapshot};
 use crate::world::identifiers::{ByGroup, Group};
 use crate::world::market::Market;
 use crate::world::market::arrivals::{Arrivals, lead_context};
@@ -81,6 +81,12 @@ pub(in crate::session) struct GroupEvening {
     pub(in crate::session) open_issues: u32,
     /// Product quality before the multiplier of the model.
     pub(in crate::session) product_quality: f64,
+    /// Mean budget of customers who come, with what the market has added.
+    pub(in crate::session) budget: f64,
+    /// Mean quality floor of customers who come, with what the market has added.
+    pub(in crate::session) quality_floor: f64,
+    /// What its market holds; without a limit at 0.
+    pub(in crate::session) market_cap: f64,
     /// Factor of the economy on budgets.
     pub(in crate::session) willingness_to_pay: f64,
     /// Factor of the economy on the speed of replies.
@@ -235,6 +241,7 @@ fn awaits_somebody(thread: &Thread, reappearing: bool) -> bool {
 fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
     let (market, product) = (&world.market, &world.product);
     let blocks = || world.customers.groups[group].blocks.iter();
+    let taken = Snapshot::take(group, world.day, &market.drift, params);
     let multiplier = |dimension| market.economy.multiplier(group, dimension, params);
     GroupEvening {
         info_level: market.knowledge[group].level.into(),
@@ -243,6 +250,9 @@ fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
         mood: mood_of(world, group),
         open_issues: blocks().map(Block::open_issues).sum(),
         product_quality: product.quality(group, params),
+        budget: taken.c_max,
+        quality_floor: taken.q_min,
+        market_cap: taken.market_cap,
         willingness_to_pay: multiplier(Dimension::WillingnessToPay),
         deal_velocity: multiplier(Dimension::DealVelocity),
         seat_count: multiplier(Dimension::SeatCount),

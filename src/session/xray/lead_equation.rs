@@ -85,6 +85,8 @@ pub struct LeadEquation {
     pub word_of_mouth: Vec<(Group, f64)>,
     /// Leads that came.
     pub came: u32,
+    /// Whether its market has no size: whatever it holds, there is room.
+    pub is_without_limit: bool,
     factors: LeadFactors,
 }
 
@@ -96,6 +98,7 @@ impl LeadEquation {
             is_known: seen.known[group],
             word_of_mouth: seen.word_of_mouth[group].clone(),
             came: seen.came[group],
+            is_without_limit: seen.groups[group].market_cap <= 0.0,
             factors: seen.leads[group],
         }
     }

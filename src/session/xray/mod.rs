@@ -15,6 +15,7 @@ pub(in crate::session) mod group_views;
 pub(in crate::session) mod hidden_day;
 pub(in crate::session) mod hidden_rows;
 pub(in crate::session) mod hidden_tables;
+pub(in crate::session) mod hidden_values;
 pub(in crate::session) mod last_day;
 pub(in crate::session) mod lead_equation;
 pub(in crate::session) mod lens;

@@ -78,7 +78,11 @@ impl Session {
     }
 
     /// The move after a day: the one that was made, or the one that is decided under the parameters in force.
-    fn rival_move_after(&self, day: u32, banks: &ByGroup<f64>) -> Option<NextRivalMove> {
+    pub(in crate::session) fn rival_move_after(
+        &self,
+        day: u32,
+        banks: &ByGroup<f64>,
+    ) -> Option<NextRivalMove> {
         let (world, params) = (&self.simulation.world, &self.simulation.params);
         let events = &world.market.competitors;
         if let Some(made) = events.iter().copied().find(|event| event.day > day) {

@@ -122,8 +122,12 @@ pub struct Spill {
     pub from: Group,
     /// The one that hears of it.
     pub to: Group,
+    /// Change of the group that it is made of.
+    pub source_change: f64,
     /// Weight of the one for the other.
     pub weight: f64,
+    /// What all spill-over is multiplied by.
+    pub factor: f64,
     /// Change of the reputation, if it counts.
     pub change: f64,
     /// Whether there is a weight, and the change is large enough.
@@ -134,9 +138,11 @@ pub struct Spill {
 pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
     let law = &params.reputation;
     let weight = params.reputation_weight(from, to);
-    let change = change * weight * law.cross_group_spillover_factor;
+    let (source_change, factor) = (change, law.cross_group_spillover_factor);
+    let change = change * weight * factor;
     let change = if params.has_fault(Fault::SpillOverReversed) { -change } else { change };
-    Spill { from, to, weight, change, counts: weight > 0.0 && change.abs() > law.cross_delta_min_abs }
+    let counts = weight > 0.0 && change.abs() > law.cross_delta_min_abs;
+    Spill { from, to, source_change, weight, factor, change, counts }
 }
 
 /// Scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).

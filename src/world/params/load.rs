@@ -126,7 +126,8 @@ fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
 
 fn read(tables: Table) -> Result<Params, (String, String)> {
     serde_path_to_error::deserialize(Value::Table(tables)).map_err(|error| {
-        let key = error.path().to_string().replace(['[', ']'], "");
+        // `group[0].c_max_mean`: elements are parts of the key, as they are everywhere else.
+        let key = error.path().to_string().replace('[', ".").replace(']', "");
         (key, in_plain_words(error.inner().message()))
     })
 }

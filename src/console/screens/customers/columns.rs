@@ -1,5 +1,6 @@
 //! The table of the groups: its columns, and the rows behind every figure in it.
 
+use super::hidden::TrueValue;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use crate::console::company::Company;
 use crate::console::screens::Figure;
@@ -15,6 +16,7 @@ use crate::world::identifiers::Group;
 enum What {
     Group,
     Segment,
+    True(TrueValue),
     Level,
     Customers,
     Seats,
@@ -35,9 +37,13 @@ enum What {
 }
 
 /// Columns with their heads and what explains them, in the order of what is looked at first.
-static COLUMNS: [(What, &str, &str); 19] = [
+static COLUMNS: [(What, &str, &str); 23] = [
     (What::Group, "group", "customer-group"),
     (What::Segment, "kind", "customer-group"),
+    (What::True(TrueValue::Satisfaction), "true sat.", "satisfaction"),
+    (What::True(TrueValue::Reputation), "true rep.", "reputation"),
+    (What::True(TrueValue::Leads), "true λ/day", "lead"),
+    (What::True(TrueValue::Market), "true market", "market-cap"),
     (What::Customers, "subs", "subscribers"),
     (What::Seats, "billed seats", "billed-seats"),
     (What::Leads, "leads", "lead"),
@@ -57,14 +63,20 @@ static COLUMNS: [(What, &str, &str); 19] = [
     (What::Name, "name", "customer-group"),
 ];
 
+/// Columns that are shown: those of true values only where they are.
+fn shown(company: &Company) -> impl Iterator<Item = &'static (What, &'static str, &'static str)> {
+    let has_hidden = company.hidden.is_some();
+    COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, What::True(_)))
+}
+
 /// Columns of the table.
-pub fn columns() -> Vec<Column> {
+pub fn columns(company: &Company) -> Vec<Column> {
     let column = |(what, head, _): &(What, &str, &str)| match what {
         What::Group | What::Segment | What::Trend => Column::words(*head),
         What::Name => Column::words(*head).at_most(28),
         _ => Column::numbers(*head),
     };
-    COLUMNS.iter().map(column).collect()
+    shown(company).map(column).collect()
 }
 
 /// Share of the market, least and most by its study: customers of the individual and companies of the others.
@@ -77,7 +89,7 @@ fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(
 
 /// The row of a group.
 pub fn row_of(group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Vec<Cell> {
-    COLUMNS.iter().map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
+    shown(company).map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
 }
 
 fn count(value: f64) -> Cell {
@@ -101,6 +113,7 @@ fn cell_of(what: What, group: Group, facts: &CustomerFacts, company: &Company, m
     let large = group.is_enterprise();
     match what {
         What::Group => Cell::words(group.id()).role(Role::Strong),
+        What::True(value) => value.cell(group, company),
         What::Segment => Cell::words(if large { "comp." } else { "indiv." }).role(Role::Dim),
         What::Level => {
             let level = level_of(company, group);
@@ -159,7 +172,7 @@ fn new_cell(facts: &CustomerFacts, week: u32) -> Cell {
 
 /// The figure of a group in a column, and the rows behind it.
 pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> {
-    let (what, head, term) = *COLUMNS.get(column)?;
+    let (what, head, term) = *shown(company).nth(column)?;
     let week = company.seen.week;
     let name = match what {
         What::Group | What::Segment | What::Name => "customers",
@@ -168,6 +181,7 @@ pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> 
         What::New | What::Trend => "new customers",
         What::Left => "cancellations",
         What::Leads => "leads",
+        What::True(value) => value.title(),
         _ => head,
     };
     let title = match what {
@@ -232,6 +246,7 @@ pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
 fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
     let month = day.saturating_sub(27);
     Some(match what {
+        What::True(_) => return None,
         What::Group | What::Segment | What::Name => customers(group, "TRUE"),
         What::Customers | What::Seats | What::Monthly | What::PerSeat => {
             customers(group, "s.status = 'subscribed'")
@@ -268,6 +283,6 @@ fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
 
 /// The figure of a group in the column of a name.
 pub fn figure_named(head: &str, group: Group, company: &Company) -> Option<Figure> {
-    let column = COLUMNS.iter().position(|(_, own, _)| *own == head)?;
+    let column = shown(company).position(|(_, own, _)| *own == head)?;
     figure(group, column, company)
 }

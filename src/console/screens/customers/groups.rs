@@ -54,7 +54,14 @@ impl Pane<Customers> for CustomerGroupsPane {
             ),
             note => note,
         };
-        let keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
+        let note = match &look.company.hidden {
+            Some(hidden) => format!("x-ray: true values of day {} · {note}", hidden.day),
+            None => note,
+        };
+        let mut keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
+        if look.company.may_look_inside {
+            keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
+        }
         Border { title: "Groups".to_owned(), note, keys, ..Border::default() }
     }
 

@@ -7,6 +7,7 @@ mod facts;
 mod fit;
 mod groups;
 mod heat;
+mod hidden;
 mod model;
 mod opened;
 mod quality;
@@ -125,7 +126,7 @@ impl Customers {
         if self.table.rows().is_empty() {
             self.table = Table::new(Vec::new()).by_cell();
         }
-        self.table.set(columns(), rows);
+        self.table.set(columns(company), rows);
         self.costs.set(costs::columns(), company.lead_costs.iter().map(costs::row_of).collect());
         let last = groups.len().saturating_sub(1);
         self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());

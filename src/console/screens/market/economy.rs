@@ -3,7 +3,7 @@
 
 use ratatui::layout::Rect;
 
-use super::Market;
+use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
 use crate::console::action::{Action, Scope};
@@ -92,7 +92,11 @@ impl Pane<Market> for EconomyPane {
     }
 
     fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        let (view, inside) = (market.economy(), seat.area);
+        let inside = match &look.company.hidden {
+            Some(hidden) => hidden::draw_above(canvas, seat.area, &hidden::of_economy(hidden)),
+            None => seat.area,
+        };
+        let view = market.economy();
         let Some(here) = view.selected() else {
             return draw_nothing(canvas, inside, &view, &look.company.terms);
         };

@@ -78,7 +78,10 @@ impl Pane<Market> for KnownGroupsPane {
         };
         let open = look.keys.label(Action::Open).unwrap_or_default();
         let keys = look.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
-        let keys = format!("{open} customers of the group · {keys}");
+        let mut keys = format!("{open} customers of the group · {keys}");
+        if look.company.may_look_inside {
+            keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
+        }
         Border { title: "Groups".to_owned(), note, keys, ..Border::default() }
     }
 

@@ -3,6 +3,7 @@
 mod attempts;
 mod economy;
 mod groups;
+mod hidden;
 pub mod model;
 mod news;
 pub mod report;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use super::Market;
+use super::{Market, hidden};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::Canvas;
 use crate::console::company::Company;
@@ -86,12 +86,16 @@ impl Pane<Market> for RivalNewsPane {
         Border { title: "Rivals and economy in the news".to_owned(), note, keys, ..Border::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+        let area = match &look.company.hidden {
+            Some(hidden) => hidden::draw_above(canvas, seat.area, &hidden::of_rivals(hidden)),
+            None => seat.area,
+        };
         if market.news.is_empty() {
-            canvas.text(seat.area, "no news yet", Role::Dim);
+            canvas.text(area, "no news yet", Role::Dim);
             return;
         }
-        market.headlines.draw(canvas, seat.area, seat.focused, seat.number);
+        market.headlines.draw(canvas, area, seat.focused, seat.number);
     }
 }
 

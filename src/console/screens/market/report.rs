@@ -35,6 +35,11 @@ impl ReportLine {
     fn of(words: String, figures: String) -> ReportLine {
         ReportLine { words, figures, role: Role::Text }
     }
+
+    /// What an estimate is of, from within.
+    fn of_truth(figures: String) -> ReportLine {
+        ReportLine { words: "  x-ray: truly".to_owned(), figures, role: Role::Changed }
+    }
 }
 
 /// An estimate: where the insights hold it, the words for it, its unit, and how the ends of its range are written.
@@ -44,15 +49,31 @@ type Estimate = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f
 const QUALITY_FLOOR: &str = "quality floor";
 
 const ESTIMATES: [Estimate; 8] = [
-    (|all| Some(all.willingness_to_pay), "budget", "$/month", figure),
+    (|all| Some(all.willingness_to_pay), BUDGET, "$/month", figure),
     (|all| Some(all.usage_volume), "usage demand", "units/day", figure),
     (|all| Some(all.quality_floor_q_min), QUALITY_FLOOR, "", exact),
-    (|all| Some(all.market_cap as f64), "market", "customers", figure),
+    (|all| Some(all.market_cap as f64), MARKET, "customers", figure),
     (|all| Some(all.annual_market_cap_growth_rate), "growth of the market", "a year", share),
     (|all| Some(all.contract_lockin_aversion), "lock-in aversion", "", exact),
     (|all| all.decision_rounds.map(|rounds| rounds as f64), "rounds of a deal", "", figure),
     (|all| all.avg_response_days, "days to an answer", "", figure),
 ];
+
+/// The budget has a true value on other screens, too, and so has the market.
+const BUDGET: &str = "budget";
+const MARKET: &str = "market";
+
+/// What an estimate is of on the day that is shown, where true values are.
+fn truth_of(words: &str, group: Group, company: &Company) -> Option<String> {
+    let own = &company.hidden.as_ref()?.groups[group];
+    Some(match words {
+        BUDGET => figure(own.budget),
+        QUALITY_FLOOR => exact(own.quality_floor),
+        MARKET if own.market_cap <= 0.0 => "without a limit".to_owned(),
+        MARKET => grouped(own.market_cap, 0),
+        _ => return None,
+    })
+}
 
 fn figure(value: f64) -> String {
     match value.abs() {
@@ -92,6 +113,7 @@ pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
             _ => format!("{} to {}", write(from), write(to)),
         };
         lines.push(ReportLine::of(format!("{words:<21}{unit}").trim_end().to_owned(), range));
+        lines.extend(truth_of(words, group, company).map(ReportLine::of_truth));
     }
     if let Some(range) = insights.estimates.seat_range {
         let [least, most] = range.map(|seats| seats as f64);

@@ -68,7 +68,8 @@ fn contribution(own: &OwnChange) -> Value {
 
 fn spill(own: &Spill) -> Value {
     json!({
-        "from": own.from.id(), "to": own.to.id(), "weight": own.weight, "change": own.change,
+        "from": own.from.id(), "to": own.to.id(), "source_change": own.source_change, "weight": own.weight,
+        "factor": own.factor, "change": own.change,
         "counts": own.counts,
     })
 }

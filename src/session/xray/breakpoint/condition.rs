@@ -117,8 +117,10 @@ impl Condition {
         let before = day.saturating_sub(1);
         let at = |day: u32| self.quantity().and_then(|quantity| quantity.value(days, day));
         let (value, value_before) = (at(day), at(before));
+        let is_over_days = self.quantity().is_some_and(|quantity| quantity.days() > 1);
         Judged {
             day,
+            begins: is_over_days && value.is_some() && value_before.is_none(),
             value,
             before: value_before,
             is_true: self.holds(days, day),
@@ -153,7 +155,12 @@ impl fmt::Display for Condition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Condition::Compared(quantity, relation, threshold) => {
-                write!(formatter, "{quantity} {} {threshold}{}", relation.sign(), quantity.span())
+                let (sign, span) = (relation.sign(), quantity.span());
+                // Zero has no sign, and nobody counts three hundred digits.
+                match threshold + 0.0 {
+                    large if large.abs() >= 1e15 => write!(formatter, "{quantity} {sign} {large:e}{span}"),
+                    plain => write!(formatter, "{quantity} {sign} {plain}{span}"),
+                }
             }
             Condition::Moved(quantity, direction) => {
                 write!(formatter, "{quantity} {}{}", direction.word(), quantity.span())
@@ -176,11 +183,14 @@ pub struct Judged {
     pub is_true: bool,
     /// Whether it was true on the day before.
     pub was_true: bool,
+    /// Whether it is a figure over several days that has its first value, or the first one after days without any.
+    pub begins: bool,
 }
 
 impl Judged {
-    /// Whether it became true on the day.
+    /// Whether it became true on the day. A figure over several days that had no value on the day before has not: its days
+    /// were not whole before, so with what it begins is no change.
     pub fn becomes_true(&self) -> bool {
-        self.is_true && !self.was_true
+        self.is_true && !self.was_true && !self.begins
     }
 }

@@ -145,6 +145,11 @@ impl Quantity {
         self.group
     }
 
+    /// The number of days that it adds up or divides; 1 where it is read on a day.
+    pub fn days(&self) -> u32 {
+        self.days
+    }
+
     /// Its days, where they are named: ` over 7`.
     pub fn span(&self) -> String {
         match (self.measure.kind(), self.days) {

@@ -40,6 +40,9 @@ pub struct TrueBefore {
     pub hit: Hit,
     /// The last of the days on which it was true.
     pub until: u32,
+    /// The day on which its figure, over several days, had its first value and it was true at once; none: it was true before the
+    /// days that ran.
+    pub began: Option<u32>,
 }
 
 impl Session {
@@ -162,7 +165,8 @@ fn true_before(days: RangeInclusive<u32>, set: &[Breakpoint], series: &Series) -
             let until = judged.iter().rfind(|judged| judged.is_true)?.day;
             let hit = Hit { breakpoint: *own, judged: *judged.last()? };
             let becomes_true = judged.iter().any(Judged::becomes_true);
-            (!becomes_true).then_some(TrueBefore { hit, until })
+            let began = judged.iter().find(|judged| judged.begins && judged.is_true).map(|judged| judged.day);
+            (!becomes_true).then_some(TrueBefore { hit, until, began })
         };
         set.iter().filter_map(of).collect()
     })

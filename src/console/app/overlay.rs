@@ -1,0 +1,100 @@
+//! Hidden true values on the screens of customers and of the market: shown and hidden by a key, each showing of a day a look
+//! that is recorded.
+
+use super::{App, Order, Run, Stage};
+use crate::console::company::Company;
+use crate::console::screens::ScreenId;
+use crate::console::worker::Job;
+use crate::session::{HiddenValues, REFUSED_LOOK, Refusal};
+use std::sync::Arc;
+
+/// Whether they are shown, and which were asked for.
+#[derive(Debug, Default)]
+pub struct Overlay {
+    is_on: bool,
+    /// The day that is being looked at.
+    asked: Option<u32>,
+    /// What was seen last.
+    seen: Option<Arc<HiddenValues>>,
+}
+
+impl Run {
+    /// The company with what was seen of its day, if it is to be shown.
+    fn with_hidden_values(&self, company: Arc<Company>) -> Arc<Company> {
+        let seen =
+            self.overlay.seen.as_ref().filter(|seen| self.overlay.is_on && seen.day == company.seen.day);
+        let hidden = seen.filter(|_| company.may_look_inside).cloned();
+        match hidden == company.hidden {
+            true => company,
+            false => Arc::new(Company { hidden, ..Company::clone(&company) }),
+        }
+    }
+
+    /// Takes another company in place of what it was.
+    pub(super) fn take_company(&mut self, company: Arc<Company>) {
+        self.company = self.with_hidden_values(company);
+    }
+}
+
+impl App {
+    /// Shows hidden true values, or hides them again.
+    pub(super) fn toggle_hidden_values(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        if !run.company.may_look_inside {
+            return self.complain(REFUSED_LOOK);
+        }
+        if !matches!(run.here, ScreenId::Customers | ScreenId::Market) {
+            return self.complain("true values stand on the screens Customers and Market");
+        }
+        if run.company.seen.day == 0 {
+            return self.complain("no day has run yet");
+        }
+        run.overlay.is_on = !run.overlay.is_on;
+        if run.overlay.is_on {
+            return self.ask_hidden_values();
+        }
+        self.show_hidden_values();
+        self.say("true values are hidden again");
+    }
+
+    /// Looks at the day that is shown, where true values are to be seen and are not known.
+    pub(super) fn ask_hidden_values(&mut self) {
+        let is_busy = self.busy.is_some();
+        let Stage::Run(run) = &mut self.stage else { return };
+        let day = run.company.seen.day;
+        let is_here =
+            matches!(run.here, ScreenId::Customers | ScreenId::Market) && run.company.may_look_inside;
+        let is_known = run.overlay.seen.as_ref().is_some_and(|seen| seen.day == day);
+        if !run.overlay.is_on || !is_here || is_busy || run.overlay.asked == Some(day) || day == 0 {
+            return;
+        }
+        if is_known {
+            return self.show_hidden_values();
+        }
+        run.overlay.asked = Some(day);
+        self.orders.push(Order::Job(Job::ReadHiddenValues(day)));
+    }
+
+    /// Takes what was seen.
+    pub(super) fn take_hidden_values(&mut self, found: Result<Arc<HiddenValues>, Refusal>) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        run.overlay.asked = None;
+        match found {
+            Ok(seen) => run.overlay.seen = Some(seen),
+            Err(refusal) => {
+                run.overlay.is_on = false;
+                self.complain(refusal.message);
+            }
+        }
+        self.show_hidden_values();
+    }
+
+    fn show_hidden_values(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let company = run.with_hidden_values(run.company.clone());
+        if !Arc::ptr_eq(&company, &run.company) {
+            run.company = company;
+            self.renew();
+        }
+    }
+}

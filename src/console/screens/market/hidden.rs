@@ -1,0 +1,60 @@
+//! What rivals, drift and the economy really are, in lines above what is told of them, where that is shown.
+
+use ratatui::layout::Rect;
+
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::notation::grouped;
+use crate::session::{HiddenValues, NextRivalMove};
+
+/// Rivals: what they could copy, and their next move.
+pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
+    let own: Vec<String> =
+        hidden.own_banks.iter().map(|(group, bank)| format!("{group} {}", grouped(*bank, 4))).collect();
+    let own = if own.is_empty() { String::new() } else { format!(", of groups {}", own.join(", ")) };
+    vec![
+        format!("x-ray, day {}: not copied {}{own}", hidden.day, grouped(hidden.shared_bank, 4)),
+        next_move(hidden.next_move.as_ref()),
+    ]
+}
+
+fn next_move(next: Option<&NextRivalMove>) -> String {
+    let Some(next) = next else { return "x-ray: rivals make no move before the end".to_owned() };
+    match &next.made {
+        Some(made) => {
+            format!("x-ray: the next move, on day {}, added {} to expectations", next.day, grouped(made.boost, 4))
+        }
+        None => format!(
+            "x-ray: next move on day {}: {}, or {} of what is not copied if that is more",
+            next.day,
+            grouped(next.sampled, 4),
+            crate::notation::percent(next.u, 0)
+        ),
+    }
+}
+
+/// The economy and drift.
+pub fn of_economy(hidden: &HiddenValues) -> Vec<String> {
+    let drift = match hidden.next_drift {
+        Some(day) => format!("drift next on day {day}"),
+        None => "no drift before the end".to_owned(),
+    };
+    vec![format!(
+        "x-ray, day {}: PMI {}; everyone expects {} more than on day 0; {drift}",
+        hidden.day,
+        grouped(hidden.pmi, 2),
+        grouped(hidden.everyone, 4)
+    )]
+}
+
+/// Draws such lines at the top of a place, as far as half of it; what is left below them.
+pub fn draw_above(canvas: &mut Canvas<'_>, area: Rect, told: &[String]) -> Rect {
+    let lines: Vec<String> =
+        told.iter().flat_map(|line| wrapped(line, usize::from(area.width.max(1)))).collect();
+    let height = (lines.len() as u16).min(area.height / 2);
+    for (row, line) in rows_of(Rect { height, ..area }).zip(&lines) {
+        canvas.text(row, line, Role::Changed);
+    }
+    Rect { y: area.y + height, height: area.height - height, ..area }
+}

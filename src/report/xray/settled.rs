@@ -1,0 +1,72 @@
+//! How numbers of a line are settled once it is written: no zero has a sign, and none has more digits than it tells.
+
+use crate::notation::grouped;
+
+/// Digits before the point from which a number is written in powers of ten.
+const MOST_DIGITS: usize = 16;
+
+/// Lines whose numbers are settled.
+pub fn settled(lines: Vec<String>) -> Vec<String> {
+    lines.into_iter().map(|line| settle(&line)).collect()
+}
+
+/// A text in which no zero has a minus before it, and numbers from 1e15 on are written in powers of ten.
+pub fn settle(text: &str) -> String {
+    let mut settled = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(|letter: char| letter.is_ascii_digit()) {
+        let (before, number) = rest.split_at(at);
+        let end = number
+            .find(|letter: char| !(letter.is_ascii_digit() || letter == '.' || letter == ','))
+            .unwrap_or(number.len());
+        let (number, behind) = number.split_at(end);
+        let number_alone = number.trim_end_matches(['.', ',']);
+        let is_word = before.chars().next_back().is_some_and(char::is_alphanumeric);
+        let is_zero = number_alone.chars().all(|letter| matches!(letter, '0' | '.'));
+        let sign_stands_alone = {
+            let mut letters = before.chars().rev();
+            letters.next() == Some('-') && letters.next().is_none_or(|letter| !letter.is_alphanumeric())
+        };
+        let goes_on = behind.starts_with(['e', 'E']);
+        let drops_sign = is_zero && sign_stands_alone && !goes_on;
+        settled.push_str(if drops_sign { &before[..before.len() - 1] } else { before });
+        match shortened(number_alone).filter(|_| !is_word && !goes_on) {
+            Some(short) => {
+                settled.push_str(&short);
+                settled.push_str(&number[number_alone.len()..]);
+            }
+            None => settled.push_str(number),
+        }
+        rest = behind;
+    }
+    settled + rest
+}
+
+/// A number with too many digits before its point, in powers of ten.
+fn shortened(number: &str) -> Option<String> {
+    let plain = number.replace(',', "");
+    let digits = plain.split('.').next().map_or(0, str::len);
+    let value: f64 = plain.parse().ok().filter(|_| digits >= MOST_DIGITS)?;
+    Some(grouped(value, 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_zero_has_a_minus_and_no_number_three_hundred_digits() {
+        for (text, told) in [
+            ("from S3 -0.0000, then", "from S3 0.0000, then"),
+            ("-0 of S1→S2-0 -0.10 (-0.00)", "0 of S1→S2-0 -0.10 (0.00)"),
+            ("day 0-0, +0.0000 of 20", "day 0-0, +0.0000 of 20"),
+            ("budget 100,000,000,000,000,000.00 dollars", "budget 1e17 dollars"),
+            ("below 999999999999999, not below", "below 999999999999999, not below"),
+            ("-0e5 of -1,234.5", "-0e5 of -1,234.5"),
+        ] {
+            assert_eq!(settle(text), told);
+        }
+        let long = settle(&format!("budget {:.2}, quality", 1e308));
+        assert_eq!(long, "budget 1e308, quality");
+    }
+}

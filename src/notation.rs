@@ -206,6 +206,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn no_zero_has_a_sign_and_no_number_three_hundred_digits() {
+        assert_eq!([grouped(-0.0, 0), grouped(-0.004, 2), grouped(-0.3, 0)], ["0", "0.00", "0"]);
+        assert_eq!([percent(-0.0001, 1), percent(-0.12, 0), percent(12.0, 0)], ["0.0%", "-12%", "1200%"]);
+        assert_eq!(
+            [grouped(1e308, 0), grouped(-1.5e15, 2), grouped(999e12, 0)],
+            ["1e308", "-1.5e15", "999,000,000,000,000"]
+        );
+        assert_eq!([compact(1e308), short_dollars(1e20), dollars(1e308)], ["1e308", "$1e20", "$1e308"]);
+    }
+
+    #[test]
     fn zero_has_no_sign() {
         assert_eq!(
             (compact(-0.0), compact(0.0), compact(-12.0)),

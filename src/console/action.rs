@@ -332,6 +332,7 @@ actions! {
     }
     Memo {
         EditMemo "edit-memo" "edit notes" "Edit the notes of the run."
+        ShowTree "tree" "tree" "Go to the tree of branches in which the run stands."
         SaveMemo "save-memo" "save notes" "Save the notes with the run."
     }
     Social {
@@ -389,7 +390,7 @@ actions! {
         ReportOfRun "report-of-run" "report" "Write the report into the run's folder, as Markdown and HTML."
         CardOfRun "card-of-run" "card" "Write a card to hand on into the run's folder, as text and as a drawing."
         ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
-        WhatIf "what-if" "what if" "Go back to the last decision in a replay; you can branch from any week of it."
+        WhatIf "what-if" "what if" "Simulate the run again from a week on under other decisions; it begins twelve weeks before the end."
         StayInRun "stay" "look around" "Close this page and look at the run."
     }
     Lesson {

@@ -2,6 +2,7 @@
 //!
 //! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
 
+mod branches;
 mod curve;
 mod guide;
 mod input;

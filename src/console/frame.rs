@@ -328,7 +328,7 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
         // An arrow says by its name what it does; both together choose.
-        let mut title = Some(action.entry().title).filter(|title| *title != key).unwrap_or_default();
+        let mut title = Some(title_of(app, action)).filter(|title| *title != key).unwrap_or_default();
         if action == Action::Left && actions.next_if_eq(&Action::Right).is_some() {
             key = format!("{key} {}", app.keys.label(Action::Right).unwrap_or_default());
             title = "choose";
@@ -349,6 +349,14 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
+/// What an action is called where it can be done: at the end of a run the key of the next week shows the final page.
+fn title_of(app: &App, action: Action) -> &'static str {
+    match app.run() {
+        Some(run) if action == Action::NextWeek && !run.company.is_running() => "final page",
+        _ => action.entry().title,
+    }
+}
+
 /// Keys in the last line: those of the place first, then those that always help.
 fn actions_shown(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
@@ -364,7 +372,13 @@ fn actions_shown(app: &App) -> Vec<Action> {
         ];
         let of_players = [Action::NextWeek, Action::Changes];
         let replay = app.run().is_some_and(|run| run.viewer.is_some());
-        let always = always.into_iter().filter(|action| !replay || !of_players.contains(action));
+        let over = app.run().is_some_and(|run| !run.company.is_running());
+        let left_out = |action: &Action| match action {
+            Action::Changes if over => true,
+            action => replay && of_players.contains(action),
+        };
+        let of_end = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
+        let always = always.into_iter().filter(|action| !left_out(action)).chain(of_end);
         if !typing {
             let own = actions.clone();
             actions.extend(always.filter(|action| !own.contains(action)));

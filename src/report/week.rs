@@ -1,6 +1,8 @@
 //! The report of a week: how cash changed and what that consists of, which figures changed most unusually, what was set before
 //! it, what is new, and what became of the forecasts for it.
 
+use std::ops::Range;
+
 use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
 use super::words::{category_name, money, number, whole};
@@ -152,7 +154,7 @@ impl WeekReport {
             week,
             parts: parts(&week.booked),
             moves: moves(sources, &week),
-            decided: decided(sources, first_day - 1),
+            decided: decided(sources, first_day - 1..week.day),
             due: due(sources, week.day),
             customer_posts,
             comments,
@@ -195,9 +197,9 @@ fn parts(booked: &Booked) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// What was decided on a day, in words.
-fn decided(sources: &Sources<'_>, day: u32) -> Vec<String> {
-    let found = sources.decisions.iter().filter(|decided| decided.day == day);
+/// What was decided on some days, in words: before a week, and between the single days that it was run in.
+fn decided(sources: &Sources<'_>, days: Range<u32>) -> Vec<String> {
+    let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
         .flat_map(|decided| {
             decided.changes.iter().map(change_in_words).chain(decided.purchases.iter().cloned())
@@ -254,6 +256,21 @@ fn due(sources: &Sources<'_>, day: u32) -> Vec<ScoredForecast> {
 mod tests {
     use super::*;
     use crate::report::test_kit;
+
+    #[test]
+    fn calls_between_the_single_days_of_the_last_short_week_are_told() {
+        use crate::session::{Mode, NewRun, Storage, Via};
+        let new = NewRun { days: Some(10), mode: Mode::Debug, storage: Storage::Memory, ..NewRun::default() };
+        let mut session = Session::create(new, &crate::session::Configuration::shipped()).expect("a run");
+        session.step(8, &mut |_| {}).expect("days");
+        let prices = serde_json::json!({ "A": 12 });
+        session.call("set_prices", &prices, Via::Script).expect("a price");
+        session.step(2, &mut |_| {}).expect("days");
+        assert!(session.ended().is_some());
+        let report = WeekReport::of_session(&session).expect("a week");
+        assert_eq!((report.week.day, report.week.days_run), (10, 3));
+        assert!(report.decided.iter().any(|text| text.contains("12")), "{:?}", report.decided);
+    }
 
     #[test]
     fn the_parts_add_up_to_the_change_of_cash_and_agree_with_the_ledger() {

@@ -52,6 +52,20 @@ fn the_tree_in_windows_of_four_sizes() {
 }
 
 #[test]
+fn a_key_in_the_title_leads_to_the_tree_however_low_the_window_is() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let ids = family(runs.path());
+    for size in SIZES {
+        let mut console = console_in(runs.path(), &ids[1], size);
+        console.press("0");
+        console.shows("t tree of 3 runs");
+        console.press("t");
+        let screen = console.screen();
+        assert!(ids.iter().all(|id| screen.contains(id)), "{size:?}:\n{screen}");
+    }
+}
+
+#[test]
 fn enter_opens_a_branch_and_asks_before_text_is_left() {
     let runs = tempfile::tempdir().expect("a folder");
     let ids = family(runs.path());
@@ -95,5 +109,26 @@ fn a_run_without_branches_has_no_tree() {
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.press("0");
     let screen = console.screen();
-    assert!(!screen.contains("Branches") && !screen.contains("in its tree"), "{screen}");
+    assert!(!screen.contains("Branches") && !screen.contains("t tree"), "{screen}");
+}
+
+#[test]
+fn a_copy_of_a_folder_stands_in_the_tree_once() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let ids = family(runs.path());
+    let copy = runs.path().join("copied");
+    std::fs::create_dir(&copy).expect("a folder");
+    for entry in std::fs::read_dir(runs.path().join(&ids[1])).expect("files").flatten() {
+        if entry.path().is_file() {
+            std::fs::copy(entry.path(), copy.join(entry.file_name())).expect("a copy");
+        }
+    }
+    let mut console = console_in(runs.path(), &ids[0], (120, 40));
+    console.press("0 t");
+    let screen = console.screen();
+    assert!(!screen.contains("copied"), "{screen}");
+    let listed = novamind::session::list_runs(runs.path()).expect("a list");
+    let told: Vec<_> =
+        listed.iter().filter_map(|run| Some((run.id.as_str(), run.copy_of.as_deref()?))).collect();
+    assert_eq!(told, [("copied", ids[1].as_str())]);
 }

@@ -11,6 +11,8 @@ mod kin;
 mod lessons;
 mod looks;
 mod monkey;
+mod over;
+mod overlay;
 mod pictures;
 mod record;
 mod replay;

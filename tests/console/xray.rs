@@ -10,7 +10,7 @@ use novamind::world::identifiers::Group;
 use super::harness::Console;
 use super::looks::{SIZES, picture};
 use super::replay::replayed;
-use crate::support::company::{begin_run, open_shop, weeks};
+use crate::support::company::{begin_run, numbers, open_shop, weeks};
 use crate::support::record::{folder_of, looks, recorded};
 
 fn run(runs: &Path, mode: Mode, count: usize) -> Session {
@@ -74,6 +74,32 @@ fn the_screen_says_what_plain_mode_says_and_each_look_is_a_line() {
     for part in ["leads of S2 on day 19".to_owned(), format!("λ {:.2}, came {}", own.expected(), own.came)] {
         assert!(screen.contains(&part), "{part} is missing in\n{screen}");
     }
+}
+
+#[test]
+fn a_customer_who_left_is_shown_as_plain_mode_shows_it_with_its_day_in_the_title() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Debug, 8);
+    let sql =
+        "SELECT customer_id, end_day FROM subscriptions WHERE status = 'cancelled' ORDER BY 2, 1 LIMIT 1";
+    let left = numbers(&mut session, sql);
+    let [customer, day] = left[0][..] else { panic!("somebody left") };
+    drop(session);
+    let mut console = Console::in_latest_run(runs.path(), (200, 60));
+    // A day that was walked to elsewhere is not that of the customer.
+    console.press("g x e 's2' _ '20' enter");
+    console.shows("day 20 of 56");
+    console.press("esc end up up");
+    console.press(&format!("e '{customer}' enter"));
+    console.shows(&format!("Customer {customer}"));
+    console.shows(&format!("day {day} of 56"));
+    console.shows(&format!("left on day {day}"));
+    console.press("left");
+    console.shows(&format!("day {} of 56", day - 1.0));
+    console.press("g d '40' enter");
+    console.shows("day 40 of 56");
+    let screen = console.screen();
+    assert!(!screen.contains("left on day"), "{screen}");
 }
 
 #[test]

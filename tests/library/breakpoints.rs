@@ -554,3 +554,19 @@ fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
     assert_eq!(told, [(1, 19)]);
     assert_eq!(session.observe().cash_change_days, 5);
 }
+
+/// The first subscribers come in the third week: 30 days later churn has its first value, that of the first day's alone.
+#[test]
+fn a_figure_over_days_is_watched_from_its_second_value_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug, 70);
+    session.set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
+    let run = session.run_until_breakpoint(69, &mut |_| {}).expect("days");
+    assert_eq!(run.hits, [], "it begins true, which is no change");
+    let told: Vec<_> = run.true_before.iter().map(|own| own.began).collect();
+    let began = told[0].expect("it began on one of the days");
+    assert!(began > 30, "{began}");
+    assert_eq!(session.find_days(condition("churn(S1) >= 0")).expect("days"), []);
+    // What is read on a day is watched from its first day on.
+    assert_eq!(session.find_days(condition("subscribers(S1) >= 0")).expect("days").len(), 1);
+}

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use novamind::lab::check_plays;
 use novamind::session::{
-    Access, Configuration, Ended, Lesson, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via, verify,
+    Access, Configuration, DecisionEdit, Ended, Lesson, LessonEntry, Mode, NewRun, OfRecord, Refusal, Session, Storage,
+    Via, WhatIf, verify,
 };
 use serde_json::json;
 
@@ -172,6 +173,36 @@ fn a_lesson_asks_judges_and_ends() {
     assert!(session.lesson().expect("a lesson").has_reached_all());
     assert_eq!(session.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(true));
     assert_eq!(code(week(&mut session)), "lesson_over");
+}
+
+#[test]
+fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_locks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path());
+    let place = session.folder().expect("a folder").to_owned();
+    let what_if = || WhatIf::read(&place).expect("it is read");
+    let on = &|_, _| std::ops::ControlFlow::Continue(());
+    assert_eq!(code(what_if().decisions(1)), "guess_first");
+    assert_eq!(code(what_if().compare(1, None, &[], on)), "guess_first");
+    assert_eq!(code(session.branch(1, Mode::Sandbox)), "guess_first");
+    session.guess_in_lesson(950_000.0).expect("a guess");
+    week(&mut session).expect("a week");
+    let decided = |text: &str| vec![vec![text.parse::<DecisionEdit>().expect(text)]];
+    for text in [
+        "set_model_tiers {\"A\": 2}",
+        "set_model_tiers {\"A\": 3}",
+        "keep set_usage_quotas",
+        "capacity follows usage",
+    ] {
+        let refused = what_if().compare(2, None, &decided(text), on);
+        assert_eq!(code(refused), "not_in_this_lesson", "{text}");
+        let mut go_on = |_| std::ops::ControlFlow::Continue(());
+        let adopted = session.branch_with_decisions(2, &decided(text)[0], Mode::Sandbox, &mut go_on);
+        assert_eq!(code(adopted.map(drop)), "not_in_this_lesson", "{text}");
+    }
+    let found = what_if().compare(2, None, &decided("set_prices {\"A\": 10}"), on);
+    assert!(found.expect("branches").is_some());
+    drop(session.branch(2, Mode::Sandbox).expect("a branch"));
 }
 
 #[test]

@@ -446,3 +446,20 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     drop(again);
     verify(&folder).expect("the record holds");
 }
+
+#[test]
+fn a_table_that_names_nothing_is_refused_and_elements_of_lists_are_called_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = run_in(folder.path(), Mode::Debug);
+    for (key, value, said) in [
+        ("group", json!({}), "a table that names no parameter"),
+        ("group", json!({ "S1": {} }), "a table that names no parameter"),
+        ("calendar", json!({}), "a table that names no parameter"),
+    ] {
+        let refused = session.set_parameter(key, &value, None).expect_err("nothing is set");
+        assert_eq!(refused.code, "parameter_not_allowed");
+        assert!(refused.message.contains(said), "{}", refused.message);
+    }
+    let refused = session.set_parameter("group.S1.c_max_mean", &json!("much"), None).expect_err("no number");
+    assert_eq!(refused.field.as_deref(), Some("group.S1.c_max_mean"), "{refused}");
+}

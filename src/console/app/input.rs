@@ -10,7 +10,6 @@ use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::attention::Edit;
 use crate::console::canvas::Click;
-use crate::console::dialogs::branches::BranchesPage;
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::help::Help;
 use crate::console::dialogs::palette::Palette;
@@ -23,11 +22,10 @@ use crate::console::effect::Effect;
 use crate::console::keys::{Chord, Meaning, written};
 use crate::console::preferences::Preferences;
 use crate::console::request::Request;
-use crate::console::resimulation::{BranchesAsked, BranchesQuestion, WhyAsked};
+use crate::console::resimulation::WhyAsked;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
 use crate::console::worker::Job;
-use crate::session::week_of;
 
 impl App {
     pub(super) fn input(&mut self, event: Event) {
@@ -381,24 +379,6 @@ impl App {
         self.open(WhyBox::new(figure, quantity, week, stop.clone()));
         let asked = WhyAsked { number: self.why_question, quantity, week, stop };
         self.orders.push(Order::Job(Job::FindCauses(asked)));
-    }
-
-    /// The page of decisions, from the week that is shown on; in a run that is played, from the last one that ran on.
-    fn show_branches(&mut self) {
-        let Some(run) = self.run() else { return };
-        let seen = &run.company.seen;
-        let last_week = week_of(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
-        let week = if self.is_replay() { last_week } else { last_week.saturating_sub(1).max(1) };
-        let page = BranchesPage::new(week, last_week);
-        let asks = page.opening_question();
-        self.open(page);
-        self.follow(vec![asks]);
-    }
-
-    pub(super) fn ask_branches(&mut self, question: BranchesQuestion, stop: Arc<AtomicBool>) {
-        self.branches_question += 1;
-        let asked = BranchesAsked { number: self.branches_question, question, stop };
-        self.orders.push(Order::Job(Job::FindBranches(asked)));
     }
 
     /// The breakpoints on the X-ray screen.

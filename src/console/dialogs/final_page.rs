@@ -100,8 +100,7 @@ impl Dialog for FinalPage {
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         match action {
             Action::ReplayOfRun => replay(look.company, Goal::First),
-            // The last decision: the week that ended the run is not run yet.
-            Action::WhatIf => replay(look.company, Goal::Week(look.company.seen.week.saturating_sub(1))),
+            Action::WhatIf => Outcome::close_with(vec![Effect::Do(Action::Branches)]),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
             Action::CardOfRun if !hides_result(look.company) => self.card(),

@@ -388,6 +388,12 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, company: &Company, width: u16, room: us
 
 /// What needs the person, in two rows each at most, and the key that goes on. A proposal that fits is told where there is room.
 fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: &Look<'_>) -> Section<'a> {
+    if needs.is_empty() && !look.company.is_running() {
+        let (page, others) =
+            (look.keys.label(Action::NextWeek).unwrap_or_default(), [Action::Branches, Action::WriteReport]);
+        let text = format!("  the run is over: {page} final page · {}", look.hints(&others));
+        return vec![Line::from(canvas.span(text, Role::Dim))];
+    }
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing waits; {key} starts the next week");

@@ -58,6 +58,19 @@ impl WhyBox {
         })
     }
 
+    /// The same question about another week, if there is one that has a week before it.
+    fn turn(&self, week: u32, look: &Look<'_>) -> Outcome {
+        let last = look.company.weeks.len() as u32;
+        if !(2..=last).contains(&week) {
+            return Outcome::stay();
+        }
+        self.stop.store(true, Ordering::Relaxed);
+        // The rows of the figure are those of its own week.
+        let title = format!("{} in week {week}", self.quantity.name());
+        let figure = Figure { title, sql: None, why: Some((self.quantity, week)), ..self.figure.clone() };
+        Outcome::close_with(vec![Effect::AskWhy(figure)])
+    }
+
     /// What is going on while there is no answer.
     fn waiting(&self) -> String {
         match self.progress {
@@ -103,13 +116,15 @@ impl Dialog for WhyBox {
 
     fn hints(&self) -> Vec<Action> {
         match self.why() {
-            Some(_) => vec![Action::Open, Action::Close],
-            None => vec![Action::Close],
+            Some(_) => vec![Action::Open, Action::Left, Action::Right, Action::Close],
+            None => vec![Action::Left, Action::Right, Action::Close],
         }
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         match action {
+            Action::Left => return self.turn(self.week.saturating_sub(1), look),
+            Action::Right => return self.turn(self.week + 1, look),
             Action::Close | Action::Cancel => {
                 self.stop.store(true, Ordering::Relaxed);
                 return Outcome::close();
@@ -180,7 +195,13 @@ impl Dialog for WhyBox {
             canvas.line(row, &line);
             canvas.click(row, Click::Row(0, at));
         }
-        canvas.pane_keys(own, &look.hints(&self.hints()));
+        let label = |action| look.keys.label(action).unwrap_or_default();
+        let weeks = format!("{} {} other week", label(Action::Left), label(Action::Right));
+        let keys = match self.why() {
+            Some(_) => format!("{} · {weeks} · {}", look.hint(Action::Open), look.hint(Action::Close)),
+            None => format!("{weeks} · {}", look.hint(Action::Close)),
+        };
+        canvas.pane_keys(own, &keys);
     }
 }
 
@@ -249,6 +270,26 @@ mod tests {
         assert!(matches!(&second.effects[..], [Effect::ShowRows(figure)] if figure.title == "cancellations"));
         in_dialog(&mut dialog, Action::Last, &company);
         assert_eq!(dialog.selected, 3);
+    }
+
+    #[test]
+    fn another_week_is_asked_about_and_none_without_a_week_before_it() {
+        let company = crate::console::company::Company::of(&crate::console::test_kit::played(4));
+        let stop = Arc::new(AtomicBool::new(false));
+        let mut dialog = WhyBox::new(asked(), cancellations(), 3, stop.clone());
+        assert!(dialog_picture(&dialog, &company, 80, 24).contains("other week"));
+        for (action, week) in [(Action::Left, 2), (Action::Right, 4)] {
+            let outcome = in_dialog(&mut dialog, action, &company);
+            assert!(outcome.close && stop.load(Ordering::Relaxed));
+            let asked = outcome.effects.first();
+            let Some(Effect::AskWhy(figure)) = asked else { panic!("nothing is asked") };
+            assert_eq!(figure.why, Some((cancellations(), week)));
+            assert!(figure.title.ends_with(&format!("in week {week}")), "{}", figure.title);
+        }
+        for (week, action) in [(2, Action::Left), (4, Action::Right)] {
+            let mut dialog = WhyBox::new(asked(), cancellations(), week, Arc::default());
+            assert!(in_dialog(&mut dialog, action, &company).effects.is_empty());
+        }
     }
 
     #[test]

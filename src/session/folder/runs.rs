@@ -46,6 +46,9 @@ pub struct RunSummary {
     pub cash: f64,
     /// How it ended, if it did.
     pub ended: Option<Ended>,
+    /// The run of which this folder is a copy under another name, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copy_of: Option<String>,
     /// Why it cannot be read, if it cannot.
     pub problem: Option<String>,
 }
@@ -140,6 +143,7 @@ fn summarise(folder: &Path) -> RunSummary {
         _ => None,
     });
     RunSummary {
+        copy_of: (manifest.id != id).then(|| manifest.id.clone()),
         id,
         has_own_parameters: manifest.has_own_parameters()
             || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
@@ -190,6 +194,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         starting_cash: 0.0,
         cash: 0.0,
         ended: None,
+        copy_of: None,
         problem: Some(problem),
     }
 }

@@ -65,7 +65,7 @@ impl Session {
     }
 
     /// Whole weeks that have passed.
-    pub(super) fn weeks_passed(&self) -> u32 {
+    pub(in crate::session) fn weeks_passed(&self) -> u32 {
         self.simulation.world.day / self.simulation.params.run.days_per_week
     }
 
@@ -171,23 +171,8 @@ impl Session {
 
     /// Refuses a tool that the lesson does not have.
     pub(in crate::session) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
-        let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
-        let plan = &standing.lesson.plan;
-        let own_capacity = standing.own_part().capacity == CapacityMover::FollowsUsage;
-        if own_capacity && tool == ToolId::SetCapacityTier {
-            return Err(Refusal::new(
-                "not_in_this_lesson",
-                "capacity follows usage by itself in this lesson",
-            ));
-        }
-        match &plan.access.tools {
-            Some(tools) if !tools.contains(&tool) => {
-                let known: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
-                let message = format!("{tool} is not in this lesson; it has {}", known.join(", "));
-                Err(Refusal::new("not_in_this_lesson", message))
-            }
-            _ => Ok(()),
-        }
+        let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
+        standing.map_or(Ok(()), |standing| standing.refuse_tool(tool))
     }
 
     /// Whether the lesson asks for no rationale of a week.
@@ -199,14 +184,9 @@ impl Session {
     /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
     pub(in crate::session) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
-        let Some(step) = self.lesson_step() else {
-            return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
-        };
-        let question =
-            standing.step(step).and_then(|own| own.guess.as_ref()).map(|guess| guess.question.clone());
-        match question.filter(|_| standing.awaits_guess(step)) {
-            Some(question) => Err(Refusal::new("guess_first", format!("first your guess: {question}"))),
-            None => Ok(()),
+        match self.lesson_step() {
+            Some(_) => standing.refuse_before_guess(self.weeks_passed()),
+            None => Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it")),
         }
     }
 

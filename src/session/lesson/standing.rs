@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::definition::{GuessForm, LessonPart, LessonStep};
+use super::definition::{CapacityMover, GuessForm, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
 use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote};
 use crate::session::trajectory::{Line, Record};
+use crate::tools::{Refusal, ToolId};
 
 /// A lesson that is played, and what happened in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +62,39 @@ impl LessonStanding {
     /// A step of it, counted from 0.
     pub fn step(&self, step: usize) -> Option<&LessonStep> {
         self.own_part().steps.get(step)
+    }
+
+    /// Refuses a tool that the lesson does not have.
+    ///
+    /// # Errors
+    /// `not_in_this_lesson`.
+    pub(in crate::session) fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
+        let own_capacity = self.own_part().capacity == CapacityMover::FollowsUsage;
+        if own_capacity && tool == ToolId::SetCapacityTier {
+            let message = "capacity follows usage by itself in this lesson";
+            return Err(Refusal::new("not_in_this_lesson", message));
+        }
+        match &self.lesson.plan.access.tools {
+            Some(tools) if !tools.contains(&tool) => {
+                let known: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
+                let message = format!("{tool} is not in this lesson; it has {}", known.join(", "));
+                Err(Refusal::new("not_in_this_lesson", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses to go on after so many weeks while the question of the step is open.
+    ///
+    /// # Errors
+    /// `guess_first`.
+    pub(in crate::session) fn refuse_before_guess(&self, weeks: u32) -> Result<(), Refusal> {
+        let step = self.own_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
+        let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
+        match guess {
+            Some(guess) => Err(Refusal::new("guess_first", format!("first your guess: {}", guess.question))),
+            None => Ok(()),
+        }
     }
 
     /// The newest try of a step.

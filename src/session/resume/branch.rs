@@ -18,7 +18,8 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, a baseline branch, and one that is no debug run though parameters
-    /// were set in its past or a fault was planted; `week_unknown`, `not_saved`.
+    /// were set in its past or a fault was planted; `guess_first` while the question of a lesson is open; `week_unknown`,
+    /// `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
         self.begin_branch(week, mode)?.name().map_err(not_saved)
     }
@@ -31,6 +32,9 @@ impl Session {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
+        }
+        if let Some(lesson) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) {
+            lesson.refuse_before_guess(self.weeks_passed())?;
         }
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use serde_json::json;
 
 use super::decision_edit::{DecisionEdit, Opening, edits};
+use super::lesson_limits::refuse_locked;
 use crate::session::counterfactual::branch::covering_tier;
 use crate::session::counterfactual::edits::Edits;
 use crate::session::counterfactual::script::{Move, PastCall, moves};
@@ -50,6 +51,9 @@ impl Session {
         let (settings, params) = (self.settings(), self.params());
         let check = Opening { day: from, settings, params, mode };
         edits(decided, &check, &known, until.max(from + 1))?;
+        if let Some(lesson) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) {
+            refuse_locked(lesson, decided, &known)?;
+        }
         let branch = self.begin_branch(week, mode)?;
         let session = branch.open().map_err(not_saved)?;
         let (settings, params) = (session.settings(), session.params());

@@ -68,7 +68,9 @@ fn decision(line: &Line) -> Option<(&str, Value)> {
 /// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read
 /// are left out.
 pub fn branches_of(runs: &Path, id: &str) -> Vec<Kin> {
-    let all: Vec<Node> = list_runs(runs).into_iter().flatten().filter_map(|run| node(runs, run)).collect();
+    // A copy of a folder is the same run once more.
+    let once = list_runs(runs).into_iter().flatten().filter(|run| run.copy_of.is_none());
+    let all: Vec<Node> = once.filter_map(|run| node(runs, run)).collect();
     let parent_of = |id: &str| {
         let own = all.iter().find(|node| node.run.id == id)?;
         let parent = own.parent.as_ref()?;

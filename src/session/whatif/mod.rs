@@ -9,11 +9,12 @@ mod decision_edit;
 mod figure;
 mod futures;
 mod kin;
+pub(in crate::session) mod lesson_limits;
 #[cfg(test)]
 mod tests;
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -24,6 +25,7 @@ pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures};
 pub use kin::{BranchOrigin, Kin, branches_of, origin_of};
 
+use self::lesson_limits::{lesson_of, refuse_locked};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
 use super::counterfactual::edits::{Edits, Redrawn};
 use super::counterfactual::kept_state::KeptState;
@@ -33,6 +35,7 @@ use super::counterfactual::past::Past;
 use super::counterfactual::script::{Move, PastCall};
 use super::why::{Sight, not_readable, sight};
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::standing::LessonStanding;
 use crate::tools::Refusal;
 use crate::world::events::DayFigures;
 
@@ -48,8 +51,11 @@ pub type OnWhatIfProgress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + S
 
 /// Answers what would have been if something else had been decided in a run.
 pub struct WhatIf {
+    folder: PathBuf,
     past: Past,
     sight: Sight,
+    /// The unfinished lesson that the run belongs to.
+    lesson: Option<LessonStanding>,
 }
 
 /// Days of a run from which branches part.
@@ -67,22 +73,39 @@ impl OfRecord for WhatIf {
     fn read(folder: &Path) -> Result<WhatIf, Refusal> {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
-        Ok(WhatIf { past, sight })
+        let lesson = lesson_of(folder, &past)?;
+        Ok(WhatIf { folder: folder.to_owned(), past, sight, lesson })
     }
 
     fn renew(&mut self) -> Result<(), Refusal> {
         self.past.renew().map_err(|error| not_readable(&error))?;
         self.sight = sight(&self.past.manifest, self.past.ended)?;
+        self.lesson = lesson_of(&self.folder, &self.past)?;
         Ok(())
     }
 }
 
 impl WhatIf {
+    /// Waits for the question of a lesson, as weeks do.
+    fn refuse_before_guess(&self) -> Result<(), Refusal> {
+        let weeks = self.past.last_day() / self.past.days_per_week();
+        self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.refuse_before_guess(weeks))
+    }
+
+    /// What each branch decides and how its days are edited for it, if the player may decide it.
+    fn all_edits(&self, alternatives: &[Vec<DecisionEdit>], parting: &Parting) -> Result<AllEdits, Refusal> {
+        if let Some(lesson) = &self.lesson {
+            alternatives.iter().try_for_each(|own| refuse_locked(lesson, own, &parting.moves))?;
+        }
+        all_edits(alternatives, parting, self.past.manifest.mode)
+    }
+
     /// The calls of the run from a week on: what can be decided otherwise.
     ///
     /// # Errors
-    /// `week_unknown`.
+    /// `week_unknown`, and `guess_first` while the question of a lesson is open.
     pub fn decisions(&self, week: u32) -> Result<Vec<PastCall>, Refusal> {
+        self.refuse_before_guess()?;
         let from = self.day_of(week)?;
         let moves = self.past.between(from, self.past.manifest.days);
         let calls = moves.iter().filter_map(|step| match step {
@@ -105,7 +128,7 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<(BranchComparison, Option<Futures>)>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let all = all_edits(alternatives, &parting, self.past.manifest.mode)?;
+        let all = self.all_edits(alternatives, &parting)?;
         let Some(compared) = self.compared(&parting, &all, progress)? else { return Ok(None) };
         let Some(count) = futures else { return Ok(Some((compared, None))) };
         let drawn = self.drawn(&parting, &all.1, count, progress)?;
@@ -116,7 +139,8 @@ impl WhatIf {
     /// of the last one recorded, for twelve weeks at least. None if it was stopped.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`.
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson
+    /// `guess_first` while its question is open, and `not_in_this_lesson` for a tool that it does not have.
     pub fn compare(
         &mut self,
         week: u32,
@@ -175,7 +199,7 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<Futures>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let (_, edits) = all_edits(alternatives, &parting, self.past.manifest.mode)?;
+        let (_, edits) = self.all_edits(alternatives, &parting)?;
         self.drawn(&parting, &edits, count, progress)
     }
 
@@ -231,6 +255,7 @@ impl WhatIf {
         until_week: Option<u32>,
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<Parting>, Refusal> {
+        self.refuse_before_guess()?;
         let from = self.day_of(week)?;
         let (days, horizon) = (self.past.days_per_week(), self.past.manifest.days);
         let until = match until_week {

@@ -97,12 +97,13 @@ impl Journal {
         }
     }
 
-    /// What stands beside the title of the entries: how they are filtered, or of how many runs the tree is.
-    pub(super) fn note(&self) -> String {
+    /// What stands beside the title of the entries: how they are filtered, or of how many runs the tree is and the key that
+    /// leads to it.
+    pub(super) fn note(&self, look: &Look<'_>) -> String {
         match (self.table.note(), self.has_tree()) {
             (note, false) => note,
             (note, true) if !note.is_empty() => note,
-            (_, true) => format!("{} runs in its tree", self.tree.len()),
+            (_, true) => format!("{} of {} runs", look.hint(Action::ShowTree), self.tree.len()),
         }
     }
 

@@ -52,7 +52,7 @@ impl Pane<Journal> for EntriesPane {
     fn border(&self, journal: &Journal, _: Rect, look: &Look<'_>) -> Border {
         Border {
             title: "Journal".to_owned(),
-            note: journal.note(),
+            note: journal.note(look),
             keys: look.hints(&[Action::Open, Action::Filter]),
             ..Border::default()
         }

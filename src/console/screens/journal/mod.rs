@@ -180,6 +180,10 @@ impl Paned for Journal {
     fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::EditMemo => (self.focus, self.editing) = (JournalPane::Notes, true),
+            Action::ShowTree if self.has_tree() => self.focus_on(JournalPane::Branches),
+            Action::ShowTree => {
+                return Some(vec![Effect::Complain("this run has no branches and is none".to_owned())]);
+            }
             Action::SaveMemo => return Some(self.save()),
             Action::LeaveEditor => self.editing = false,
             _ => return None,

@@ -24,6 +24,7 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         starting_cash: 1_000_000.0,
         cash: 1_234_567.0,
         ended: None,
+        copy_of: None,
         problem: None,
     }
 }

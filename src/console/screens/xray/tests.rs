@@ -1,4 +1,5 @@
 use super::*;
+use crate::session::Refusal;
 use crate::console::app::Settings;
 use crate::console::glyphs::Glyphs;
 use crate::console::headless::Headless;
@@ -70,6 +71,73 @@ fn days_are_walked_between_the_first_and_the_last() {
 }
 
 #[test]
+fn words_that_are_typed_meanwhile_are_asked_next_and_what_was_confirmed_is_not_dropped() {
+    let mut session = played(2);
+    let company = open(Company::of(&session));
+    let mut screen: Xray = shown(&mut session, &company);
+    assert_eq!(day_asked(&screen.ask()), Some(14));
+    let asked = |effects: &[Effect]| match effects {
+        [Effect::LookInside(LookQuestion::Words(words, _))] => words.clone(),
+        other => panic!("{} effects", other.len()),
+    };
+    let read = |words: &str| (words.to_owned(), AskedWords::read(words).expect(words));
+    act(&mut screen, Action::AskWords, &company);
+    for words in ["who cash", "set group.S1.c_max_mean 300", "diff 6 7", "find leads >= 1"] {
+        let (words, asked) = read(words);
+        assert!(screen.send_asked(words, asked).is_empty(), "one is being answered");
+    }
+    let text = drawn(&screen, &company, 80, 21);
+    assert!(text.contains("find leads >= 1") && text.contains("simulating days again"), "{text}");
+    let next = hear(&mut screen, &company, found("of day 14"));
+    assert_eq!(asked(&next), "set group.S1.c_max_mean 300");
+    let next = hear(&mut screen, &company, found("set"));
+    assert_eq!(asked(&next), "find leads >= 1");
+    assert!(hear(&mut screen, &company, found("the days")).is_empty());
+    let text = drawn(&screen, &company, 80, 21);
+    assert!(text.contains("the days"), "{text}");
+}
+
+#[test]
+fn a_day_is_typed_with_a_group_or_a_customer_or_alone_and_has_to_be_there() {
+    let mut session = played(2);
+    let company = open(Company::of(&session));
+    let mut screen: Xray = shown(&mut session, &company);
+    let mut typed = |view: View, action: Action, text: &str| {
+        screen.asked = None;
+        screen.show(view);
+        act(&mut screen, action, &company);
+        if let Some(typing) = &mut screen.typing {
+            typing.field.insert(text);
+        }
+        let effects = screen.commit();
+        let problem = screen.problem.take();
+        (effects.into_iter().next(), problem, screen.day())
+    };
+    let (asked, _, day) = typed(View::Leads, Action::TypeChoice, "s2 9");
+    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Leads(group, 9, _))) if group.id() == "S2"));
+    assert_eq!(day, 9);
+    let (asked, ..) = typed(View::Customer, Action::TypeChoice, "7 12");
+    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Customer(7, 12)))));
+    // Without a day it is asked as plain mode asks: about the last one.
+    let (asked, ..) = typed(View::Customer, Action::TypeChoice, "8");
+    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Customer(8, 14)))));
+    let (asked, ..) = typed(View::Drift, Action::TypeChoice, "3");
+    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Drift(3)))));
+    let (asked, ..) = typed(View::Quality, Action::SeekDay, "5");
+    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Quality(_, 5)))));
+    for (view, text, said) in [
+        (View::Leads, "S2 15", "there is no day 15; choose a day from 1 to 14"),
+        (View::Customer, "7 0", "there is no day 0"),
+        (View::Leads, "S2 soon", "a day is a whole number"),
+        (View::Rivals, "99", "choose a day from 1 to 14"),
+    ] {
+        let (asked, problem, _) = typed(view, Action::TypeChoice, text);
+        assert!(asked.is_none(), "{text}");
+        assert!(problem.is_some_and(|problem| problem.contains(said)), "{text}");
+    }
+}
+
+#[test]
 fn nothing_is_asked_where_hidden_state_stays_hidden() {
     let mut session = played(2);
     let company = Company::of(&session);
@@ -98,7 +166,7 @@ fn what_is_typed_is_read_or_said_to_be_wrong() {
         let problem = expected.read(text).expect_err(text);
         assert!(problem.contains(part), "{problem}");
     }
-    assert!(matches!(Group.read(" s2 "), Ok(Typed::Group(group)) if group.id() == "S2"));
+    assert!(matches!(Group.read(" s2 "), Ok(Typed::Group(group, None)) if group.id() == "S2"));
     assert!(matches!(Days.read("28"), Ok(Typed::Days(28))));
 }
 

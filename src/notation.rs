@@ -21,8 +21,12 @@ pub fn grouped(value: f64, decimals: usize) -> String {
     }
     let text = format!("{value:.decimals$}");
     let is_zero = text.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
-    let text = if is_zero { text.trim_start_matches('-').to_owned() } else { text };
-    let (sign, digits) = text.strip_prefix('-').map_or(("", text.as_str()), |digits| ("-", digits));
+    separated(if is_zero { text.trim_start_matches('-') } else { &text })
+}
+
+/// Written digits with separators between thousands.
+fn separated(text: &str) -> String {
+    let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
     let (whole, fraction) =
         digits.split_once('.').map_or((digits, None), |(whole, rest)| (whole, Some(rest)));
     let mut grouped = String::with_capacity(text.len() + whole.len() / 3);
@@ -67,9 +71,9 @@ fn signed(value: f64, decimals: usize) -> String {
     format!("{sign}${text}")
 }
 
-/// Money as the weekly dashboard of the released simulator writes it: negative `$-1,234`.
+/// Money as the weekly dashboard of the released simulator writes it: negative `$-1,234`, all digits, a sign before any zero.
 pub fn released_dollars(value: f64) -> String {
-    format!("${}", grouped(value, 0))
+    format!("${}", separated(&format!("{value:.0}")))
 }
 
 /// Money with its sign in front, for changes: `+$45,210`, `-$45,210`.

@@ -262,7 +262,9 @@ mod tests {
         use crate::session::{Mode, NewRun, Storage, Via};
         let new = NewRun { days: Some(10), mode: Mode::Debug, storage: Storage::Memory, ..NewRun::default() };
         let mut session = Session::create(new, &crate::session::Configuration::shipped()).expect("a run");
-        session.step(8, &mut |_| {}).expect("days");
+        for days in [7, 1] {
+            session.step(days, &mut |_| {}).expect("days");
+        }
         let prices = serde_json::json!({ "A": 12 });
         session.call("set_prices", &prices, Via::Script).expect("a price");
         session.step(2, &mut |_| {}).expect("days");

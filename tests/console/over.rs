@@ -46,9 +46,9 @@ fn a_what_if_of_the_final_page_begins_twelve_weeks_before_the_end() {
     let mut console = over(runs.path(), Mode::Baseline, (120, 40));
     console.shows("b what if");
     console.press("b");
-    console.shows("what if, week 2");
+    console.shows("What if, from week 2 on");
     console.press("esc ; b");
-    console.shows("what if, week 2");
+    console.shows("What if, from week 2 on");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::support::company::{begin_run, open_shop, weeks};
 use crate::support::record::{folder_of, looks, recorded};
 
 /// What stands where true values are shown.
-const MARKS: [&str; 4] = ["true sat.", "true rep.", "x-ray", "true market"];
+const MARKS: [&str; 5] = ["true sat.", "true rep.", "x-ray, day", "x-ray: truly", "true values of"];
 
 fn run(runs: &Path, mode: Mode, count: usize) -> Session {
     let mut session = begin_run(runs, mode, 84);

@@ -254,10 +254,7 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
 fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, DAYS);
-    session.set_breakpoint(condition("churn(S1) >= 0")).expect("a breakpoint");
-    session.run_until_breakpoint(DAYS, &mut |_| {}).expect("days");
-    session.clear_breakpoints(None).expect("removed");
-    session.run_until_breakpoint(40, &mut |_| {}).expect("days");
+    session.run_until_breakpoint(90, &mut |_| {}).expect("days");
     let churn = session.look_back(condition("churn(S1) >= 0")).expect("a look").today.value.expect("a share");
     let now = session.day();
     let sql = format!(

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use novamind::lab::check_plays;
 use novamind::session::{
-    Access, Configuration, DecisionEdit, Ended, Lesson, LessonEntry, Mode, NewRun, OfRecord, Refusal, Session, Storage,
-    Via, WhatIf, verify,
+    Access, Configuration, DecisionEdit, Ended, Lesson, LessonEntry, Mode, NewRun, OfRecord, Refusal,
+    Session, Storage, Via, WhatIf, verify,
 };
 use serde_json::json;
 

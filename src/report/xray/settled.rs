@@ -21,15 +21,16 @@ pub fn settle(text: &str) -> String {
             .unwrap_or(number.len());
         let (number, behind) = number.split_at(end);
         let number_alone = number.trim_end_matches(['.', ',']);
-        let is_word = before.chars().next_back().is_some_and(char::is_alphanumeric);
+        settled.push_str(before);
+        let mut letters = settled.chars().rev();
+        let (last, before_last) = (letters.next(), letters.next());
+        let is_word = last.is_some_and(char::is_alphanumeric);
+        let has_sign = last == Some('-') && before_last.is_none_or(|letter| !letter.is_alphanumeric());
         let is_zero = number_alone.chars().all(|letter| matches!(letter, '0' | '.'));
-        let sign_stands_alone = {
-            let mut letters = before.chars().rev();
-            letters.next() == Some('-') && letters.next().is_none_or(|letter| !letter.is_alphanumeric())
-        };
         let goes_on = behind.starts_with(['e', 'E']);
-        let drops_sign = is_zero && sign_stands_alone && !goes_on;
-        settled.push_str(if drops_sign { &before[..before.len() - 1] } else { before });
+        if is_zero && has_sign && !goes_on {
+            settled.pop();
+        }
         match shortened(number_alone).filter(|_| !is_word && !goes_on) {
             Some(short) => {
                 settled.push_str(&short);

@@ -162,7 +162,7 @@ fn it_plays_by_itself_until_the_end_and_pauses_at_a_key() {
 }
 
 #[test]
-fn the_final_page_offers_a_replay_and_another_run_from_the_last_decision() {
+fn the_final_page_offers_a_replay_a_what_if_and_another_run_from_the_last_decision() {
     let runs = tempfile::tempdir().expect("a folder");
     let folder = left(runs.path(), Mode::Baseline, 12);
     let mut console = Console::start(runs.path(), (120, 40));
@@ -174,6 +174,8 @@ fn the_final_page_offers_a_replay_and_another_run_from_the_last_decision() {
     console.press("} n");
     console.shows("Day 84. You end with");
     console.press("b");
+    console.shows("What if, from week 1 on");
+    console.press("esc <");
     assert_eq!(day(&console), 77);
     console.press(") ) ) T");
     console.shows("on day 77 before week 12");

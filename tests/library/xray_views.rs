@@ -36,6 +36,7 @@ fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(),
         session.spillover(day).map(drop),
         session.rival_state(day).map(drop),
         session.drift_state(day).map(drop),
+        session.hidden_values(day).map(drop),
     ]
 }
 

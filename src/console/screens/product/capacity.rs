@@ -34,7 +34,8 @@ fn summary(company: &Company, rungs: &[Rung], days: &[Day]) -> Vec<String> {
     };
     let [mean, peak] = [mean, peak].map(|units| share(units, rung.units));
     let used = format!("tier {set} · used {mean}, peak {peak}");
-    let Some(next) = PeakProjection::of(&company.weeks) else { return vec![used] };
+    let coming = PeakProjection::of(&company.weeks).filter(|_| company.is_running());
+    let Some(next) = coming else { return vec![used] };
     let (growth, next) = (next.growth_in_words(), share(next.next(), rung.units));
     vec![
         format!("{used} · next week {next} at last week's growth ({growth})"),

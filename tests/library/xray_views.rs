@@ -78,6 +78,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
             "spillover  3",
             "rivals  3",
             "drift  3",
+            "values  3",
             "streams service 8",
         ];
         assert_eq!(looks(&after), expected);

@@ -55,6 +55,8 @@ pub(crate) mod notation;
 pub mod plain;
 pub mod report;
 pub mod rules;
+#[cfg(feature = "server")]
+pub mod server;
 pub mod session;
 pub(crate) mod shipped;
 pub(crate) mod statistics;

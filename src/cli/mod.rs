@@ -7,6 +7,9 @@ mod failure;
 mod keys;
 mod lab;
 mod lesson;
+#[cfg(feature = "server")]
+mod mcp;
+mod new_run;
 mod pictures;
 mod play;
 mod query;
@@ -15,9 +18,13 @@ mod report;
 mod run;
 mod runs;
 mod scenario;
+#[cfg(feature = "server")]
+mod serve;
 mod study;
 mod tables;
 mod tools;
+#[cfg(feature = "server")]
+mod which_run;
 
 use std::path::{Path, PathBuf};
 
@@ -87,6 +94,12 @@ enum Command {
     Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
+    /// Let a program play a run over HTTP.
+    #[cfg(feature = "server")]
+    Serve(serve::Options),
+    /// Let a client of the Model Context Protocol play a run, on standard input and output.
+    #[cfg(feature = "server")]
+    Mcp(mcp::Options),
     /// Measure how fast this machine simulates.
     Bench(bench::Options),
     /// Print a completion script for a shell.
@@ -112,6 +125,10 @@ impl Command {
             Command::Class(_) => "class",
             Command::Study(_) => "study",
             Command::Lab(_) => "lab",
+            #[cfg(feature = "server")]
+            Command::Serve(_) => "serve",
+            #[cfg(feature = "server")]
+            Command::Mcp(_) => "mcp",
             Command::Bench(_) => "bench",
             Command::Completions(_) => "completions",
         }
@@ -363,6 +380,10 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Class(options)) => class::run(options, &context),
         Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
+        #[cfg(feature = "server")]
+        Some(Command::Serve(options)) => serve::run(&options, &context),
+        #[cfg(feature = "server")]
+        Some(Command::Mcp(options)) => mcp::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),
         Some(Command::Completions(options)) => completions::run(&options),
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::run::parse_override;
+use super::new_run::NewRunOptions;
 use super::{Context, Failure};
 use crate::console::app::Settings;
 use crate::console::effect::Effect;
@@ -17,8 +17,8 @@ use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Fault, Goal, Handout, LessonEntry, Library, Mode,
-    NewRun, RunError, Session, Storage, Study, find_run, steady,
+    Access, Configuration, ConsentGiven, ConsentMeans, Goal, Handout, LessonEntry, Library, Mode, NewRun,
+    RunError, Session, Study, find_run, steady,
 };
 
 /// Options of `play`.
@@ -33,33 +33,8 @@ pub struct Options {
     /// Start a new run.
     #[arg(long)]
     new: bool,
-    /// Seed of the new run.
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// Days of the new run, at least 7.
-    #[arg(long, value_name = "N")]
-    days: Option<u32>,
-    /// Starting cash of the new run, in dollars.
-    #[arg(long, value_name = "X")]
-    cash: Option<f64>,
-    /// Scenario of the new run.
-    #[arg(long, value_name = "NAME")]
-    scenario: Option<String>,
-    /// Mode of the new run [default: sandbox].
-    #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
-    mode: Option<Mode>,
-    /// Who plays.
-    #[arg(long, value_name = "LABEL")]
-    participant: Option<String>,
-    /// The participant has agreed to the text in consent.md of the configuration folder.
-    #[arg(long)]
-    consent: bool,
-    /// Set a parameter of a debug run; can be repeated.
-    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
-    set: Vec<(String, String)>,
-    /// Make one mechanism of a debug run wrong, without saying which.
-    #[arg(long, value_name = "N", value_parser = parse_fault)]
-    planted: Option<Fault>,
+    #[command(flatten)]
+    made_of: NewRunOptions,
     /// Play a lesson.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["seed", "days", "cash", "scenario", "mode", "set", "planted"])]
     lesson: Option<String>,
@@ -86,58 +61,15 @@ pub struct Options {
     strict: bool,
 }
 
-fn parse_mode(text: &str) -> Result<Mode, String> {
-    let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
-    mode.ok_or_else(|| {
-        let offered = Mode::OFFERED.map(Mode::id).join(", ");
-        format!("{text} is not a mode of a new run; the modes are {offered}")
-    })
-}
-
-fn parse_fault(text: &str) -> Result<Fault, String> {
-    let number = text.parse::<u32>().unwrap_or(0);
-    Fault::try_from(number)
-        .map_err(|_| format!("{text} is no number of a fault; choose one from 1 to {}", Fault::ALL.len()))
-}
-
 impl Options {
     fn asks_for_new_run(&self) -> bool {
-        self.new
-            || self.seed.is_some()
-            || self.days.is_some()
-            || self.cash.is_some()
-            || self.scenario.is_some()
-            || self.mode.is_some()
-            || self.participant.is_some()
-            || !self.set.is_empty()
-            || self.planted.is_some()
-            || self.lesson.is_some()
-            || self.handout.is_some()
+        self.new || self.made_of.ask_for_one() || self.lesson.is_some() || self.handout.is_some()
     }
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
-        let standard = NewRun::default();
-        context.check_participant(self.participant.as_deref())?;
-        let new = NewRun {
-            seed: self.seed,
-            days: self.days,
-            cash: self.cash,
-            scenario: self.scenario.clone().unwrap_or(standard.scenario),
-            overrides: self.set.clone(),
-            fault: self.planted,
-            lesson: self.lesson_entry(context)?,
-            handout: None,
-            mode: if self.lesson.is_some() { Mode::Lesson } else { self.mode.unwrap_or(standard.mode) },
-            participant: self.participant.clone(),
-            agreed: self.consent.then(|| ConsentGiven::on_paper().now()),
-            study: None,
-            storage: Storage::Runs(context.runs()?),
-            projection: true,
-            sync_calls: true,
-            seal_key: standard.seal_key,
-        };
-        new.check_baseline(&context.configuration)?;
-        Ok(new)
+        let mode = if self.lesson.is_some() { Mode::Lesson } else { Mode::Sandbox };
+        let lesson = self.lesson_entry(context)?;
+        Ok(NewRun { lesson, ..self.made_of.new_run(mode, context)? })
     }
 }
 

@@ -44,6 +44,8 @@ pub enum Via {
     Plain,
     /// The HTTP interface.
     Http,
+    /// A client of the Model Context Protocol.
+    Mcp,
     /// A policy.
     Policy,
     /// A stored script.

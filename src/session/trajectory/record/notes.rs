@@ -40,6 +40,8 @@ pub enum QuerySource {
     Derived,
     /// A stored script.
     Script,
+    /// A program, over HTTP or the Model Context Protocol.
+    Program,
 }
 
 /// The notes as they were kept, in lines of format 1; their text is in a file of its own.

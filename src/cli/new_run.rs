@@ -1,0 +1,89 @@
+//! The options of a new run, the same for people and for programs.
+
+use clap::Args;
+
+use super::run::parse_override;
+use super::{Context, Failure};
+use crate::session::{ConsentGiven, Fault, Mode, NewRun, Storage};
+
+/// What a new run is made of.
+#[derive(Debug, Args, Clone, Default, PartialEq)]
+pub struct NewRunOptions {
+    /// Seed of the new run.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Days of the new run, at least 7.
+    #[arg(long, value_name = "N")]
+    days: Option<u32>,
+    /// Starting cash of the new run, in dollars.
+    #[arg(long, value_name = "X")]
+    cash: Option<f64>,
+    /// Scenario of the new run.
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
+    /// Mode of the new run [default: sandbox where a person plays, baseline where a program does].
+    #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
+    mode: Option<Mode>,
+    /// Who plays.
+    #[arg(long, value_name = "LABEL")]
+    participant: Option<String>,
+    /// The participant has agreed to the text in consent.md of the configuration folder.
+    #[arg(long)]
+    consent: bool,
+    /// Set a parameter of a debug run; can be repeated.
+    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
+    set: Vec<(String, String)>,
+    /// Make one mechanism of a debug run wrong, without saying which.
+    #[arg(long, value_name = "N", value_parser = parse_fault)]
+    planted: Option<Fault>,
+}
+
+fn parse_mode(text: &str) -> Result<Mode, String> {
+    let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
+    mode.ok_or_else(|| {
+        let offered = Mode::OFFERED.map(Mode::id).join(", ");
+        format!("{text} is not a mode of a new run; the modes are {offered}")
+    })
+}
+
+fn parse_fault(text: &str) -> Result<Fault, String> {
+    let number = text.parse::<u32>().unwrap_or(0);
+    Fault::try_from(number)
+        .map_err(|_| format!("{text} is no number of a fault; choose one from 1 to {}", Fault::ALL.len()))
+}
+
+impl NewRunOptions {
+    /// Whether any of them says something of a new run.
+    pub fn ask_for_one(&self) -> bool {
+        NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
+    }
+
+    /// The run, in a mode unless another was asked for.
+    ///
+    /// # Errors
+    /// Two labels; what a baseline run must not have; there is no folder of runs.
+    pub fn new_run(&self, mode: Mode, context: &Context) -> Result<NewRun, Failure> {
+        let standard = NewRun::default();
+        context.check_participant(self.participant.as_deref())?;
+        let new = NewRun {
+            seed: self.seed,
+            days: self.days,
+            cash: self.cash,
+            scenario: self.scenario.clone().unwrap_or(standard.scenario),
+            overrides: self.set.clone(),
+            fault: self.planted,
+            lesson: None,
+            handout: None,
+            mode: self.mode.unwrap_or(mode),
+            participant: self.participant.clone(),
+            agreed: self.consent.then(|| ConsentGiven::on_paper().now()),
+            study: None,
+            storage: Storage::Runs(context.runs()?),
+            projection: true,
+            sync_calls: true,
+            seal_key: standard.seal_key,
+        };
+        new.check_baseline(&context.configuration)?;
+        Ok(new)
+    }
+}

@@ -1,0 +1,47 @@
+//! The run that a program plays: one that is there, or a new one.
+
+use clap::Args;
+
+use super::new_run::NewRunOptions;
+use super::{Context, Failure};
+use crate::session::{Access, Mode, RunError, Session, find_run};
+
+/// The run that a program plays: one that is there, or a new one.
+#[derive(Debug, Args, Clone)]
+pub struct WhichRun {
+    /// Go on with a run; `latest` is the newest unfinished one. Without it a new run begins.
+    #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
+    run: Option<String>,
+    /// Begin a new run.
+    #[arg(long)]
+    new: bool,
+    #[command(flatten)]
+    made_of: NewRunOptions,
+}
+
+impl WhichRun {
+    /// Whether any option says which.
+    pub fn names_one(&self) -> bool {
+        self.run.is_some() || self.new || self.made_of.ask_for_one()
+    }
+
+    /// Opens or begins the run.
+    ///
+    /// # Errors
+    /// It is missing, in use, or belongs to a study; the new run cannot begin.
+    pub fn open(&self, context: &Context) -> Result<Session, Failure> {
+        if let Some(id) = &self.run {
+            let folder = find_run(&context.runs()?, id)?;
+            context.check_play(&folder)?;
+            return Ok(Session::open(&folder, Access::Write, true)?);
+        }
+        let new = self.made_of.new_run(Mode::Baseline, context)?;
+        match Session::create(new, &context.configuration) {
+            Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
+                "this folder of configuration asks participants to agree to a text first, which no program can do: \
+                 add --consent if the person has agreed",
+            )),
+            created => Ok(created?),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Answering a request with the session: what every door says alike.
+
+use serde_json::{Map, Value, json};
+
+use super::request::{Answer, Request, Status};
+use crate::session::{QuerySource, Refusal, Session, Via, rows_as_json};
+use crate::tools::{Kept, ToolId};
+
+/// Tools whose arguments older programs send as null where they mean to leave them out.
+const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
+
+/// Answers a request. What is asked comes in through `via`.
+pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
+    match request {
+        Request::Call { tool, args } => call(session, &tool, args, via),
+        Request::NextWeek { rationale, predictions } => next_week(session, &rationale, &predictions, via),
+        Request::Query { sql } => query(session, &sql),
+        Request::Vars => Answer::plain(json!({ "current_day": session.day() })),
+        Request::Dashboard => {
+            Answer::plain(json!({ "dashboard": session.dashboard(), "day": session.day() }))
+        }
+        Request::GameStatus => game_status(session),
+        Request::DailyScripts => Answer::data(json!({ "scripts": daily_scripts(session) })),
+        Request::KeepDailyScript { name, content } => keep_script(session, name, content, via),
+        Request::ForgetDailyScript { name } => forget_script(session, name, via),
+        Request::Memo => match session.memo() {
+            Ok(text) => Answer::data(json!({ "text": text })),
+            Err(error) => Answer::wrong(Status::Failed, "not_read", error.to_string()),
+        },
+    }
+}
+
+fn call(session: &mut Session, tool: &str, mut args: Value, via: Via) -> Answer {
+    if let Value::Object(fields) = &mut args
+        && NULLS_ARE_LEFT_OUT.iter().any(|id| id.name() == tool)
+    {
+        fields.retain(|_, value| !value.is_null());
+    }
+    match session.call(tool, &args, via) {
+        Ok(answer) => Answer::data(answer.to_json()),
+        Err(refusal) => Answer::refused(Status::Done, &refusal),
+    }
+}
+
+fn next_week(session: &mut Session, rationale: &Value, predictions: &Value, via: Via) -> Answer {
+    match session.advance_given(rationale, predictions, [false; 4], via, &mut |_| {}) {
+        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+        Ok(week) => {
+            let mut fields = Map::from_iter([
+                ("day".to_owned(), week.figures.day.into()),
+                ("dashboard".to_owned(), week.dashboard.clone().into()),
+                ("cash".to_owned(), crate::notation::json_number(week.figures.cash)),
+                ("ended".to_owned(), json!(week.ended)),
+            ]);
+            if let Some(remark) = week.remark {
+                fields.insert("remark".to_owned(), remark.into());
+            }
+            Answer::done(fields)
+        }
+    }
+}
+
+fn query(session: &mut Session, sql: &Value) -> Answer {
+    let Some(sql) = sql.as_str() else {
+        return Answer::refused(Status::Refused, &Refusal::at("sql", "sql_empty", "sql must be a text"));
+    };
+    match session.query_of(sql, QuerySource::Program) {
+        Ok(rows) => Answer::done(rows_as_json(&rows)),
+        Err(refusal) => Answer::refused(status_of_query(refusal.code), &refusal),
+    }
+}
+
+/// How the released server answers each kind of failed statement.
+fn status_of_query(code: &str) -> Status {
+    match code {
+        "sql_empty" => Status::Refused,
+        "sql_schema" | "sql_hidden_table" | "sql_hidden_column" | "sql_write" => Status::Forbidden,
+        "sql_timeout" => Status::TimedOut,
+        _ => Status::Failed,
+    }
+}
+
+fn game_status(session: &Session) -> Answer {
+    let seen = session.observe();
+    Answer::plain(json!({
+        "day": seen.day,
+        "cash": seen.cash,
+        "subscribers": seen.subscribers,
+        "timed_out": false,
+        "total_days": seen.last_day,
+        "ended": session.ended(),
+    }))
+}
+
+fn daily_scripts(session: &Session) -> Vec<Value> {
+    let kept = session.notebook().statements(Kept::Script).entries();
+    kept.iter().map(|(name, code)| json!({ "name": name, "size": code.len() })).collect()
+}
+
+fn keep_script(session: &mut Session, name: Value, content: Value, via: Via) -> Answer {
+    let args = json!({ "name": name, "code": content });
+    match session.call(ToolId::RegisterScript, &args, via) {
+        Ok(answer) => Answer::data(json!({ "name": answer.to_json()["name"], "registered": true })),
+        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+    }
+}
+
+fn forget_script(session: &mut Session, name: Value, via: Via) -> Answer {
+    match session.call(ToolId::DeleteScript, &json!({ "name": name }), via) {
+        Ok(_) => Answer::data(json!({ "removed": name })),
+        Err(refusal) if refusal.code == "script_not_found" => Answer::refused(Status::Missing, &refusal),
+        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+    }
+}

@@ -1,0 +1,109 @@
+//! One module of the Python client: a function for each tool, with hints and docstring of the catalogue.
+
+use std::fmt::Write;
+
+use crate::server::schema;
+use crate::tools::{Argument, ArgumentKind, Module, Numbers, Spec, ToolId};
+
+/// Columns of a docstring.
+const WIDTH: usize = 116;
+
+/// Name of the module in Python.
+pub fn name(module: Module) -> &'static str {
+    // A module named time would hide that of the standard library from the others.
+    if module == Module::Time { "scripts" } else { module.id() }
+}
+
+/// The source of a module.
+pub fn text(module: Module, numbers: &Numbers) -> String {
+    let mut text = format!(
+        "\"\"\"The tools of {}.\n\nEach function calls the tool of its name; arguments left out are not sent. A refusal \
+         raises NovamindError.\n\"\"\"\nfrom __future__ import annotations\n\nfrom typing import Any, Dict, List, Optional\n\n\
+         from .connection import call\n",
+        name(module)
+    );
+    // These have functions of the package.
+    let elsewhere = [ToolId::NextWeek, ToolId::Query, ToolId::GetVars];
+    for spec in schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id)) {
+        text += &function(spec, numbers);
+    }
+    text
+}
+
+fn function(spec: &Spec, numbers: &Numbers) -> String {
+    let mut sorted: Vec<&Argument> = spec.arguments.iter().collect();
+    sorted.sort_by_key(|argument| !argument.required);
+    let parameters: Vec<String> = sorted.iter().map(|argument| parameter(argument)).collect();
+    let mut text = format!("\n\ndef {}({}) -> Dict[str, Any]:\n", spec.name(), parameters.join(", "));
+    let summary = numbers.fill(spec.summary);
+    let effect = numbers.fill(spec.effect);
+    let cost = numbers.fill(spec.cost);
+    text += &wrapped(&format!("\"\"\"{summary}."), 4, 4);
+    if !effect.is_empty() {
+        text += &format!("\n{}", wrapped(&format!("Effect ({}): {effect}", spec.when.id()), 4, 4));
+    }
+    text += &format!("\n{}", wrapped(&format!("Cost: {cost}."), 4, 4));
+    if !sorted.is_empty() {
+        text += "\n    Args:\n";
+        for argument in &sorted {
+            let words = format!("{}: {} ({})", argument.name, argument.doc, argument.kind.words());
+            text += &wrapped(&numbers.fill(&words), 8, 12);
+        }
+    }
+    if !spec.returns.is_empty() {
+        text += "\n    Returns:\n";
+        for output in spec.returns {
+            let words = format!("{}: {} ({})", output.name, output.doc, output.kind);
+            text += &wrapped(&numbers.fill(&words), 8, 12);
+        }
+    }
+    if !spec.refusals.is_empty() {
+        text += "\n    Raises:\n";
+        text += &wrapped(&format!("NovamindError: code {}", spec.refusals.join(", ")), 8, 12);
+    }
+    text += "    \"\"\"\n";
+    let sent: Vec<String> = spec.arguments.iter().map(|it| format!("\"{0}\": {0}", it.name)).collect();
+    let _ = writeln!(text, "    return call(\"{}\", {{{}}})", spec.name(), sent.join(", "));
+    text
+}
+
+fn parameter(argument: &Argument) -> String {
+    let hint = hint(&argument.kind);
+    match argument.required {
+        true => format!("{}: {hint}", argument.name),
+        false => format!("{}: Optional[{hint}] = None", argument.name),
+    }
+}
+
+fn hint(kind: &ArgumentKind) -> &'static str {
+    match kind {
+        ArgumentKind::Number(_) => "float",
+        ArgumentKind::Integer(_) => "int",
+        ArgumentKind::Text => "str",
+        ArgumentKind::Structure(_) => "Any",
+        ArgumentKind::Deals(_) => "List[Any]",
+        ArgumentKind::Map(..) => "Dict[str, float]",
+        ArgumentKind::Matrix(..) => "Dict[str, Dict[str, float]]",
+    }
+}
+
+/// Words in lines; a backslash of a text would begin an escape of Python.
+fn wrapped(words: &str, first: usize, others: usize) -> String {
+    let mut text = String::new();
+    let mut line = " ".repeat(first);
+    for word in words.replace('\\', "/").split_whitespace() {
+        let begins = line.trim().is_empty();
+        if !begins && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            let _ = writeln!(text, "{line}");
+            line = " ".repeat(others);
+            line += word;
+            continue;
+        }
+        if !begins {
+            line.push(' ');
+        }
+        line += word;
+    }
+    let _ = writeln!(text, "{line}");
+    text
+}

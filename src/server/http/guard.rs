@@ -1,0 +1,140 @@
+//! Who may ask: programs of this machine that name it, and know the token if there is one.
+//!
+//! Pages in a browser can reach loopback ports. They cannot choose the `Host` header, and what they send carries an `Origin`.
+
+use std::io;
+use std::path::Path;
+
+use axum::http::HeaderMap;
+use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
+
+use crate::server::request::{Answer, Status};
+use crate::session::RunError;
+
+/// What requests must carry.
+#[derive(Debug, Clone)]
+pub struct Guard {
+    /// The token of `Authorization: Bearer`.
+    pub token: Option<String>,
+}
+
+impl Guard {
+    /// Looks at the head of a request: none if it may be asked, else the answer and whether it is the token that is wrong.
+    pub fn bar(&self, head: &HeaderMap) -> Option<(Answer, Barred)> {
+        let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
+        if !text(HOST).is_some_and(is_loopback) {
+            let message = "the Host header must name this machine: 127.0.0.1, localhost or [::1]";
+            return Some((Answer::wrong(Status::Forbidden, "host", message), Barred::ByPlace));
+        }
+        let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
+        if !origin.is_none_or(is_loopback) {
+            let message = "pages of other machines may not ask";
+            return Some((Answer::wrong(Status::Forbidden, "origin", message), Barred::ByPlace));
+        }
+        let expected = self.token.as_deref()?;
+        let given = text(AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer ")).unwrap_or_default();
+        if same(given, expected) {
+            return None;
+        }
+        let message = "requests must carry the token: Authorization: Bearer TOKEN";
+        Some((Answer::wrong(Status::Forbidden, "token", message), Barred::ByToken))
+    }
+}
+
+/// Why a request is not looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Barred {
+    /// It comes from elsewhere.
+    ByPlace,
+    /// It does not know the token.
+    ByToken,
+}
+
+/// Whether `HOST` or `HOST:PORT` names this machine.
+fn is_loopback(host: &str) -> bool {
+    let name = match host.strip_prefix("[::1]") {
+        Some(rest) => return rest.is_empty() || is_port(rest),
+        None => host.split_once(':').map_or(host, |(name, port)| if is_digits(port) { name } else { "" }),
+    };
+    name == "127.0.0.1" || name.eq_ignore_ascii_case("localhost")
+}
+
+fn is_port(text: &str) -> bool {
+    text.strip_prefix(':').is_some_and(is_digits)
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Compares in a time that does not tell how much is right.
+fn same(given: &str, expected: &str) -> bool {
+    blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
+}
+
+/// A token that nobody guesses.
+///
+/// # Errors
+/// The system has no chance to give.
+pub fn new_token() -> Result<String, RunError> {
+    let mut bytes = [0u8; 24];
+    getrandom::fill(&mut bytes).map_err(|error| {
+        RunError::io(Path::new("the random numbers of the system"))(io::Error::other(error))
+    })?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// Writes a file that nobody else can read.
+///
+/// # Errors
+/// It is there already, or cannot be written.
+pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
+    use std::io::Write;
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    writeln!(options.open(path)?, "{text}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn head(lines: &[(axum::http::HeaderName, &str)]) -> HeaderMap {
+        lines.iter().map(|(name, value)| (name.clone(), value.parse().expect("a value"))).collect()
+    }
+
+    #[test]
+    fn only_this_machine_and_only_with_the_token() {
+        let open = Guard { token: None };
+        for host in ["127.0.0.1", "127.0.0.1:80", "localhost:1", "LOCALHOST", "[::1]:9", "[::1]"] {
+            assert_eq!(open.bar(&head(&[(HOST, host)])), None, "{host}");
+        }
+        for host in [
+            "",
+            "example.org",
+            "127.0.0.1.example.org",
+            "localhost:",
+            "localhost:80x",
+            "[::1]x",
+            "127.0.0.1@x",
+        ] {
+            let barred = open.bar(&head(&[(HOST, host)])).map(|(_, by)| by);
+            assert_eq!(barred, Some(Barred::ByPlace), "{host}");
+        }
+        assert!(open.bar(&HeaderMap::new()).is_some());
+        let page = |origin| head(&[(HOST, "127.0.0.1"), (ORIGIN, origin)]);
+        assert!(open.bar(&page("http://localhost:3000")).is_none());
+        for origin in ["null", "https://example.org", "http://127.0.0.1.evil.net"] {
+            assert!(open.bar(&page(origin)).is_some(), "{origin}");
+        }
+        let closed = Guard { token: Some("secret".to_owned()) };
+        let carrying = |value| head(&[(HOST, "127.0.0.1"), (AUTHORIZATION, value)]);
+        assert!(closed.bar(&carrying("Bearer secret")).is_none());
+        for value in ["Bearer secre", "Bearer ", "secret", "bearer secret"] {
+            let barred = closed.bar(&carrying(value)).map(|(_, by)| by);
+            assert_eq!(barred, Some(Barred::ByToken), "{value}");
+        }
+    }
+}

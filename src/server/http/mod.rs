@@ -1,0 +1,134 @@
+//! The HTTP door: 127.0.0.1 only, one run, bounded in every direction.
+
+mod body;
+mod guard;
+mod routes;
+mod shutdown;
+
+use std::io;
+use std::net::Ipv4Addr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::GracefulShutdown;
+use hyper_util::service::TowerToHyperService;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
+
+use super::announcement::Announcement;
+use super::owner::Owner;
+use crate::session::{RunError, Session, Via};
+use guard::Guard;
+use shutdown::Shutdown;
+
+/// Connections that are open at once; further ones are told to come back.
+const MOST_CONNECTIONS: usize = 64;
+/// A head of a request that takes longer closes its connection.
+const HEAD_DEADLINE: Duration = Duration::from_secs(10);
+/// Requests in hand when the server is asked to stop have this long to arrive and be answered.
+const LAST_REQUESTS: Duration = Duration::from_secs(60);
+
+/// How a run is served.
+#[derive(Debug, Clone, Default)]
+pub struct HttpOptions {
+    /// Port; any free one if none.
+    pub port: Option<u16>,
+    /// Requests must carry the token in this file.
+    pub token: Option<PathBuf>,
+}
+
+/// Serves a run until a signal asks to stop. `ready` is told where, once requests are taken.
+///
+/// # Errors
+/// The port is taken; the file of the token cannot be read; the disk did not take the end of the record.
+pub fn serve_http(
+    session: Session,
+    options: &HttpOptions,
+    ready: impl FnOnce(&Announcement),
+) -> Result<(), RunError> {
+    let token = options.token.as_deref().map(token_of).transpose()?;
+    let folder = session.folder().map(Path::to_owned);
+    let run = session.manifest().id.clone();
+    let numbers = session.numbers();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(RunError::io(Path::new("the network")))?;
+    let (owner, handle) = Owner::start(session, Via::Http, "http");
+    let served = runtime.block_on(async {
+        let address = (Ipv4Addr::LOCALHOST, options.port.unwrap_or(0));
+        let shown = format!("port {}", address.1);
+        let failed = || RunError::io(Path::new(&shown));
+        let listener = TcpListener::bind(address).await.map_err(failed())?;
+        let port = listener.local_addr().map_err(failed())?.port();
+        let announcement = Announcement { run, port, pid: std::process::id(), token: options.token.clone() };
+        let announced = folder.as_deref().map(|folder| announcement.publish(folder)).transpose()?;
+        let shutdown = Shutdown::listen().map_err(failed())?;
+        ready(&announcement);
+        take_connections(&listener, routes::router(handle, Guard { token }, numbers), shutdown).await;
+        drop(announced);
+        Ok(())
+    });
+    // Requests that were cut off hold handles of the owner.
+    drop(runtime);
+    owner.finish()?;
+    served
+}
+
+/// The token of a file, made with it if there is none.
+fn token_of(path: &Path) -> Result<String, RunError> {
+    let failed = RunError::io(path);
+    match std::fs::read_to_string(path) {
+        Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
+        Ok(_) => Err(failed(io::Error::new(io::ErrorKind::InvalidData, "the file of the token is empty"))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let token = guard::new_token()?;
+            guard::write_private(path, &token).map_err(failed)?;
+            Ok(token)
+        }
+        Err(error) => Err(failed(error)),
+    }
+}
+
+async fn take_connections(listener: &TcpListener, router: axum::Router, mut shutdown: Shutdown) {
+    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let open = GracefulShutdown::new();
+    let mut http = hyper::server::conn::http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(HEAD_DEADLINE);
+    loop {
+        let stream = tokio::select! {
+            accepted = listener.accept() => match accepted {
+                Ok((stream, _)) => stream,
+                // Too many open files, a connection that is gone already: the next one may do.
+                Err(_) => {
+                    tokio::time::sleep(Duration::from_millis(20)).await;
+                    continue;
+                }
+            },
+            () = shutdown.asked() => break,
+        };
+        let Ok(place) = places.clone().try_acquire_owned() else {
+            turn_away(&stream);
+            continue;
+        };
+        let connection =
+            http.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router.clone()));
+        let watched = open.watch(connection);
+        tokio::spawn(async move {
+            // A client that goes away in the middle is no concern of the run.
+            let _ = watched.await;
+            drop(place);
+        });
+    }
+    tokio::select! {
+        () = open.shutdown() => {}
+        () = tokio::time::sleep(LAST_REQUESTS) => {}
+        () = shutdown.asked() => {}
+    }
+}
+
+fn turn_away(stream: &TcpStream) {
+    let _ = stream.try_write(
+        b"HTTP/1.1 503 Service Unavailable\r\ncontent-length: 0\r\nretry-after: 1\r\nconnection: close\r\n\r\n",
+    );
+}

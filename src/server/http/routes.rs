@@ -1,0 +1,168 @@
+//! The routes: what each takes of its body, and which status its answer has.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{Request as HttpRequest, State};
+use axum::http::{StatusCode, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use serde_json::{Map, Value, json};
+
+use super::body::{WrongBody, read_object};
+use super::guard::{Barred, Guard};
+use crate::database::tables;
+use crate::server::openapi;
+use crate::server::owner::Handle;
+use crate::server::request::{Answer, Request, Status};
+use crate::tools::describe::{ToolDocument, document};
+use crate::tools::{CATALOGUE, Numbers};
+
+/// What the routes need.
+#[derive(Clone)]
+struct Door {
+    handle: Handle,
+    guard: Arc<Guard>,
+    numbers: Arc<Numbers>,
+}
+
+/// Every route, behind the guard.
+pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
+    let door = Door { handle, guard: Arc::new(guard), numbers };
+    Router::new()
+        .route("/health", get(health))
+        .route("/vars", get(|door: State<Door>| ask(door, Request::Vars)))
+        .route("/dashboard", get(|door: State<Door>| ask(door, Request::Dashboard)))
+        .route("/game-status", get(|door: State<Door>| ask(door, Request::GameStatus)))
+        .route("/call", post(call))
+        .route("/next-week", post(next_week))
+        .route("/query", post(query))
+        .route(
+            "/daily-scripts",
+            get(|door: State<Door>| ask(door, Request::DailyScripts)).post(keep_script).delete(forget_script),
+        )
+        .route("/tools", get(tools))
+        .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
+        .route("/openapi.json", get(describe))
+        .fallback(unknown)
+        .method_not_allowed_fallback(unknown)
+        .layer(from_fn_with_state(door.clone(), guarded))
+        .with_state(door)
+}
+
+async fn guarded(State(door): State<Door>, request: HttpRequest, next: Next) -> Response {
+    match door.guard.bar(request.headers()) {
+        None => next.run(request).await,
+        Some((answer, Barred::ByToken)) => json_response(StatusCode::UNAUTHORIZED, &answer.body),
+        Some((answer, Barred::ByPlace)) => response(&answer),
+    }
+}
+
+async fn health() -> Response {
+    json_response(StatusCode::OK, &json!({ "status": "ok" }))
+}
+
+async fn unknown(request: HttpRequest) -> Response {
+    let error = format!("there is no route {} {}", request.method(), request.uri().path());
+    json_response(StatusCode::NOT_FOUND, &json!({ "error": error }))
+}
+
+async fn tools(State(door): State<Door>) -> Response {
+    let all: Vec<ToolDocument> = CATALOGUE.iter().map(|tool| document(tool.spec(), &door.numbers)).collect();
+    json_response(StatusCode::OK, &json!(all))
+}
+
+async fn describe(State(door): State<Door>) -> Response {
+    json_response(StatusCode::OK, &openapi::document(&door.numbers))
+}
+
+async fn ask(State(door): State<Door>, request: Request) -> Response {
+    response(&door.handle.ask(request).await)
+}
+
+async fn ask_with(door: &Door, body: Body, request: impl FnOnce(Fields) -> Request) -> Response {
+    match read_object(body).await {
+        Ok(fields) => response(&door.handle.ask(request(Fields(fields))).await),
+        Err(wrong) => wrong_response(&wrong),
+    }
+}
+
+async fn call(State(door): State<Door>, body: Body) -> Response {
+    ask_with(&door, body, |mut fields| {
+        // Where the name of the tool is no text, it names no tool.
+        let tool = match fields.take("tool") {
+            Value::String(name) => name,
+            Value::Null => String::new(),
+            other => other.to_string(),
+        };
+        let args = match fields.take("args") {
+            Value::Null => json!({}),
+            given => given,
+        };
+        Request::Call { tool, args }
+    })
+    .await
+}
+
+async fn next_week(State(door): State<Door>, body: Body) -> Response {
+    ask_with(&door, body, |mut fields| Request::NextWeek {
+        rationale: fields.take("rationale"),
+        predictions: fields.take("predictions"),
+    })
+    .await
+}
+
+async fn query(State(door): State<Door>, body: Body) -> Response {
+    ask_with(&door, body, |mut fields| Request::Query { sql: fields.take("sql") }).await
+}
+
+async fn keep_script(State(door): State<Door>, body: Body) -> Response {
+    ask_with(&door, body, |mut fields| Request::KeepDailyScript {
+        name: fields.take("name"),
+        content: fields.take("content"),
+    })
+    .await
+}
+
+async fn forget_script(State(door): State<Door>, body: Body) -> Response {
+    ask_with(&door, body, |mut fields| Request::ForgetDailyScript { name: fields.take("name") }).await
+}
+
+/// The fields of a body.
+struct Fields(Map<String, Value>);
+
+impl Fields {
+    /// A field; null if it is not there.
+    fn take(&mut self, name: &str) -> Value {
+        self.0.remove(name).unwrap_or(Value::Null)
+    }
+}
+
+fn status_code(status: Status) -> StatusCode {
+    match status {
+        Status::Done => StatusCode::OK,
+        Status::Refused => StatusCode::BAD_REQUEST,
+        Status::Forbidden => StatusCode::FORBIDDEN,
+        Status::Missing => StatusCode::NOT_FOUND,
+        Status::Busy => StatusCode::CONFLICT,
+        Status::Failed => StatusCode::INTERNAL_SERVER_ERROR,
+        Status::TimedOut => StatusCode::GATEWAY_TIMEOUT,
+    }
+}
+
+fn response(answer: &Answer) -> Response {
+    json_response(status_code(answer.status), &answer.body)
+}
+
+fn wrong_response((status, answer): &WrongBody) -> Response {
+    // What is left of a body that was not read would be taken for the next request.
+    let mut response = json_response(*status, &answer.body);
+    response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
+    response
+}
+
+fn json_response(status: StatusCode, body: &Value) -> Response {
+    (status, [(header::CONTENT_TYPE, "application/json")], body.to_string()).into_response()
+}

@@ -1,0 +1,96 @@
+//! The door for clients of the Model Context Protocol, on standard input and output.
+
+mod resources;
+mod tools;
+
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+
+use rmcp::model::{
+    CallToolRequestParams, CallToolResponse, Implementation, ListResourcesResult, ListToolsResult,
+    PaginatedRequestParams, ReadResourceRequestParams, ReadResourceResponse, ServerCapabilities,
+    ServerConfig, Tool,
+};
+use rmcp::service::RequestContext;
+use rmcp::transport::stdio;
+use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
+
+use super::owner::{Handle, Owner};
+use crate::session::{RunError, Session, Via};
+use crate::tools::Numbers;
+
+/// What a client is told first.
+const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
+     with next_week. Read the resource novamind://manual first.";
+
+/// Serves a run on standard input and output until the input ends.
+///
+/// # Errors
+/// The disk did not take the end of the record, or standard input and output cannot be used.
+pub fn serve_mcp(session: Session) -> Result<(), RunError> {
+    let numbers = session.numbers();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
+    let (owner, handle) = Owner::start(session, Via::Mcp, "mcp");
+    let served = runtime.block_on(async {
+        let running = McpDoor { handle, numbers }.serve(stdio()).await.map_err(io::Error::other)?;
+        running.waiting().await.map_err(io::Error::other)
+    });
+    // Reading standard input cannot be cancelled, and nothing is waited for any more.
+    runtime.shutdown_background();
+    owner.finish()?;
+    served.map(drop).map_err(RunError::io(Path::new("standard input")))
+}
+
+/// One client and its run.
+struct McpDoor {
+    handle: Handle,
+    numbers: Arc<Numbers>,
+}
+
+impl ServerHandler for McpDoor {
+    fn get_info(&self) -> ServerConfig {
+        let capabilities = ServerCapabilities::builder().enable_tools().enable_resources().build();
+        ServerConfig::new(capabilities)
+            .with_server_info(Implementation::new("novamind", env!("CARGO_PKG_VERSION")))
+            .with_instructions(INSTRUCTIONS)
+    }
+
+    async fn list_tools(
+        &self,
+        _: Option<PaginatedRequestParams>,
+        _: RequestContext<RoleServer>,
+    ) -> Result<ListToolsResult, ErrorData> {
+        Ok(ListToolsResult::with_all_items(tools::all(&self.numbers)))
+    }
+
+    fn get_tool(&self, name: &str) -> Option<Tool> {
+        tools::all(&self.numbers).into_iter().find(|tool| tool.name == name)
+    }
+
+    async fn call_tool(
+        &self,
+        request: CallToolRequestParams,
+        _: RequestContext<RoleServer>,
+    ) -> Result<CallToolResponse, ErrorData> {
+        let request = tools::request(&request.name, request.arguments.unwrap_or_default());
+        Ok(tools::result(self.handle.ask(request).await).into())
+    }
+
+    async fn list_resources(
+        &self,
+        _: Option<PaginatedRequestParams>,
+        _: RequestContext<RoleServer>,
+    ) -> Result<ListResourcesResult, ErrorData> {
+        Ok(ListResourcesResult::with_all_items(resources::all()))
+    }
+
+    async fn read_resource(
+        &self,
+        request: ReadResourceRequestParams,
+        _: RequestContext<RoleServer>,
+    ) -> Result<ReadResourceResponse, ErrorData> {
+        resources::read(&request.uri, &self.handle, &self.numbers).await.map(Into::into)
+    }
+}

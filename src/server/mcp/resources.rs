@@ -1,0 +1,58 @@
+//! What a client can read without calling a tool: the dashboard, the manual of tools, the tables, the notes.
+
+use rmcp::ErrorData;
+use rmcp::model::{ReadResourceResult, Resource, ResourceContents};
+
+use crate::database::tables;
+use crate::server::owner::Handle;
+use crate::server::request::Request;
+use crate::tools::describe::manual;
+use crate::tools::{CATALOGUE, Numbers};
+
+const DASHBOARD: &str = "novamind://dashboard";
+const MANUAL: &str = "novamind://manual";
+const TABLES: &str = "novamind://tables";
+const MEMO: &str = "novamind://memo";
+
+/// Every resource.
+pub fn all() -> Vec<Resource> {
+    let one = |uri: &str, name: &str, title: &str| {
+        Resource::new(uri, name).with_title(title).with_mime_type("text/plain")
+    };
+    vec![
+        one(DASHBOARD, "dashboard", "The dashboard of the last week"),
+        one(MANUAL, "manual", "Every tool: arguments, effect, cost, refusals, result"),
+        one(TABLES, "tables", "Every table that can be queried, and its columns"),
+        one(MEMO, "memo", "The notes of the run"),
+    ]
+}
+
+/// Reads a resource.
+///
+/// # Errors
+/// There is none of that name.
+pub async fn read(uri: &str, handle: &Handle, numbers: &Numbers) -> Result<ReadResourceResult, ErrorData> {
+    let text = match uri {
+        DASHBOARD => text_of(handle, Request::Dashboard, "/dashboard").await,
+        MEMO => text_of(handle, Request::Memo, "/data/text").await,
+        MANUAL => {
+            let texts: Vec<String> = CATALOGUE.iter().map(|tool| manual(tool.spec(), numbers)).collect();
+            texts.join("\n")
+        }
+        TABLES => {
+            let texts: Vec<String> = tables().iter().map(|table| table.describe()).collect();
+            texts.join("\n")
+        }
+        _ => {
+            let message = format!("there is no resource {uri}; resources/list names them");
+            return Err(ErrorData::resource_not_found(message, None));
+        }
+    };
+    Ok(ReadResourceResult::new(vec![ResourceContents::text(text, uri)]))
+}
+
+async fn text_of(handle: &Handle, request: Request, pointer: &str) -> String {
+    let answer = handle.ask(request).await;
+    let told = answer.body.pointer(pointer).or_else(|| answer.body.get("error"));
+    told.and_then(|text| text.as_str()).unwrap_or_default().to_owned()
+}

@@ -1,0 +1,51 @@
+//! The tools of the catalogue as a client of the protocol sees them.
+
+use std::sync::Arc;
+
+use rmcp::model::{CallToolResult, Tool, ToolAnnotations};
+use serde_json::{Map, Value};
+
+use crate::server::request::{Answer, Request};
+use crate::server::schema;
+use crate::tools::describe::manual;
+use crate::tools::{Kind, Numbers, Spec, ToolId};
+
+/// Every tool.
+pub fn all(numbers: &Numbers) -> Vec<Tool> {
+    schema::specs().map(|spec| tool(spec, numbers)).collect()
+}
+
+fn tool(spec: &'static Spec, numbers: &Numbers) -> Tool {
+    let arguments = Arc::new(schema::arguments(spec, numbers));
+    Tool::new(spec.name(), manual(spec, numbers), arguments).with_annotations(hints(spec))
+}
+
+fn hints(spec: &Spec) -> ToolAnnotations {
+    let settles = matches!(spec.kind, Kind::Read | Kind::Setting);
+    ToolAnnotations::new()
+        .read_only(spec.kind == Kind::Read)
+        .destructive(matches!(spec.kind, Kind::Purchase | Kind::Time))
+        .idempotent(settles)
+        .open_world(false)
+}
+
+/// What a call asks of the run.
+pub fn request(name: &str, mut arguments: Map<String, Value>) -> Request {
+    let mut take = |field: &str| arguments.remove(field).unwrap_or(Value::Null);
+    if name == ToolId::NextWeek.name() {
+        return Request::NextWeek { rationale: take("rationale"), predictions: take("predictions") };
+    }
+    if name == ToolId::Query.name() {
+        return Request::Query { sql: take("sql") };
+    }
+    Request::Call { tool: name.to_owned(), args: arguments.into() }
+}
+
+/// An answer as the result of a call: a refusal is an error that the client reads, never one of the protocol.
+pub fn result(answer: Answer) -> CallToolResult {
+    if answer.succeeded() {
+        CallToolResult::structured(answer.body)
+    } else {
+        CallToolResult::structured_error(answer.body)
+    }
+}

@@ -1,0 +1,20 @@
+//! Programs play through it: the routes of the released simulator over HTTP, and the Model Context Protocol
+//! (docs/interfaces/http.md, docs/interfaces/mcp.md).
+//!
+//! One thread owns the session and answers one request after the other; what waits for the network runs beside it and never
+//! enters `session`. Whoever comes in through a door meets the session that people play: the same calls, refusals and lines.
+
+mod announcement;
+mod answering;
+mod client;
+mod http;
+mod mcp;
+mod openapi;
+mod owner;
+mod request;
+mod schema;
+
+pub use announcement::{Announcement, announced};
+pub use client::write_client;
+pub use http::{HttpOptions, serve_http};
+pub use mcp::serve_mcp;

@@ -1,0 +1,81 @@
+//! The description of the HTTP door as OpenAPI, made of the catalogue.
+
+use serde_json::{Map, Value, json};
+
+use super::schema;
+use crate::tools::{Numbers, ToolId};
+
+/// The whole description.
+pub fn document(numbers: &Numbers) -> Value {
+    json!({
+        "openapi": "3.1.0",
+        "info": {
+            "title": "NovaMind",
+            "version": env!("CARGO_PKG_VERSION"),
+            "description": "One run of a simulated company. Requests are answered one after the other.",
+        },
+        "paths": paths(numbers),
+        "components": { "schemas": schemas(numbers) },
+    })
+}
+
+fn paths(numbers: &Numbers) -> Value {
+    let next_week = Value::Object(schema::arguments(ToolId::NextWeek.spec(), numbers));
+    let script = json!({ "type": "object", "required": ["name"],
+        "properties": { "name": { "type": "string" }, "content": { "type": "string" } } });
+    let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
+    json!({
+        "/health": { "get": read("Whether the server takes requests") },
+        "/vars": { "get": read("The current day") },
+        "/dashboard": { "get": read("The dashboard of the last week, and the day") },
+        "/game-status": { "get": read("Day, cash, subscribers, last day, and how the run ended") },
+        "/tools": { "get": read("Every tool: arguments, effect, cost, refusals, result") },
+        "/tables": { "get": read("Every table that can be queried, and its columns") },
+        "/call": { "post": write("Call a tool", json!({ "oneOf": calls() }),
+            "success and data, or success false with error, code and field") },
+        "/next-week": { "post": write("File rationale and forecasts, and let a week pass", next_week,
+            "day, dashboard, cash, ended") },
+        "/query": { "post": write("Ask the database one statement", sql, "columns, rows, row_count") },
+        "/daily-scripts": {
+            "get": read("Names and sizes of the scripts that are kept"),
+            "post": write("Keep a script; it is never run", script.clone(), "name, registered"),
+            "delete": write("Forget a script", script, "removed"),
+        },
+    })
+}
+
+fn read(summary: &str) -> Value {
+    json!({ "summary": summary, "responses": { "200": { "description": "a JSON object or list" } } })
+}
+
+fn write(summary: &str, body: Value, answer: &str) -> Value {
+    json!({
+        "summary": summary,
+        "requestBody": { "required": true, "content": { "application/json": { "schema": body } } },
+        "responses": {
+            "200": { "description": answer },
+            "400": { "description": "refused, or no JSON object: success false, error, code, field" },
+            "413": { "description": "the body is too large" },
+        },
+    })
+}
+
+fn calls() -> Vec<Value> {
+    let callable = schema::specs().filter(|spec| !matches!(spec.id, ToolId::NextWeek | ToolId::Query));
+    let call = |name: &str| {
+        json!({ "type": "object", "required": ["tool"], "properties": {
+            "tool": { "const": name },
+            "args": { "$ref": format!("#/components/schemas/{name}") },
+        } })
+    };
+    callable.map(|spec| call(spec.name())).collect()
+}
+
+fn schemas(numbers: &Numbers) -> Map<String, Value> {
+    let one = |spec: &crate::tools::Spec| {
+        let mut arguments = schema::arguments(spec, numbers);
+        arguments.insert("description".to_owned(), numbers.fill(spec.summary).into());
+        (spec.name().to_owned(), Value::Object(arguments))
+    };
+    schema::specs().map(one).collect()
+}

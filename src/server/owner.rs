@@ -1,0 +1,153 @@
+//! The thread that owns the session, and the handle by which doors ask it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use tokio::sync::oneshot;
+
+use super::answering::answer;
+use super::request::{Answer, Request, Status};
+use crate::session::record::LeavingCause;
+use crate::session::{Access, Interface, RunError, Session, Via};
+
+/// A request and where its answer goes.
+struct Asked {
+    request: Request,
+    reply: oneshot::Sender<Answer>,
+}
+
+/// The thread that owns a session. It ends when nobody can ask any more.
+pub struct Owner {
+    thread: JoinHandle<Result<(), RunError>>,
+}
+
+impl Owner {
+    /// Gives a session to a thread of its own; the handle asks it.
+    pub fn start(session: Session, via: Via, interface: &'static str) -> (Owner, Handle) {
+        let (sender, receiver) = channel();
+        let advancing = Arc::new(AtomicBool::new(false));
+        let handle = Handle { sender, advancing: advancing.clone() };
+        let owned = Owned { folder: session.folder().map(PathBuf::from), session: Some(session), via };
+        let thread = std::thread::spawn(move || owned.work(&receiver, &advancing, interface));
+        (Owner { thread }, handle)
+    }
+
+    /// Waits until every request is answered and the run is left. All handles must be gone.
+    ///
+    /// # Errors
+    /// What the disk did not take; everything that was confirmed is on it.
+    pub fn finish(self) -> Result<(), RunError> {
+        self.thread.join().unwrap_or(Ok(()))
+    }
+}
+
+/// Asks the owner.
+#[derive(Clone)]
+pub struct Handle {
+    sender: Sender<Asked>,
+    advancing: Arc<AtomicBool>,
+}
+
+impl Handle {
+    /// Asks, and waits for the answer. A week is simulated to its end even if nobody waits any more.
+    pub async fn ask(&self, request: Request) -> Answer {
+        let is_week = matches!(request, Request::NextWeek { .. });
+        if is_week && self.advancing.swap(true, Ordering::AcqRel) {
+            return Answer::wrong(
+                Status::Busy,
+                "week_running",
+                "a week is being simulated; ask for the next one when it has been answered",
+            );
+        }
+        let (reply, answer) = oneshot::channel();
+        if self.sender.send(Asked { request, reply }).is_err() {
+            return gone();
+        }
+        answer.await.unwrap_or_else(|_| gone())
+    }
+}
+
+fn gone() -> Answer {
+    Answer::wrong(Status::Failed, "closing", "the server is closing the run; what was confirmed is kept")
+}
+
+/// The session and what is needed to open it again.
+struct Owned {
+    /// None between a defect of ours and opening the run again.
+    session: Option<Session>,
+    folder: Option<PathBuf>,
+    via: Via,
+}
+
+impl Owned {
+    fn work(
+        mut self,
+        asked: &Receiver<Asked>,
+        advancing: &AtomicBool,
+        interface: &'static str,
+    ) -> Result<(), RunError> {
+        let interface = Interface { name: interface, window: None };
+        if let Some(session) = &mut self.session {
+            session.take_up(interface);
+        }
+        while let Ok(Asked { request, reply }) = asked.recv() {
+            let is_week = matches!(request, Request::NextWeek { .. });
+            let answer = self.answer(request);
+            if is_week {
+                advancing.store(false, Ordering::Release);
+            }
+            // Whoever asked may have gone.
+            let _ = reply.send(answer);
+        }
+        match self.session {
+            Some(mut session) => {
+                session.leave(LeavingCause::Quit);
+                session.save()
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> Answer {
+        if let Err(error) = self.open_again() {
+            return Answer::wrong(Status::Failed, "internal_error", error);
+        }
+        let Some(session) = &mut self.session else { return gone() };
+        let via = self.via;
+        catch_unwind(AssertUnwindSafe(|| answer(session, request, via))).unwrap_or_else(|_| {
+            // What the session holds may be half done; the trajectory is not.
+            self.session = None;
+            internal_error()
+        })
+    }
+
+    /// Opens the run again after a defect of ours.
+    fn open_again(&mut self) -> Result<(), String> {
+        if self.session.is_some() {
+            return Ok(());
+        }
+        let folder = self.folder.as_ref().ok_or("the run was not kept and cannot be opened again")?;
+        let session = Session::open(folder, Access::Write, true).map_err(|error| error.to_string())?;
+        self.session = Some(session);
+        Ok(())
+    }
+}
+
+/// A defect of ours, with a number by which its report on standard error is found.
+fn internal_error() -> Answer {
+    static DEFECTS: AtomicU64 = AtomicU64::new(1);
+    let id =
+        format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
+    eprintln!("request {id} met a defect of the program; the run is opened again from its record");
+    let mut answer = Answer::wrong(
+        Status::Failed,
+        "internal_error",
+        "the program has a defect; what was confirmed before is kept, and the run goes on",
+    );
+    answer.body["request_id"] = id.into();
+    answer
+}

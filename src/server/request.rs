@@ -1,0 +1,119 @@
+//! What a program may ask of a run, and what it is answered.
+
+use serde_json::{Map, Value, json};
+
+use crate::session::Refusal;
+
+/// What a program asks of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Request {
+    /// Call a tool.
+    Call {
+        /// Its name.
+        tool: String,
+        /// Its arguments, as they were sent.
+        args: Value,
+    },
+    /// File rationale and forecasts, and let a week pass.
+    NextWeek {
+        /// Why.
+        rationale: Value,
+        /// Forecasts of four horizons.
+        predictions: Value,
+    },
+    /// Ask the database.
+    Query {
+        /// One statement.
+        sql: Value,
+    },
+    /// The current day.
+    Vars,
+    /// The dashboard of the last week.
+    Dashboard,
+    /// Day, cash, subscribers, and whether the run is over.
+    GameStatus,
+    /// Names and sizes of the scripts that are kept.
+    DailyScripts,
+    /// Keep a script.
+    KeepDailyScript {
+        /// Its name.
+        name: Value,
+        /// Its text.
+        content: Value,
+    },
+    /// Forget a script.
+    ForgetDailyScript {
+        /// Its name.
+        name: Value,
+    },
+    /// The notes of the run.
+    Memo,
+}
+
+/// Whether a request was answered, and how not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// It was; also a tool that refused.
+    Done,
+    /// What was asked is wrong.
+    Refused,
+    /// It may not be asked.
+    Forbidden,
+    /// There is nothing of that name.
+    Missing,
+    /// Another request of its kind is being worked on.
+    Busy,
+    /// It failed.
+    Failed,
+    /// It took too long.
+    TimedOut,
+}
+
+/// What a program is answered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Whether it is what was asked for.
+    pub status: Status,
+    /// The object.
+    pub body: Value,
+}
+
+impl Answer {
+    /// Fields beside `success: true`.
+    pub fn done(fields: Map<String, Value>) -> Answer {
+        let mut body = Map::from_iter([("success".to_owned(), true.into())]);
+        body.extend(fields);
+        Answer { status: Status::Done, body: body.into() }
+    }
+
+    /// What a tool said.
+    pub fn data(data: Value) -> Answer {
+        Answer::done(Map::from_iter([("data".to_owned(), data)]))
+    }
+
+    /// An object as it stands.
+    pub fn plain(body: Value) -> Answer {
+        Answer { status: Status::Done, body }
+    }
+
+    /// A refusal; programs written for the released simulator read `error` and `data`.
+    pub fn refused(status: Status, refusal: &Refusal) -> Answer {
+        let mut body = json!({ "success": false, "error": refusal.message, "code": refusal.code });
+        body["field"] = json!(refusal.field);
+        if !refusal.results.is_empty() {
+            body["results"] = json!(refusal.results);
+        }
+        body["data"] = Value::Null;
+        Answer { status, body }
+    }
+
+    /// Something wrong with a request that no tool looked at.
+    pub fn wrong(status: Status, code: &'static str, message: impl Into<String>) -> Answer {
+        Answer::refused(status, &Refusal::new(code, message))
+    }
+
+    /// Whether it is what was asked for.
+    pub fn succeeded(&self) -> bool {
+        self.status == Status::Done && self.body["success"] != Value::Bool(false)
+    }
+}

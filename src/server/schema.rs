@@ -1,0 +1,111 @@
+//! The arguments of tools as JSON Schema, made of the catalogue.
+
+use serde_json::{Map, Value, json};
+
+use crate::tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
+
+/// Every tool, in the order of the catalogue.
+pub fn specs() -> impl Iterator<Item = &'static Spec> {
+    CATALOGUE.iter().map(|tool| tool.spec())
+}
+
+/// What the arguments of a tool must look like.
+pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
+    let property = |argument: &Argument| {
+        let schema = match (spec.id, argument.name) {
+            (ToolId::NextWeek, "predictions") => predictions(),
+            _ => value(&argument.kind),
+        };
+        (argument.name.to_owned(), described(schema, &numbers.fill(&description(argument))))
+    };
+    let properties: Map<String, Value> = spec.arguments.iter().map(property).collect();
+    let required: Vec<&str> =
+        spec.arguments.iter().filter(|argument| argument.required).map(|argument| argument.name).collect();
+    let mut schema = Map::from_iter([
+        ("type".to_owned(), "object".into()),
+        ("properties".to_owned(), properties.into()),
+        ("additionalProperties".to_owned(), false.into()),
+    ]);
+    if !required.is_empty() {
+        schema.insert("required".to_owned(), json!(required));
+    }
+    schema
+}
+
+fn description(argument: &Argument) -> String {
+    let unit = if argument.unit.is_empty() { String::new() } else { format!(" ({})", argument.unit) };
+    match &argument.kind {
+        ArgumentKind::Structure(words) | ArgumentKind::Deals(words) => {
+            format!("{}{unit}: {words}", argument.doc)
+        }
+        _ => format!("{}{unit}", argument.doc),
+    }
+}
+
+fn described(mut schema: Value, text: &str) -> Value {
+    schema["description"] = text.into();
+    schema
+}
+
+fn value(kind: &ArgumentKind) -> Value {
+    match kind {
+        ArgumentKind::Number(range) => number("number", range),
+        ArgumentKind::Integer(range) => number("integer", range),
+        ArgumentKind::Text => json!({ "type": "string" }),
+        // Their shapes are told in words; the tool says what is wrong with a value.
+        ArgumentKind::Structure(_) => json!({}),
+        ArgumentKind::Deals(_) => json!({ "type": "array" }),
+        ArgumentKind::Map(_, range) => map(number("number", range)),
+        ArgumentKind::Matrix(_, _, range) => map(map(number("number", range))),
+    }
+}
+
+fn map(of: Value) -> Value {
+    json!({ "type": "object", "additionalProperties": of })
+}
+
+fn number(kind: &str, range: &Range) -> Value {
+    let mut schema = json!({ "type": kind });
+    if range.least.is_finite() {
+        schema[if range.above { "exclusiveMinimum" } else { "minimum" }] = json!(range.least);
+    }
+    let most = range.most.min(range.bound);
+    if most.is_finite() {
+        schema["maximum"] = json!(most);
+    }
+    schema
+}
+
+fn predictions() -> Value {
+    let number = json!({ "type": "number" });
+    let forecast = json!({
+        "type": "object",
+        "properties": { "point": number, "lower": number, "upper": number },
+        "required": ["point", "lower", "upper"],
+    });
+    let horizons: Map<String, Value> =
+        FORECAST_KEYS.iter().map(|key| ((*key).to_owned(), forecast.clone())).collect();
+    json!({ "type": "object", "properties": horizons, "required": FORECAST_KEYS })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tool_has_a_schema_that_its_example_meets() {
+        let numbers = Numbers::shipped();
+        for spec in specs() {
+            let schema = arguments(spec, &numbers);
+            let example: Value = serde_json::from_str(spec.example).expect("an example");
+            let known = schema["properties"].as_object().expect("properties");
+            let given = example.as_object().expect("an object");
+            for name in given.keys() {
+                assert!(known.contains_key(name), "{}: {name}", spec.name());
+            }
+            for name in schema.get("required").and_then(Value::as_array).into_iter().flatten() {
+                assert!(given.contains_key(name.as_str().expect("a name")), "{}: {name}", spec.name());
+            }
+        }
+    }
+}

@@ -10,13 +10,13 @@ use serde_json::{Number, Value, json};
 
 pub use crate::world::params::nearest;
 
-/// Size from which a number is written in powers of ten.
-const POWERS_FROM: f64 = 1e15;
+/// Largest number that is written in full: no tool takes a larger amount. What is above it is written in powers of ten.
+const LARGEST_IN_FULL: f64 = 1e15;
 
-/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`; from 1e15 on in powers of ten, `1.5e15`.
+/// A number with thousands separators and fixed decimals, for instance `1,234,567.5`; above 1e15 in powers of ten, `1.5e15`.
 /// Zero has no sign.
 pub fn grouped(value: f64, decimals: usize) -> String {
-    if value.abs() >= POWERS_FROM && value.is_finite() {
+    if value.abs() > LARGEST_IN_FULL && value.is_finite() {
         return in_powers(value);
     }
     let text = format!("{value:.decimals$}");
@@ -93,7 +93,7 @@ pub fn compact(value: f64) -> String {
     // Zero has no sign.
     let value = value + 0.0;
     let size = value.abs();
-    if size >= POWERS_FROM && value.is_finite() {
+    if size > LARGEST_IN_FULL && value.is_finite() {
         return in_powers(value);
     }
     let (scaled, suffix) = match size {

@@ -10,7 +10,7 @@ pub fn settled(lines: Vec<String>) -> Vec<String> {
     lines.into_iter().map(|line| settle(&line)).collect()
 }
 
-/// A text in which no zero has a minus before it, and numbers from 1e15 on are written in powers of ten.
+/// A text in which no zero has a minus before it, and numbers above 1e15 are written in powers of ten.
 pub fn settle(text: &str) -> String {
     let mut settled = String::with_capacity(text.len());
     let mut rest = text;

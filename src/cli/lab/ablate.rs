@@ -20,7 +20,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME|FILE")]
     policy: Option<String>,
     /// Seed, or a range with both ends.
-    #[arg(long, default_value = "1..12", value_name = "N|A..B", value_parser = parse_seeds)]
+    #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: Seeds,
     /// Day whose subscribers are compared, the last one of a week.
     #[arg(long, default_value = "140", value_name = "N", value_parser = parse_week_end)]

@@ -15,7 +15,7 @@ use crate::session::{
     Configuration, DayReport, Ended, Line, Mode, NewRun, Record, Refusal, RunError as SessionError, Session,
     Storage, Via, WeekFigures,
 };
-use crate::tools::ToolId;
+use crate::tools::{Answer, ToolId};
 
 /// What the rationale of a policy's week says before the policy's name.
 const POLICY_RATIONALE: &str = "policy ";
@@ -256,41 +256,49 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
 
 /// The calls of a policy on the present decision day.
 pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
+    decide_telling(policy, seed, session, &mut |_| ())
+}
+
+/// The same; `tell` hears every answer.
+pub(super) fn decide_telling(
+    policy: &Policy,
+    seed: u64,
+    session: &mut Session,
+    tell: &mut dyn FnMut(&Answer),
+) -> Result<(), RunError> {
     let day = session.day();
+    let mut call = |session: &mut Session, tool: &str, arguments: &Value, may_fail: bool| match session.call(
+        tool,
+        arguments,
+        Via::Policy,
+    ) {
+        Err(refusal) if !may_fail => {
+            Err(RunError::Refused { seed, day: session.day(), tool: tool.to_owned(), refusal })
+        }
+        answer => {
+            answer.iter().for_each(&mut *tell);
+            Ok(())
+        }
+    };
     if let Some(rules) = &policy.rule_based {
         for (tool, arguments) in routine::calls(rules, session) {
-            call(seed, session, tool, &arguments, false)?;
+            call(session, tool.as_ref(), &arguments, false)?;
         }
     }
     for scheduled in policy.calls.iter().filter(|call| call.is_due(day)) {
         for _ in 0..scheduled.repeat {
             let symbols = Symbols::of(session.observe().known_groups);
             for arguments in symbols.resolve(&scheduled.arguments) {
-                call(seed, session, &scheduled.tool, &arguments, scheduled.may_fail)?;
+                call(session, &scheduled.tool, &arguments, scheduled.may_fail)?;
             }
         }
     }
     if let Some(rule) = &policy.enterprise {
         for (tool, arguments) in rule.calls(&session.observe().waiting) {
-            call(seed, session, tool, &arguments, false)?;
+            call(session, tool.as_ref(), &arguments, false)?;
         }
     }
     Ok(())
-}
-
-fn call(
-    seed: u64,
-    session: &mut Session,
-    tool: impl AsRef<str>,
-    arguments: &Value,
-    may_fail: bool,
-) -> Result<(), RunError> {
-    match session.call(&tool, arguments, Via::Policy) {
-        Err(refusal) if !may_fail => {
-            Err(RunError::Refused { seed, day: session.day(), tool: tool.as_ref().to_owned(), refusal })
-        }
-        _ => Ok(()),
-    }
 }
 
 /// A week, or the days up to the one to stop after; `watch` sees every day.

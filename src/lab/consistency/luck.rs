@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::lab::policy::Policy;
-use crate::lab::runner::{RunError, RunSpec, advance, decide, is_over, new_run};
+use crate::lab::runner::{RunError, RunSpec, advance, decide_telling, is_over, new_run};
 use crate::session::{Configuration, DayReport, DrawnPart, Follows, KeyedDraws, Refusal, Session, Xray};
+use crate::tools::{Answer, DiscoveryAttempt};
 use crate::world::identifiers::{Channel, Group};
 
 /// What something is called: a day, an attempt, a customer of a group.
@@ -77,8 +78,7 @@ pub fn play_for_luck(
         refusal,
     };
     while !is_over(&session, spec) {
-        decide(policy, spec.seed, &mut session)?;
-        luck.note_decisions(&session).map_err(|refusal| refused(&session, "research_market", refusal))?;
+        decide_telling(policy, spec.seed, &mut session, &mut |answer| luck.note_answer(answer))?;
         luck.note_draws(&mut session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
         advance(policy, spec.seed, until, &mut session, &mut |report| luck.note_day(report))?;
     }
@@ -87,13 +87,14 @@ pub fn play_for_luck(
 }
 
 impl PlayedLuck {
-    /// Attempts that were made since the last day.
-    fn note_decisions(&mut self, session: &Session) -> Result<(), Refusal> {
-        for attempt in &session.xray()?.facts().attempts {
-            let found = attempt.found.map_or(0, |group| group.index() as u64 + 1);
-            self.attempts.insert([attempt.earlier + 1, 0], [found, 0, 0, 0]);
-        }
-        Ok(())
+    /// What an attempt to find a group brought.
+    fn note_answer(&mut self, answer: &Answer) {
+        let Answer::ResearchMarket(attempt) = answer else { return };
+        let found = match attempt {
+            DiscoveryAttempt::Found { discovered_group_id } => discovered_group_id.index() as u64 + 1,
+            DiscoveryAttempt::Nothing { .. } => 0,
+        };
+        self.attempts.insert([self.attempts.len() as u32 + 1, 0], [found, 0, 0, 0]);
     }
 
     /// Draws of the next day that leave no trace of their own in the world.

@@ -396,6 +396,8 @@ mod tests {
         for claim in &found.claims {
             assert_eq!(claim.verdict, ClaimVerdict::Holds, "{claim:?}");
         }
+        let attempts = found.claims.iter().find(|claim| claim.of == "attempts").map(|claim| claim.compared);
+        assert_eq!(attempts, Some(27), "nine weeks of three by the late one, and each is heard of");
         let [early, late] = found.ends;
         assert!(early.cash != late.cash && early.customers != late.customers, "{early:?} {late:?}");
         assert!(early.found > 0 && late.found > 0, "{early:?} {late:?}");

@@ -27,6 +27,7 @@ pub(crate) mod results;
 mod routine;
 mod runner;
 mod seeds;
+mod strong;
 pub mod study;
 mod symbols;
 
@@ -41,3 +42,4 @@ pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
 pub use seeds::{Seeds, parse_seeds};
+pub use strong::STRONG;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
 use super::super::{Context, Failure, print};
-use crate::lab::{PlayedWeeks, Policy, coverage, horizons, measure, play_weeks, policies_of};
+use crate::lab::{PlayedWeeks, Policy, STRONG, coverage, horizons, measure, play_weeks, policies_of};
 use crate::session::Bands;
 use crate::shipped;
 
@@ -17,7 +17,7 @@ pub struct Options {
     /// Seeds of each policy.
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: Seeds,
-    /// Only this policy, by name or path; can be repeated [default: every shipped one].
+    /// Only this policy, by name or path; can be repeated [default: the shipped ones but the strong ones].
     #[arg(long, value_name = "NAME|FILE")]
     only: Vec<String>,
     /// Seeds played at the same time.
@@ -49,7 +49,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 /// Every run, in the order of policies and seeds.
 fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
     let names: Vec<String> = match options.only.is_empty() {
-        true => shipped::policies().into_iter().map(|(name, _)| name.to_owned()).collect(),
+        true => {
+            let names = shipped::policies().into_iter().map(|(name, _)| name);
+            names.filter(|name| !STRONG.contains(name)).map(str::to_owned).collect()
+        }
         false => options.only.clone(),
     };
     let policies: Result<Vec<Policy>, _> =

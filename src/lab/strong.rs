@@ -1,0 +1,46 @@
+//! Strong policies, written by hand: what a company is compared with (docs/interfaces/policies.md#strong-policies).
+
+/// Their names. They have demand surges as the scenario says, as a person has them.
+pub const STRONG: [&str; 4] = ["ads-first", "enterprise-led", "harvest-late", "price-experimenting"];
+
+#[cfg(test)]
+mod tests {
+    use rayon::prelude::*;
+
+    use super::STRONG;
+    use crate::lab::{Collector, Policy, RunEnd, RunSpec, play};
+    use crate::session::Configuration;
+    use crate::shipped;
+
+    /// Seeds that no strong policy was tuned on; the second has a surge while companies sign.
+    const SEEDS: [u64; 2] = [113, 114];
+
+    /// Cash of a living company on day 84 of a run of 500 days, dollars.
+    fn early_cash(name: &str, seed: u64) -> f64 {
+        let configuration = Configuration::shipped();
+        let policy = Policy::find(name, &configuration).expect(name);
+        let spec = RunSpec { until: Some(84), ..RunSpec::of_seed(seed) };
+        let outcome = play(&policy, &spec, &configuration, &mut Collector::idle()).expect(name);
+        assert_eq!(outcome.ended, RunEnd::Until, "{name} on seed {seed}");
+        outcome.cash
+    }
+
+    #[test]
+    fn each_leaves_the_baseline_behind_before_the_hundredth_day() {
+        for seed in SEEDS {
+            let baseline = early_cash("baseline", seed);
+            let cash: Vec<f64> = STRONG.par_iter().map(|name| early_cash(name, seed)).collect();
+            for (name, cash) in STRONG.iter().zip(cash) {
+                assert!(cash > 2.0 * baseline, "{name} on seed {seed}: {cash} beside {baseline}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_is_shipped_and_shares_no_name_with_another() {
+        let mut names: Vec<&str> = shipped::policies().into_iter().map(|(name, _)| name).collect();
+        assert!(STRONG.iter().all(|strong| names.contains(strong)), "{names:?}");
+        names.sort_unstable();
+        assert!(names.windows(2).all(|two| !two[0].eq_ignore_ascii_case(two[1])), "{names:?}");
+    }
+}

@@ -93,7 +93,7 @@ impl From<lab::experiment::ExperimentError> for Failure {
         use lab::experiment::ExperimentError::{Run, Stopped, Store};
         let message = error.to_string();
         match error {
-            Run { error, .. } => Failure { message, ..error.into() },
+            Run { error, .. } => Failure { message, ..(*error).into() },
             Store { .. } => Failure::failed(message),
             // As a shell counts ctrl-c.
             Stopped { .. } => Failure { code: 130, message },

@@ -111,11 +111,10 @@ impl Scheduler<'_> {
         vec![quiet(&mut command)]
     }
 
-    fn wait(mut children: Vec<Child>) -> bool {
-        children
-            .iter_mut()
-            .map(|child| child.wait().expect("it ends").success())
-            .fold(true, |all, own| all && own)
+    /// Whether all of them did what they were to do, once all have ended.
+    fn wait(children: Vec<Child>) -> bool {
+        let ended = children.into_iter().map(|mut child| child.wait().expect("it ends").success());
+        ended.collect::<Vec<bool>>().into_iter().all(|own| own)
     }
 }
 

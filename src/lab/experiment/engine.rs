@@ -36,7 +36,7 @@ pub enum ExperimentError {
         /// Arm.
         arm: String,
         /// What happened.
-        error: RunError,
+        error: Box<RunError>,
     },
     /// Results cannot be kept or read.
     Store {
@@ -132,7 +132,7 @@ impl Experiment {
         for arm in &self.arms {
             let key = ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
                 arm: arm.name.clone(),
-                error: RunError::Start(error),
+                error: Box::new(RunError::Start(error)),
             })?;
             keys.extend(self.seeds.iter().map(|seed| key.of_seed(*seed)));
         }
@@ -231,7 +231,7 @@ impl Prepared<'_> {
         let mut watch = DayWatch::of(&self.experiment.wanted);
         let mut day = |report: &DayReport<'_>| watch.day(report);
         let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
-            .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error })?;
+            .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) })?;
         let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
         Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
     }

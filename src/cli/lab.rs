@@ -2,20 +2,19 @@
 
 mod ablate;
 mod baseline;
+mod behaviour;
 mod bound;
 mod comparison;
-mod curves;
-mod behaviour;
-mod comparison;
 mod consistency;
+mod curves;
 mod difference;
 mod experiments;
 mod forecasts;
 mod laws;
 mod metrics;
 mod output;
-mod study;
 mod results;
+mod study;
 
 use std::path::{Path, PathBuf};
 

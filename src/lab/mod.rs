@@ -10,8 +10,8 @@ pub(crate) mod behaviour;
 pub mod bench;
 pub mod bound;
 pub(crate) mod comparison;
-pub mod curves;
 pub(crate) mod consistency;
+pub mod curves;
 #[cfg(test)]
 mod example_tests;
 pub mod exhibit;

@@ -1,20 +1,26 @@
 //! `novamind class`: hand out a lesson or a run to students, collect what comes back, and show it.
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, Subcommand};
 
 use super::lesson::lesson_of;
+use super::play::show_console;
 use super::run::progress_bar;
 use super::runs::{as_csv, tidy_up_on_signals};
 use super::{Context, Failure, print};
+use crate::console::effect::Effect;
+use crate::console::request::Request;
 use crate::lab::answers_to_companies;
 use crate::report::class::{
     ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
 };
 use crate::report::count;
-use crate::session::{Class, ClassCollection, ClassSources, ToHandOut, find_run_to_read, write_whole};
+use crate::session::{
+    Class, ClassCollection, ClassSources, CollectedClass, ToHandOut, find_run_to_read, write_whole,
+};
 
 /// Options of `class`.
 #[derive(Debug, Args)]
@@ -68,6 +74,9 @@ enum ClassCommand {
         /// Write one page for the projector to this file, without scripts.
         #[arg(long, value_name = "FILE")]
         html: Option<PathBuf>,
+        /// Print it at a terminal, too, instead of opening the screen.
+        #[arg(long, conflicts_with = "html")]
+        text: bool,
     },
 }
 
@@ -87,9 +96,11 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
             new(&what, students, &out)
         }
         ClassCommand::Collect { folder, places } => collect(&folder, &places),
-        ClassCommand::Show { folder, student, decision, figure, hide_names, html } => {
+        ClassCommand::Show { folder, student, decision, figure, hide_names, html, text } => {
             let shown = Shown { hides_names: hide_names, lit: student, decision, figure };
-            show(&folder, shown, html.as_deref())
+            let is_seen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
+            let on_screen = is_seen && !text && html.is_none();
+            show(&folder, shown, html.as_deref(), on_screen.then_some(context))
         }
     }
 }
@@ -146,12 +157,15 @@ fn collect(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
     }
 }
 
-fn show(folder: &Path, shown: Shown, html: Option<&Path>) -> Result<(), Failure> {
-    let class = Class::read(folder)?;
-    let lesson = class.lesson_kept(folder)?;
-    let collection = ClassCollection::read(folder)?;
-    let view = ClassView { class: &class, lesson: lesson.as_ref(), collection: &collection, shown };
+/// Shows a class: as a page, as text, or on the screen of the console.
+fn show(folder: &Path, shown: Shown, html: Option<&Path>, screen: Option<&Context>) -> Result<(), Failure> {
+    let class = CollectedClass::read(folder)?;
+    let view = ClassView::of(&class, shown);
     view.check().map_err(Failure::usage)?;
+    if let Some(context) = screen {
+        let start = Effect::Request(Request::ReadClass(folder.to_owned(), view.shown));
+        return show_console(&super::play::Options::default(), Some(start), context);
+    }
     let Some(path) = html else { return print(&shown_in_words(&view)) };
     std::fs::write(path, as_html(&view))
         .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;

@@ -102,6 +102,7 @@ fn debrief(
     context: &Context,
 ) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, run)?;
+    context.look(&folder, "lesson", "debrief")?;
     let session = Session::open(&folder, Access::Read, true)?;
     let played = session.played_part().map_err(|refusal| Failure::failed(refusal.message))?;
     let debrief = played.debrief(answers_to_companies);

@@ -143,7 +143,7 @@ fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Fai
                     Record::End(end) => Some(end.reason),
                     _ => None,
                 });
-                manifest_of(folder).is_ok_and(|manifest| may_look_inside(&manifest, ended))
+                manifest_of(folder).is_ok_and(|manifest| may_look_inside(&manifest, ended, Some(folder)))
             };
             return answer.map(Some).map_err(|error| match Refusal::from(error) {
                 refusal if may_look() => with_the_way_to_hidden_tables(refusal).into(),

@@ -7,6 +7,8 @@ pub enum Scope {
     Global,
     /// The start menu.
     Menu,
+    /// A class that was collected.
+    Class,
     /// Lists and tables.
     List,
     /// Forms of tools.
@@ -59,7 +61,7 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the help.
-    pub const ALL: [Scope; 26] = [
+    pub const ALL: [Scope; 27] = [
         Scope::Global,
         Scope::List,
         Scope::Form,
@@ -78,6 +80,7 @@ impl Scope {
         Scope::Xray,
         Scope::Dialog,
         Scope::Menu,
+        Scope::Class,
         Scope::Final,
         Scope::Lesson,
         Scope::Viewer,
@@ -93,6 +96,7 @@ impl Scope {
         match self {
             Scope::Global => "global",
             Scope::Menu => "menu",
+            Scope::Class => "class",
             Scope::List => "list",
             Scope::Form => "form",
             Scope::Field => "field",
@@ -125,6 +129,7 @@ impl Scope {
         match self {
             Scope::Global => "Everywhere in a run",
             Scope::Menu => "Start menu",
+            Scope::Class => "Class",
             Scope::List => "Lists and tables",
             Scope::Form => "Forms of tools",
             Scope::Field => "While a value is typed",
@@ -384,6 +389,14 @@ actions! {
         ReplayRun "replay-run" "replay" "Replay the recorded run, read-only, week by week."
         EndRun "end-run" "give up" "End the run for good, after confirmation."
         DeleteRun "delete-run" "delete" "Delete the run and everything in its folder, after confirmation."
+    }
+    Class {
+        ClassDecision "class-decision" "decision" "Plot another decision across: the mean of the weeks in which the student decided."
+        ClassFigure "class-figure" "figure" "Plot another figure up: that of the last week."
+        ClassView "class-view" "below" "In a small window, show below the curves: the decision against the figure, guesses, or pitfalls."
+        ClassQuestion "class-question" "question" "Show the guesses of the next question of the lesson."
+        ClassPart "class-part" "part" "Show the next part of the lesson."
+        HideNames "hide-names" "names" "Hide the names of students, ranks stand for them, or show them again."
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."

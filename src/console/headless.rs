@@ -207,6 +207,7 @@ impl Headless {
             matches!(
                 news,
                 News::Held
+                    | News::HandedOut(_)
                     | News::Unsent(_)
                     | News::TimeLeft(_)
                     | News::Limit(_)

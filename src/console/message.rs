@@ -10,9 +10,10 @@ use super::look_inside::{DaysRan, LookFound};
 use super::readings::Reading;
 use super::resimulation::BranchesFound;
 use crate::report::Story;
+use crate::report::class::Shown;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library, NextStep,
+    Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library, NextStep,
     PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
@@ -69,6 +70,10 @@ pub enum News {
     Preview(String, Result<crate::session::RunPreview, String>),
     /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
     Kept(Result<String, String>, Result<Vec<crate::session::RunSummary>, String>),
+    /// A class was read, to be shown in some way.
+    Class(Box<Result<(CollectedClass, Shown), String>>),
+    /// The runs are those of a student from now on, because a hand-out of theirs was opened.
+    HandedOut(String),
     /// A run is open; with a handle that stops the person's queries.
     Opened(Arc<Company>, Option<Interrupt>),
     /// A run is played again; with a handle that stops the person's queries.

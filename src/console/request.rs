@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::report::class::Shown;
 use crate::session::{Access, ConsentGiven, DecisionEdit, DueQuestion, Forecasts, Goal, Mode, NewRun, Study};
 use crate::tools::ToolId;
 
@@ -18,6 +19,10 @@ pub enum Request {
     EndRun(String),
     /// Delete a run of the folder.
     DeleteRun(String),
+    /// Read a class that was collected, from its folder, to be shown in some way.
+    ReadClass(PathBuf, Shown),
+    /// Begin, or go on with, what a hand-out of a class holds.
+    OpenHandout(PathBuf),
     /// Start a run in the folder.
     Create(Box<NewRun>),
     /// Open a run of the folder by its id, to go on with it or to look at it.
@@ -167,6 +172,8 @@ impl Request {
             | Request::PreviewRun(_)
             | Request::EndRun(_)
             | Request::DeleteRun(_)
+            | Request::ReadClass(..)
+            | Request::OpenHandout(_)
             | Request::Create(_)
             | Request::Open(..)
             | Request::Rescue(_)
@@ -190,6 +197,8 @@ impl Request {
     pub fn busy_with(&self) -> Option<&'static str> {
         Some(match self {
             Request::Create(_) => "starting the run",
+            Request::ReadClass(..) => "reading the class",
+            Request::OpenHandout(_) => "opening the hand-out",
             Request::Open(..) => "opening the run",
             Request::Rescue(_) => "opening the intact part of the run",
             Request::Replay { .. } => "opening the record",

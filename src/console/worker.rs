@@ -6,6 +6,7 @@
 
 mod branches;
 mod causes;
+mod class;
 mod curve;
 mod desk;
 mod folder;
@@ -140,6 +141,7 @@ impl Workers {
                 inside_has_rows: false,
                 inside_stop: stop,
                 news,
+                first_runs: runs.clone(),
                 runs,
                 queries: for_session,
                 configuration,
@@ -199,8 +201,10 @@ impl Open {
 
 struct SessionThread {
     open: Option<Open>,
-    /// The folder of runs.
+    /// The folder of runs: after a hand-out was opened that of its student.
     runs: PathBuf,
+    /// The folder of runs with which the program began.
+    first_runs: PathBuf,
     /// The company as it was shown last.
     company: Option<Arc<Company>>,
     /// When the replay goes on by itself.
@@ -366,6 +370,8 @@ impl SessionThread {
             Request::PreviewRun(id) => self.preview_run(id),
             Request::EndRun(id) => self.end_run(&id),
             Request::DeleteRun(id) => self.delete_run(&id),
+            Request::ReadClass(folder, shown) => self.read_class(&folder, shown),
+            Request::OpenHandout(path) => self.open_handout(&path),
             Request::Create(new) => self.create(*new),
             Request::Open(id, access) => self.open_run(&id, access),
             Request::Rescue(id) => self.rescue(&id),

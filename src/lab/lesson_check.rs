@@ -150,7 +150,12 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
     for figure in &lesson.plan.measured {
         let is_same = |of: &&mut Vec<&MeasuredFigure>| {
-            of.first().is_some_and(|first| first.part == figure.part && first.plays == figure.plays)
+            of.first().is_some_and(|first| {
+                first.part == figure.part
+                    && first.plays == figure.plays
+                    && first.scenario == figure.scenario
+                    && first.parameters == figure.parameters
+            })
         };
         match plays.iter_mut().find(is_same) {
             Some(of) => of.push(figure),
@@ -181,8 +186,9 @@ fn values_of(
 ) -> Result<Vec<Option<f64>>, RunError> {
     let Some(first) = figures.first() else { return Ok(Vec::new()) };
     let last = lesson.plan.parts[first.part].weeks();
+    let world = lesson.in_world_of(first);
     let play = PartPlay {
-        lesson,
+        lesson: &world,
         part: first.part,
         seed: Some(seed),
         plays: &first.plays,

@@ -36,6 +36,7 @@ use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::research::late_in_words;
+use crate::rules::answers_to_companies;
 use crate::session::record::{Help, Select};
 use crate::session::{
     Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
@@ -190,7 +191,8 @@ pub struct Interpreter {
 
 impl Interpreter {
     /// An interpreter with named queries; `prompts` says that a person types and can be asked.
-    pub fn new(session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
+    pub fn new(mut session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
+        session.answer_companies_by(answers_to_companies);
         Interpreter {
             session,
             library,
@@ -236,7 +238,7 @@ impl Interpreter {
             "memo" if rest.is_empty() => self.show_memo(),
             "memo" => self.add_to_memo(rest),
             "explain" | "what" => self.explain(word, rest),
-            "glossary" => glossary(rest),
+            "glossary" => glossary(rest, &self.session),
             "rules" => self.rules(rest, column),
             "xray" => self.hidden_tables(rest, column),
             "why" => self.why(rest, column).unwrap_or_else(usage),

@@ -44,13 +44,20 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     let naive = session.naive_forecasts();
     let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
+    // What a lesson fills in nobody has to type.
+    let fills = session.lesson_fills_forecasts();
+    let left_out = || if fills { (naive.as_predictions(), [true; 4]) } else { (Value::Null, [false; 4]) };
+    let asks_nothing = fills && session.lesson_asks_no_rationale();
     match arguments {
-        [] if prompts => Ok(Filing::Ask),
-        [] => Ok(given(Value::Null, Value::Null, [false; 4])),
+        [] if prompts && !asks_nothing => Ok(Filing::Ask),
+        [] => {
+            let (predictions, filled) = left_out();
+            Ok(given(Value::Null, predictions, filled))
+        }
         [Argument { key: None, value: Value::Object(body), column }] => {
             body.keys().try_for_each(|name| known(name, *column))?;
             let field = |name: &str| body.get(name).cloned().unwrap_or(Value::Null);
-            Ok(given(field("rationale"), field("predictions"), [false; 4]))
+            Ok(filled_in(field("rationale"), field("predictions"), left_out))
         }
         named if named.iter().all(|argument| argument.key.is_some()) => {
             let field = |name: &str| {
@@ -58,7 +65,7 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
                 own.map_or(Value::Null, |argument| argument.value.clone())
             };
             named.iter().try_for_each(|own| known(own.key.as_deref().unwrap_or_default(), own.column))?;
-            Ok(given(field("rationale"), field("predictions"), [false; 4]))
+            Ok(filled_in(field("rationale"), field("predictions"), left_out))
         }
         [only] if is_naive(only) && session.manifest().mode == Mode::Baseline => {
             Ok(given(Value::Null, naive.as_predictions(), [true; 4]))
@@ -67,8 +74,17 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
         [why, only] if why.key.is_none() && is_naive(only) => {
             Ok(given(why.value.clone(), naive.as_predictions(), [true; 4]))
         }
+        [why] if fills && why.key.is_none() => {
+            Ok(given(why.value.clone(), naive.as_predictions(), [true; 4]))
+        }
         [why, numbers @ ..] => Ok(given(why.value.clone(), predictions(why, numbers)?, [false; 4])),
     }
+}
+
+/// What was given, with what stands for predictions that were left out.
+fn filled_in(rationale: Value, given: Value, left_out: impl Fn() -> (Value, [bool; 4])) -> Filing {
+    let (predictions, naive) = if given.is_null() { left_out() } else { (given, [false; 4]) };
+    Filing::Given { rationale, predictions, naive }
 }
 
 /// Refuses an argument that the tool does not have.
@@ -115,7 +131,8 @@ pub fn run(session: &mut Session, filing: Filing) -> Answer {
     match session.advance_given(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
         Ok(week) => report("next", session, &week),
         Err(refusal) if refusal.code == "rationale_missing" => {
-            let message = format!("{}; write next \"WHY\" naive, and help next says more", refusal.message);
+            let form = if session.lesson_fills_forecasts() { "next \"WHY\"" } else { "next \"WHY\" naive" };
+            let message = format!("{}; write {form}, and help next says more", refusal.message);
             Answer::refused("next", Refusal { message, ..refusal })
         }
         Err(refusal) => Answer::refused("next", refusal),
@@ -141,8 +158,9 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
         signed_dollars(figures.cash_change)
     );
     if let Some(ended) = week.ended {
-        let score = session.score().unwrap_or(0.0);
-        text += &format!("run ended: {} · day {} · score {}\n", ended.id(), figures.day, dollars(score));
+        // A lesson has no score.
+        let score = session.score().map_or(String::new(), |score| format!(" · score {}", dollars(score)));
+        text += &format!("run ended: {} · day {}{score}\n", ended.id(), figures.day);
     }
     if session.rules().code_words {
         text += &format!("code: {}\n", session.code_words());
@@ -184,14 +202,18 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
     lines.extend(alike_lines(&seen));
     lines.extend(late_lines(&seen));
     prompt(&format!("{}\n", lines.join("\n")))?;
-    let rationale = loop {
-        match ask_line(input, "why (. cancels)> ")? {
+    let rationale = match session.lesson_asks_no_rationale() {
+        true => None,
+        false => match ask_why(input)? {
             None => return Ok(None),
-            Some(line) if line.trim().is_empty() => prompt("a rationale is required\n")?,
-            Some(line) => break line,
-        }
+            why => why,
+        },
     };
     let mut forecasts = session.naive_forecasts();
+    if session.lesson_fills_forecasts() {
+        let predictions = forecasts.as_predictions();
+        return Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
+    }
     let fields = forecasts.all.iter_mut().zip(&mut forecasts.filled_naively);
     for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]) {
         match ask_forecast(input, weeks, *forecast)? {
@@ -203,6 +225,16 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
     }
     let (predictions, naive) = (forecasts.as_predictions(), forecasts.filled_naively);
     Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive }))
+}
+
+/// The rationale of a week; none when the person cancels.
+fn ask_why(input: &mut Lines) -> io::Result<Option<String>> {
+    loop {
+        match ask_line(input, "why (. cancels)> ")? {
+            Some(line) if line.trim().is_empty() => prompt("a rationale is required\n")?,
+            line => return Ok(line),
+        }
+    }
 }
 
 /// One forecast and whether it is the naive one.

@@ -42,6 +42,7 @@ pub(crate) mod review;
 mod story;
 pub(crate) mod svg;
 pub(crate) mod tables;
+pub mod term_picture;
 #[cfg(test)]
 pub(crate) mod test_kit;
 mod turn;

@@ -29,6 +29,7 @@ pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
 pub use ask::{connection_to_file, rows_as_json, with_the_way_to_hidden_tables};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use class::class_file::{Class, ToHandOut};
+pub use class::collected_class::CollectedClass;
 pub use class::collecting::{ClassCollection, ClassSources};
 pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
 pub use class::finding::ClassFinding;
@@ -49,6 +50,7 @@ pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
 pub use figures::best_channels::best_starting_channel;
 pub use figures::booked::Booked;
 pub use figures::changes::{Change, Decisions};
+pub use figures::churn::churn_of_last_week;
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::Estimates;
 pub use figures::groups::{GroupWeek, PaidLeads};
@@ -74,7 +76,7 @@ pub use folder::manifest::{FORMAT, Manifest, write_whole};
 pub use folder::mode::Mode;
 pub use folder::preview::{RunPreview, run_preview};
 pub use folder::runs::{
-    RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
+    RunSummary, all_run_folders, base_of_runs, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
 };
 pub use folder::world_log::{

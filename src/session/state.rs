@@ -12,6 +12,7 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::list_world;
+use crate::session::lesson::reference::AnswersCompanies;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
@@ -74,6 +75,8 @@ pub struct Session {
     pub(super) hidden_tables: Option<HiddenTables>,
     /// The lesson that it belongs to, and how it went; none outside lessons.
     pub(super) lesson: Option<Box<LessonStanding>>,
+    /// How rules answer companies; none where nobody has said it.
+    pub(super) company_answers: Option<AnswersCompanies>,
     /// Notes of a run without a folder.
     pub(super) memo_in_memory: String,
     /// What the person should know about the opening of the run.

@@ -49,6 +49,11 @@ impl Numbers {
         }
     }
 
+    /// A number by the key of its parameter; none where there is none.
+    pub fn value(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
+    }
+
     /// A text with the values in place of their names. A name that no parameter has stays as it is.
     pub fn fill(&self, text: &str) -> String {
         let mut filled = String::new();

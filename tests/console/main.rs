@@ -1,6 +1,7 @@
 //! The console as a person meets it: stories, pictures, sizes, random keys.
 
 mod behind;
+mod classes;
 mod company;
 mod curve;
 mod figures;

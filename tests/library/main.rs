@@ -10,6 +10,7 @@ mod durability;
 mod enterprise;
 mod faults;
 mod hidden;
+mod lesson_gates;
 mod lessons;
 mod notebook;
 mod overrides;

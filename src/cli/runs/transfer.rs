@@ -43,6 +43,9 @@ pub struct Import {
     /// Archives, as `runs export` makes them.
     #[arg(required = true)]
     files: Vec<PathBuf>,
+    /// Import one archive under this name, beside another record of the same run.
+    #[arg(long, value_name = "NAME")]
+    under: Option<String>,
 }
 
 /// What signs archives, and what seals the snapshots of runs besides the runs.
@@ -258,11 +261,14 @@ impl Import {
     /// Runs the command. One archive that cannot be taken does not keep the others out.
     pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
         tidy_up_on_signals();
+        if self.under.is_some() && self.files.len() > 1 {
+            return Err(Failure::usage("--under names one run: import one archive with it"));
+        }
         let mut failures: Vec<Failure> = Vec::new();
         for file in &self.files {
-            match import_run(runs, file) {
+            match import_run(runs, file, self.under.as_deref()) {
                 Ok((seal, signer, imported)) => {
-                    print(&import_answer(&seal, signer.as_ref(), &imported, json))?;
+                    print(&import_answer(&seal, signer.as_ref(), &imported, json, self.under.as_deref()))?;
                 }
                 Err(error) => failures.push(error.into()),
             }
@@ -283,7 +289,13 @@ impl Import {
     }
 }
 
-fn import_answer(seal: &Seal, signer: Option<&LabPublicKey>, imported: &Imported, json: bool) -> String {
+fn import_answer(
+    seal: &Seal,
+    signer: Option<&LabPublicKey>,
+    imported: &Imported,
+    json: bool,
+    under: Option<&str>,
+) -> String {
     let (new, remark) = match imported {
         Imported::New(_) => (true, "imported; its database is built when it is first opened"),
         Imported::Same { other_memo: false } => (false, "already exists, line for line; nothing was changed"),
@@ -292,12 +304,13 @@ fn import_answer(seal: &Seal, signer: Option<&LabPublicKey>, imported: &Imported
         }
     };
     if json {
-        let answer = json!({ "run": seal.run, "new": new, "lines": seal.last_seq + 1, "checksum": seal.checksum, "signed_by": signer.map(LabPublicKey::fingerprint) });
+        let answer = json!({ "run": under.unwrap_or(&seal.run), "new": new, "lines": seal.last_seq + 1, "checksum": seal.checksum, "signed_by": signer.map(LabPublicKey::fingerprint) });
         return format!("{answer}\n");
     }
     let signed = match signer {
         Some(key) => format!("signed by the lab key {}", key.fingerprint()),
         None => "not signed".to_owned(),
     };
-    format!("run {} {remark}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
+    let name = under.map_or(String::new(), |name| format!(" as {name}"));
+    format!("run {}{name} {remark}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
 }

@@ -46,6 +46,15 @@ impl App {
                     self.follow(effects);
                 }
             }
+            News::Class(read) => {
+                self.busy = None;
+                match (*read, &mut self.stage) {
+                    (Ok((class, shown)), Stage::Menu(menu)) => menu.show_class(class, shown),
+                    (Err(problem), Stage::Menu(menu)) => menu.refused(problem, None),
+                    _ => {}
+                }
+            }
+            News::HandedOut(label) => self.again = as_student(&self.again, &label),
             News::Opened(company, interrupt) => self.opened(company, interrupt, None),
             News::Replays(company, interrupt, place) => {
                 self.opened(company, interrupt, Some(Viewer::new(*place)));
@@ -414,6 +423,13 @@ impl App {
             Err(refusal) => self.complain(refusal.to_string()),
         }
     }
+}
+
+/// The command that goes on with the newest run of a student, made of the one that goes on with somebody's.
+fn as_student(again: &str, label: &str) -> String {
+    let head = again.strip_suffix("--run latest").unwrap_or(again);
+    let head = head.rsplit_once("--as ").map_or(head, |(before, _)| before);
+    format!("{head}--as {label} --run latest")
 }
 
 /// Changes in a sentence: what was set, from what to what.

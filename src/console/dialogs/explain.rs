@@ -229,7 +229,7 @@ impl Dialog for Explain {
         }
         let picture =
             Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
-        term_picture::draw(canvas, picture, &page.term);
+        term_picture::draw(canvas, picture, &page.term, look.company);
         let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
         self.draw_links(canvas, below, look);
         canvas.pane_keys(own, &self.keys(look));

@@ -143,14 +143,14 @@ impl Dialog for Glossary {
         }
         let below = Rect { y: list.bottom(), height: for_text, ..inside };
         if let Some(term) = self.selected() {
-            self.draw_term(canvas, below, term);
+            self.draw_term(canvas, below, term, look);
         }
         canvas.pane_keys(own, &look.hints(&self.hints()));
     }
 }
 
 impl Glossary {
-    fn draw_term(&self, canvas: &mut Canvas<'_>, area: Rect, term: &Term) {
+    fn draw_term(&self, canvas: &mut Canvas<'_>, area: Rect, term: &Term, look: &Look<'_>) {
         if area.is_empty() {
             return;
         }
@@ -167,7 +167,7 @@ impl Glossary {
         {
             canvas.text(row, &line, Role::Text);
         }
-        term_picture::draw(canvas, Rect { x: words.right(), width: taken, ..rest }, &term.id);
+        term_picture::draw(canvas, Rect { x: words.right(), width: taken, ..rest }, &term.id, look.company);
     }
 }
 

@@ -1,33 +1,88 @@
-//! Small pictures beside terms of the glossary: drawn by the functions that decide, of a made-up customer.
+//! Small pictures beside terms of the glossary: figures of the company that is on the screen, drawn as charts are.
 
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
 
-use crate::console::canvas::Canvas;
+use crate::console::canvas::{Align, Canvas, rows_of};
+use crate::console::company::Company;
+use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::chart::{Axis, Line, Plot, Side};
+use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use crate::console::widgets::scale::Unit;
-use crate::notation::dollars;
-use crate::session::example_curve;
+use crate::notation::{compact, dollars};
+pub use crate::report::term_picture::has_picture;
+use crate::report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, TermPicture, term_picture};
 
 /// Lowest picture that can be read.
-pub const LEAST_ROWS: u16 = 5;
+pub const LEAST_ROWS: u16 = 7;
 /// Most rows that one takes.
-pub const MOST_ROWS: u16 = 9;
+pub const MOST_ROWS: u16 = 11;
 /// Columns that one takes beside text.
 pub const COLUMNS: u16 = 44;
-
-/// Whether a term has a picture.
-pub fn has_picture(term: &str) -> bool {
-    matches!(term, "participation-curve" | "required-quality")
-}
+/// Rows that its caption takes at most.
+const CAPTION: usize = 3;
 
 /// Draws the picture of a term, if it has one.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str) {
-    if !has_picture(term) || area.height < LEAST_ROWS {
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Company) {
+    let seen = SeenFigures {
+        weeks: &company.weeks,
+        group_weeks: &company.group_weeks,
+        fits: &company.fits,
+        quality: &company.quality,
+        quality_base: company.quality_base,
+        numbers: &company.numbers,
+    };
+    let Some(TermPicture { caption, drawing }) = term_picture(term, &seen) else { return };
+    if area.height < LEAST_ROWS {
         return;
     }
-    let lines = [Line::through(example_curve(), Role::Series(0))];
-    let x = Axis { write: &|value| dollars(value), holds: &[0.0] };
+    let words = wrapped(&caption, area.width as usize);
+    for (row, line) in rows_of(area).zip(words.iter().take(CAPTION)) {
+        canvas.text(row, line, Role::Dim);
+    }
+    let taken = (words.len().min(CAPTION) as u16).min(area.height);
+    let rest = Rect { y: area.y + taken, height: area.height - taken, ..area };
+    match drawing {
+        Some(TermDrawing::Lines(own)) => draw_lines(canvas, rest, &own),
+        Some(TermDrawing::Bars(bars)) => draw_bars(canvas, rest, &bars),
+        None => {}
+    }
+}
+
+fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
+    let line = |(at, (name, points)): (usize, &(&'static str, Vec<(f64, f64)>))| {
+        Line::through(points.clone(), Role::Series(at)).named(name)
+    };
+    let lines: Vec<Line> = own.lines.iter().enumerate().map(line).collect();
+    let band = Band { ends: own.band.clone(), name: "" };
+    let write = |value: f64| match own.across {
+        Across::Dollars => dollars(value),
+        Across::Weeks => format!("wk {value:.0}"),
+        Across::Share => compact(value),
+    };
+    let x = Axis { write: &write, holds: &[] };
     let y = Side { unit: Unit::Number, holds: &[0.0] };
-    Plot { lines: &lines, band: None, mark: None, x: &x, y: &y }.draw(canvas, area);
+    let sign = |(plan, x, y): &(crate::world::identifiers::Plan, f64, f64)| Sign {
+        x: *x,
+        y: *y,
+        text: plan.id(),
+        role: Role::Strong,
+    };
+    let signs: Vec<Sign> = own.plans.iter().map(sign).collect();
+    let band = (!own.band.is_empty()).then_some(&band);
+    Plot { lines: &lines, band, mark: None, x: &x, y: &y }.draw_with(canvas, area, &signs);
+}
+
+fn draw_bars(canvas: &mut Canvas<'_>, area: Rect, bars: &[(String, f64)]) {
+    let most = bars.iter().map(|bar| bar.1).fold(0.0, f64::max);
+    let names = bars.iter().map(|bar| bar.0.width()).max().unwrap_or(0) as u16;
+    for (row, (name, value)) in rows_of(area).zip(bars) {
+        canvas.text(Rect { width: names.min(row.width), ..row }, name, Role::Text);
+        let after =
+            |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
+        canvas.aligned(after(names + 1, 7), &compact(*value), Role::Text, Align::Right);
+        let room = row.width.saturating_sub(names + 9);
+        let cells = if most > 0.0 { (value.max(0.0) / most * f64::from(room)).round() as usize } else { 0 };
+        canvas.text(after(names + 9, room), &"█".repeat(cells), Role::Series(0));
+    }
 }

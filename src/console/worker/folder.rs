@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::{Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Instead, News};
+use crate::rules::answers_to_companies;
 use crate::session::record::LeavingCause;
 use crate::session::{
     Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
@@ -128,6 +129,7 @@ impl SessionThread {
                 return self.say(News::NotOpened(problem.to_string(), instead));
             }
         };
+        session.answer_companies_by(answers_to_companies);
         let interrupt = self.queries.connect(&session);
         (self.mending, self.inside) = (None, None);
         let mut company = Company::in_lesson(&mut session, None);

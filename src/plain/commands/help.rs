@@ -149,7 +149,8 @@ next \"WHY\" naive                         naive forecasts
 next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks
 next_week {\"rationale\": \"WHY\", \"predictions\": {\"cash_1wk\": {\"point\": 950000, \"lower\": 900000, \"upper\": 990000}, \
 \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}
-next                                     asks, at a terminal
+next                                     asks, at a terminal; in a lesson that asks for neither rationale nor forecasts it runs
+                                         the week
 Naive forecasts: income, compute and lead costs go on as in the last four weeks, at the costs set now.";
     match led {
         true => forms.to_owned(),

@@ -4,7 +4,9 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use crate::glossary::{self, Explanation, Subject, Term, terms};
-use crate::session::Numbers;
+use crate::report::fit::fits;
+use crate::report::term_picture::{SeenFigures, has_picture, term_picture};
+use crate::session::{Numbers, Session};
 
 /// `explain TERM`, and `what TERM`.
 pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
@@ -40,8 +42,25 @@ pub(super) fn answer(command: &str, subject: Subject, numbers: &Numbers) -> Answ
     Answer::done(command, told.as_text(), data)
 }
 
-/// `glossary [WORD]`.
-pub(super) fn glossary(word: &str) -> Answer {
+/// The picture of a term from figures of the run, as text.
+fn picture_of(term: &Term, session: &Session) -> Option<String> {
+    if !has_picture(&term.id) {
+        return None;
+    }
+    let (fits, quality, numbers) = (fits(session), session.delivered_quality(), session.numbers());
+    let seen = SeenFigures {
+        weeks: session.weeks(),
+        group_weeks: session.group_weeks(),
+        fits: &fits,
+        quality: &quality,
+        quality_base: session.quality_base(),
+        numbers: &numbers,
+    };
+    term_picture(&term.id, &seen).map(|picture| picture.as_text())
+}
+
+/// `glossary [WORD]`; of a word that is a term with a picture, the picture follows.
+pub(super) fn glossary(word: &str, session: &Session) -> Answer {
     let wanted = word.to_lowercase();
     let holds = |term: &&Term| {
         [&term.id, &term.title, &term.text].iter().any(|text| text.to_lowercase().contains(&wanted))
@@ -62,7 +81,16 @@ pub(super) fn glossary(word: &str) -> Answer {
         text += &format!("  {:<width$}  {}\n", term.id, term.text);
     }
     let count = if found.len() == 1 { "1 term".to_owned() } else { format!("{} terms", found.len()) };
-    Answer::done("glossary", format!("{text}({count}; explain TERM for more)"), json!({ "terms": found }))
+    let picture = match glossary::find(word) {
+        Ok(Subject::Term(term)) => picture_of(term, session),
+        _ => None,
+    };
+    let mut data = json!({ "terms": found });
+    if let Some(picture) = &picture {
+        data["picture"] = picture.as_str().into();
+    }
+    let picture = picture.map_or(String::new(), |picture| format!("\n{picture}"));
+    Answer::done("glossary", format!("{text}({count}; explain TERM for more)\n{picture}").trim_end(), data)
 }
 
 #[cfg(test)]
@@ -167,11 +195,27 @@ mod tests {
 
     #[test]
     fn the_glossary_lists_terms_by_topic_and_with_a_word() {
-        let all = glossary("").as_text();
+        let run = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
+        let all = glossary("", &run).as_text();
         assert!(all.starts_with("money\n  cash ") && all.contains("\ncustomers\n"), "{all}");
         assert!(all.lines().count() > 110);
-        let some = glossary("Churn").as_text();
+        let some = glossary("Churn", &run).as_text();
         assert!(some.contains("retention-thread") && !some.contains("runway"), "{some}");
-        assert!(!glossary("no such word").is_ok());
+        assert!(!glossary("no such word", &run).is_ok());
+    }
+
+    #[test]
+    fn a_term_with_a_picture_is_drawn_from_the_figures_of_the_run() {
+        let run = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
+        for (word, part) in [
+            ("participation curve", "a budget of $50"),
+            ("fit", "Shaded lies the mean floor"),
+            ("spill-over", "reaches a group"),
+            ("quality-bank", "without additions      "),
+        ] {
+            let told = glossary(word, &run).as_text();
+            assert!(told.contains(part) && told.contains("explain TERM for more"), "{word}: {told}");
+        }
+        assert!(!glossary("churn", &run).as_text().contains(" |"));
     }
 }

@@ -1,11 +1,11 @@
 //! The curves of a class, and a decision against a figure.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::{ClassView, RankedStudent};
+use super::{CASH, ClassView, RankedStudent};
 
 /// A line or a point of a student in a drawing.
-pub(super) struct StudentPoints<'a> {
+pub struct StudentPoints<'a> {
     /// Label; none for the good play.
     pub label: Option<&'a str>,
     /// Where it lies.
@@ -13,7 +13,7 @@ pub(super) struct StudentPoints<'a> {
 }
 
 /// Cash by day in a part, of the good play and of every student in the ranking.
-pub(super) fn curves<'a>(
+pub fn curves<'a>(
     view: &'a ClassView<'a>,
     ranking: &[RankedStudent<'a>],
     part: u32,
@@ -31,7 +31,7 @@ pub(super) fn curves<'a>(
 }
 
 /// A decision against a figure.
-pub(super) struct Scatter<'a> {
+pub struct Scatter<'a> {
     /// The decision: its mean over the weeks in which the student decided.
     pub decision: String,
     /// The figure of the last week.
@@ -41,11 +41,7 @@ pub(super) struct Scatter<'a> {
 }
 
 /// The scatter of a part; none where students do not differ in any decision.
-pub(super) fn scatter<'a>(
-    view: &ClassView<'a>,
-    ranking: &[RankedStudent<'a>],
-    part: u32,
-) -> Option<Scatter<'a>> {
+pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u32) -> Option<Scatter<'a>> {
     let runs: Vec<_> = ranking
         .iter()
         .filter_map(|student| {
@@ -54,9 +50,9 @@ pub(super) fn scatter<'a>(
         .collect();
     let decision = view.shown.decision.clone().or_else(|| {
         let all: Vec<&BTreeMap<String, f64>> = runs.iter().map(|(_, run)| &run.evidence.decisions).collect();
-        most_different(&all)
+        by_difference(&all).into_iter().next()
     })?;
-    let figure = view.shown.figure.clone().unwrap_or_else(|| "cash".to_owned());
+    let figure = view.shown.figure.clone().unwrap_or_else(|| CASH.to_owned());
     let point = |(label, run): &(&'a str, &&'a crate::session::ClassRun)| {
         let across = run.evidence.decisions.get(&decision).copied().unwrap_or(0.0);
         Some(StudentPoints {
@@ -68,20 +64,22 @@ pub(super) fn scatter<'a>(
     Some(Scatter { decision, figure, points })
 }
 
-/// The decision whose values lie furthest apart, as a share of the largest.
-fn most_different(all: &[&BTreeMap<String, f64>]) -> Option<String> {
-    let names = all.iter().flat_map(|own| own.keys());
+/// Names of the decisions in which students differ: the one with more different values first, then the one whose values lie
+/// further apart as a share of the largest. Of two that reach equally far, more values tell more.
+pub(super) fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));
         let (least, most) = values()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
-        let distinct: std::collections::BTreeSet<u64> = values().map(f64::to_bits).collect();
-        // Of two that reach equally far, the one with more different values tells more.
-        ((most - least) / most.abs().max(least.abs()).max(1e-9), distinct.len())
+        let distinct: BTreeSet<u64> = values().map(f64::to_bits).collect();
+        (distinct.len(), (most - least) / most.abs().max(least.abs()).max(1e-9))
     };
-    let sorted: std::collections::BTreeSet<&String> = names.collect();
-    let best =
-        sorted.into_iter().rev().map(|name| (spread(name), name)).filter(|((spread, _), _)| *spread > 1e-9);
-    best.max_by(|(one, _), (other, _)| one.1.cmp(&other.1).then(one.0.total_cmp(&other.0)))
-        .map(|(_, name)| name.clone())
+    let names: BTreeSet<&String> = all.iter().flat_map(|own| own.keys()).collect();
+    let mut apart: Vec<((usize, f64), &String)> = names
+        .into_iter()
+        .map(|name| (spread(name), name))
+        .filter(|((_, spread), _)| *spread > 1e-9)
+        .collect();
+    apart.sort_by(|(one, _), (other, _)| other.0.cmp(&one.0).then(other.1.total_cmp(&one.1)));
+    apart.into_iter().map(|(_, name)| name.clone()).collect()
 }

@@ -4,7 +4,7 @@ use super::ClassView;
 use crate::session::{ClassRun, GuessForm};
 
 /// A question of the lesson and the answers of the class.
-pub(super) struct AskedClass<'a> {
+pub struct AskedClass<'a> {
     /// The part, counted from 1.
     pub part: u32,
     /// The question.
@@ -16,7 +16,7 @@ pub(super) struct AskedClass<'a> {
 }
 
 /// The questions of the lesson, in order.
-pub(super) fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
+pub fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let mut all = Vec::new();
     for (part, own) in (1..).zip(parts) {
@@ -56,8 +56,19 @@ pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
     all.filter(|(_, own)| own.guess.is_some() && own.guess == own.outcome).count()
 }
 
-/// How many students met each pitfall, the most frequent first: name, what is said, how many.
-pub(super) fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<(&'a str, String, usize)> {
+/// A pitfall that somebody met.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PitfallMet<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// What is said of it.
+    pub say: String,
+    /// How many students met it.
+    pub students: usize,
+}
+
+/// The pitfalls that students met, the most frequent first.
+pub fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<PitfallMet<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
     let met_by = |name: &str| {
         let labels: std::collections::BTreeSet<&str> = view
@@ -68,8 +79,12 @@ pub(super) fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<(&'a str, String, usi
         labels.len()
     };
     let say = |text: &str| view.lesson.map(|lesson| lesson.filled(text)).unwrap_or_default();
-    let counted = known.iter().map(|own| (own.name.as_str(), say(&own.say), met_by(&own.name)));
-    let mut all: Vec<(&str, String, usize)> = counted.filter(|(_, _, count)| *count > 0).collect();
-    all.sort_by(|one, other| other.2.cmp(&one.2).then_with(|| one.0.cmp(other.0)));
+    let counted = known.iter().map(|own| PitfallMet {
+        name: &own.name,
+        say: say(&own.say),
+        students: met_by(&own.name),
+    });
+    let mut all: Vec<PitfallMet<'a>> = counted.filter(|own| own.students > 0).collect();
+    all.sort_by(|one, other| other.students.cmp(&one.students).then_with(|| one.name.cmp(other.name)));
     all
 }

@@ -171,11 +171,11 @@ fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
 
 fn pitfalls_met(view: &ClassView<'_>) -> String {
     let met = pitfalls(view);
-    let Some((_, say, _)) = met.first() else { return String::new() };
-    let rows = met.iter().enumerate().map(|(at, (name, _, count))| ((*name).to_owned(), *count, at == 0));
+    let Some(most) = met.first() else { return String::new() };
+    let rows = met.iter().enumerate().map(|(at, own)| (own.name.to_owned(), own.students, at == 0));
     format!(
         "<section>\n<h2>Pitfalls</h2>\n<p>{}</p>\n{}</section>\n",
-        escaped(say),
+        escaped(&most.say),
         bars(rows, view.class.students.len())
     )
 }

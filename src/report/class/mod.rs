@@ -8,18 +8,24 @@ mod ranking;
 mod table;
 mod words;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub use curves::{Scatter, StudentPoints, curves, scatter};
+pub use guesses::{AskedClass, PitfallMet, asked, pitfalls};
 pub use html::as_html;
-use ranking::RankedStudent;
+pub use ranking::{RankedStudent, ranked};
 pub use table::{columns_table, rows};
-pub use words::{collected_in_words, shown_in_words};
+pub use words::{collected_in_words, score_in_words, shown_in_words, state_in_words};
 
 use crate::notation::nearest;
 use crate::session::{
-    Class, ClassCollection, ClassRun, Evidence, GoalBound, Lesson, LessonPart, RunVerdict, ranked_goal,
-    share_of_good,
+    Class, ClassCollection, ClassRun, CollectedClass, Evidence, GoalBound, Lesson, LessonPart, RunVerdict,
+    ranked_goal, share_of_good,
 };
+
+/// The figure of the scatter that is shown where none is named.
+const CASH: &str = "cash";
 
 /// A class and what came back of it, as it is to be shown.
 pub struct ClassView<'a> {
@@ -44,6 +50,14 @@ pub struct Shown {
     pub decision: Option<String>,
     /// The figure of the scatter; cash if none is named.
     pub figure: Option<String>,
+}
+
+impl<'a> ClassView<'a> {
+    /// A class as it is to be shown.
+    pub fn of(class: &'a CollectedClass, shown: Shown) -> ClassView<'a> {
+        let CollectedClass { class, lesson, collection } = class;
+        ClassView { class, lesson: lesson.as_ref(), collection, shown }
+    }
 }
 
 impl ClassView<'_> {
@@ -81,19 +95,32 @@ impl ClassView<'_> {
             .filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished))
     }
 
+    /// Names of the decisions of a part, the one in which students differ most first; parts are counted from 1.
+    pub fn decisions(&self, part: u32) -> Vec<String> {
+        let own = self.whole().filter(|run| run.evidence.part == part);
+        curves::by_difference(&own.map(|run| &run.evidence.decisions).collect::<Vec<_>>())
+    }
+
+    /// Names of the figures that a run has, cash first.
+    pub fn figures(&self) -> Vec<String> {
+        let all: BTreeSet<&String> = self.whole().flat_map(|run| run.evidence.figures.keys()).collect();
+        let (cash, others): (Vec<&String>, Vec<&String>) = all.into_iter().partition(|name| *name == CASH);
+        cash.into_iter().chain(others).cloned().collect()
+    }
+
     /// How many parts are played.
-    fn parts(&self) -> u32 {
+    pub fn parts(&self) -> u32 {
         self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32)
     }
 
     /// Title of a part, where there are several; parts are counted from 1.
-    fn part_title(&self, part: u32) -> Option<&str> {
+    pub fn part_title(&self, part: u32) -> Option<&str> {
         let own = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
         (self.parts() > 1).then_some(own.title.as_str())
     }
 
     /// What is played, in short.
-    fn title(&self) -> String {
+    pub fn title(&self) -> String {
         match (self.lesson, &self.class.run) {
             (Some(lesson), _) => lesson.plan.title.clone(),
             (None, Some(past)) => format!("Run {} from day {} on", past.run, past.day),
@@ -132,7 +159,7 @@ impl ClassView<'_> {
     }
 
     /// What the ranking goes by, in words.
-    fn measure(&self) -> String {
+    pub fn measure(&self) -> String {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };

@@ -86,6 +86,11 @@ pub fn collected_in_words(view: &ClassView<'_>) -> String {
 }
 
 fn headline(view: &ClassView<'_>) -> String {
+    format!("{} · {}", view.title(), state_in_words(view))
+}
+
+/// How many students there are, and what came back, in few words.
+pub fn state_in_words(view: &ClassView<'_>) -> String {
     let students = view.class.students.len() as u32;
     let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
     let verdicts = [
@@ -104,7 +109,7 @@ fn headline(view: &ClassView<'_>) -> String {
         .collect();
     let runs =
         if runs.is_empty() { "no run came back".to_owned() } else { format!("runs: {}", runs.join(", ")) };
-    format!("{} · {} · {runs}", view.title(), count(students, "student"))
+    format!("{} · {runs}", count(students, "student"))
 }
 
 /// The class for a terminal: ranking, curves, a decision against a figure, guesses, pitfalls, and what is wrong.
@@ -118,10 +123,11 @@ pub fn shown_in_words(view: &ClassView<'_>) -> String {
     }
     text += &guesses_in_words(view, &ranking);
     let met = pitfalls(view);
-    if let Some((name, say, most)) = met.first() {
-        text += &format!("\nThe pitfall met most: {name}, by {}. {say}\n", count(*most as u32, "student"));
-        for (name, _, own) in &met[1..] {
-            text += &format!("  {name}: {own}\n");
+    if let Some((most, others)) = met.split_first() {
+        let students = count(most.students as u32, "student");
+        text += &format!("\nThe pitfall met most: {}, by {students}. {}\n", most.name, most.say);
+        for own in others {
+            text += &format!("  {}: {}\n", own.name, own.students);
         }
     }
     match view.shown.hides_names {
@@ -141,10 +147,7 @@ fn ranking_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> Stri
     let heading = if view.lesson.is_some() { "of good" } else { "cash" };
     let mut text = format!("rank  {:<width$}  {heading:>12}  tries  hints  goals  pitfalls\n", "student");
     for (at, student) in ranking.iter().enumerate() {
-        let score = match view.lesson {
-            Some(_) => percent(student.score, 0),
-            None => money(student.score),
-        };
+        let score = score_in_words(view, student);
         text += format!(
             "{:>4}  {:<width$}  {score:>12}  {:>5}  {:>5}  {:>5}  {}",
             at + 1,
@@ -160,25 +163,33 @@ fn ranking_in_words(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> Stri
     text
 }
 
+/// What a student is ranked by: a share of the good play, or dollars.
+pub fn score_in_words(view: &ClassView<'_>, student: &RankedStudent<'_>) -> String {
+    match view.lesson {
+        Some(_) => percent(student.score, 0),
+        None => money(student.score),
+    }
+}
+
 impl RankedStudent<'_> {
     /// The highest try of the runs that count.
-    pub(super) fn tries(&self) -> u32 {
+    pub fn tries(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
     }
 
     /// Hints in the runs that count.
-    pub(super) fn hints(&self) -> u32 {
+    pub fn hints(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.hints).sum()
     }
 
     /// Goals that were reached, and goals that were judged: `2/3`.
-    pub(super) fn goals(&self) -> String {
+    pub fn goals(&self) -> String {
         let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
         format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())
     }
 
     /// Names of the pitfalls that were met.
-    pub(super) fn pitfalls(&self) -> String {
+    pub fn pitfalls(&self) -> String {
         let all: Vec<&str> =
             self.runs.iter().flat_map(|run| &run.evidence.pitfalls).map(String::as_str).collect();
         all.join(" ")

@@ -15,10 +15,10 @@ use crate::session::archive::{
 };
 use crate::session::error::RunError;
 use crate::session::folder::manifest::{Manifest, sync_folder};
-use crate::session::folder::runs::{all_run_folders, label_of, participant_folder};
+use crate::session::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
 use crate::session::folder::world_log::list_world;
 use crate::session::resume::open::check_start;
-use crate::session::trajectory::Trajectory;
+use crate::session::trajectory::{Line, Record, Trajectory};
 
 /// What became of an archive.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,14 +35,15 @@ pub enum Imported {
 /// The seal of an archive, who signed it, and what became of its run.
 pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
 
-/// Takes the run of an archive into a folder of runs; tells whose signature it has, if it has one. Everything is checked before anything is there: the seal, the hash
-/// of every file, the chain of the trajectory, and that nothing else is in the archive.
+/// Takes the run of an archive into a folder of runs; tells whose signature it has, if it has one. Everything is checked
+/// before anything is there: the seal, the hash of every file, the chain of the trajectory, and that nothing else is in the
+/// archive. Under a name of its own it stands beside another record of the same run; its lines keep saying which run it is.
 ///
 /// # Errors
 /// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
-/// state of the run is there. Nothing has changed then.
-pub fn import_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> {
-    let (seal, signer, imported) = place_run(runs, archive)?;
+/// state of the run is there, or the name is taken; [`RunError::NotPossible`] for what is no name. Nothing has changed then.
+pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
+    let (seal, signer, imported) = place_under(runs, archive, name)?;
     if let Imported::New(place) = &imported
         && let Ok(Manifest { seed, scenario, study, .. }) = Manifest::read(place)
     {
@@ -57,6 +58,15 @@ pub fn import_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> 
 /// # Errors
 /// The same.
 pub(in crate::session) fn place_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> {
+    place_under(runs, archive, None)
+}
+
+fn place_under(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
+    if let Some(name) = name.filter(|name| !is_folder_name(name)) {
+        let message =
+            format!("{name} is no name for a run: up to 40 letters, digits, - and _. Nothing was imported");
+        return Err(RunError::NotPossible(message));
+    }
     let workshop = Workshop::within(runs)?;
     let unpacked = unpack(archive, workshop.path())?;
     let seal = check_seal(archive, &unpacked)?;
@@ -66,13 +76,21 @@ pub(in crate::session) fn place_run(runs: &Path, archive: &Path) -> Result<Impor
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
     let folder = folder_for(runs, &draft, &seal)?;
-    // A run is on a machine once, whoever's folder it is in.
-    let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(&seal.run));
+    // A name is on a machine once, whoever's folder it is in.
+    let own_name = name.unwrap_or(&seal.run);
+    let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(own_name));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
-        let same = compare(&draft, &place, &seal)?;
+        let same = match name {
+            None => compare(&draft, &place, &seal)?,
+            Some(name) => {
+                let message =
+                    format!("there is a run {name} in {} already. Nothing was imported", place.display());
+                return Err(RunError::Exists(message));
+            }
+        };
         return Ok((seal, signer, same));
     }
-    let place = folder.join(&seal.run);
+    let place = folder.join(own_name);
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
     sync_folder(&folder)?;
@@ -276,15 +294,58 @@ fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError
         return Ok(Imported::Same { other_memo: read(draft, MEMO) != read(place, MEMO) });
     }
     let how = if there.starts_with(&own) {
-        "it is the same run, played further since the archive was made"
+        "it is the same run, played further since the archive was made".to_owned()
     } else if own.starts_with(&there) {
-        "the archive holds a later state of it; delete or move the older one to import it"
+        "the archive holds a later state of it; delete or move the older one to import it".to_owned()
     } else {
-        "it is another one, or was changed"
+        difference(draft, place)
     };
     Err(RunError::Exists(format!(
-        "run {} already exists in {}: {how}. Nothing was changed",
+        "run {} already exists in {}: {how}. Nothing was changed; --under NAME imports the record beside it, under another name",
         seal.run,
         place.display()
     )))
+}
+
+/// In what two records of a run differ.
+fn difference(draft: &Path, place: &Path) -> String {
+    let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY)).map(|read| read.lines);
+    let own = lines(draft).unwrap_or_default();
+    let there = match lines(place) {
+        Ok(lines) if !lines.is_empty() => lines,
+        Ok(_) => return "the record there has no line".to_owned(),
+        Err(problem) => return format!("the record there cannot be compared ({problem})"),
+    };
+    let same = own.iter().zip(&there).take_while(|(own, there)| own.hash == there.hash).count();
+    let reach = |lines: &[Line]| {
+        let day = lines.last().map_or(0, |line| line.day);
+        format!("{} lines up to day {day}", lines.len())
+    };
+    let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), line_in_words);
+    if own.len() == there.len() && same == own.len() {
+        return "the lines are the same, and run.toml is another one".to_owned();
+    }
+    format!(
+        "the records differ from line {} on: there it is {}, in the archive {}; there are {}, in the archive {}",
+        same + 1,
+        line(&there),
+        line(&own),
+        reach(&there),
+        reach(&own)
+    )
+}
+
+/// A line in few words: its kind, the tool of a call, the day and the moment.
+fn line_in_words(line: &Line) -> String {
+    let what = match &line.record {
+        Record::Call(call) => format!("a call of {}", call.tool),
+        record => format!("a line {}", record.kind()),
+    };
+    format!("{what} on day {}, written {}", line.day, line.at)
+}
+
+/// Whether a folder of runs can hold a run under a name.
+fn is_folder_name(name: &str) -> bool {
+    let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'-' | b'_');
+    (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS
 }

@@ -182,7 +182,8 @@ impl Handout {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
-        if folder.exists() {
+        // A program that ended before the first line has left nothing that counts.
+        if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
             return Err(RunError::Exists(format!(
                 "{} is there, and is no run of this hand-out. Nothing was changed; move that folder away, and open the hand-out \
                  again",

@@ -5,6 +5,7 @@
 //! told apart.
 
 pub(in crate::session) mod class_file;
+pub(in crate::session) mod collected_class;
 pub(in crate::session) mod collecting;
 pub(in crate::session) mod evidence;
 pub(in crate::session) mod finding;

@@ -11,6 +11,7 @@ use super::kept_state::KeptState;
 use super::script::{Move, between, moves};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
+use crate::session::lesson::over::is_lesson_over;
 use crate::session::playback::{Origin, read};
 
 /// Moments that are kept in memory besides the first: a moment is as large as its company.
@@ -26,7 +27,7 @@ pub(in crate::session) struct Past {
     pub(in crate::session) manifest: Manifest,
     /// Everything that moved it on.
     moves: Vec<Move>,
-    /// Whether it is over.
+    /// Whether it is over, and the lesson that it belongs to with it.
     pub(in crate::session) ended: bool,
     /// Moments by day.
     kept: BTreeMap<u32, Arc<KeptState>>,
@@ -40,7 +41,7 @@ impl Past {
     pub(in crate::session) fn read(path: &Path) -> Result<Past, RunError> {
         let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
         let length = trajectory.length;
-        let ended = trajectory.end().is_some();
+        let ended = trajectory.end().is_some() && is_lesson_over(path.parent(), &manifest);
         let opening = Arc::new(KeptState::opening(&manifest, params));
         Ok(Past {
             path,

@@ -150,6 +150,10 @@ impl Session {
         new: &NewRun,
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
+        if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
+            // Before the first line: a run never lacks its lesson.
+            entry.lesson.keep_with(folder)?;
+        }
         let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
         let simulation = Simulation::open(&manifest, params);
@@ -158,7 +162,6 @@ impl Session {
         let mut session = Session { position, seal_key, recorder: Some(recorder), ..begun };
         session.project_opening();
         if let Some(entry) = &new.lesson {
-            session.keep_lesson(entry)?;
             session.begin_lesson(entry)?;
         }
         Ok(session)
@@ -192,6 +195,7 @@ impl Session {
             hidden_tables: None,
             clock: PersonalClock::default(),
             lesson: None,
+            company_answers: None,
             memo_in_memory: String::new(),
             remarks: Vec::new(),
             recorder: None,

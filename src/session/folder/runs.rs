@@ -59,7 +59,7 @@ pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
 }
 
 /// Folder, below that of all runs, in which participants have folders of their own.
-const PARTICIPANTS: &str = "participants";
+pub(in crate::session) const PARTICIPANTS: &str = "participants";
 
 /// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
 ///
@@ -90,10 +90,17 @@ pub(in crate::session) fn label_of(runs: &Path) -> Option<String> {
     runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
 }
 
+/// The folder of the runs of all participants that a folder of runs belongs to, and the label of the participant whose own
+/// folder it is.
+pub fn base_of_runs(runs: &Path) -> (&Path, Option<String>) {
+    let label = label_of(runs);
+    let base = label.as_ref().and_then(|_| runs.parent()?.parent());
+    (base.unwrap_or(runs), label)
+}
+
 /// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
-    let of_participant = label_of(runs).and_then(|_| runs.parent()?.parent());
-    let base = of_participant.unwrap_or(runs);
+    let (base, _) = base_of_runs(runs);
     let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
     let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     own.sort_unstable();

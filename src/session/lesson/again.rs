@@ -30,7 +30,7 @@ impl Session {
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(refused)?;
         let begun = standing.own_part().weeks_of(step).0 * self.simulation.params.run.days_per_week;
         let mut again = branch_of_lesson(folder, &self.manifest, &trajectory, begun)?;
-        again.begin_step(step, standing.tries(step) + 1)?;
+        again.company_answers = self.company_answers;
         Ok(again)
     }
 
@@ -58,7 +58,9 @@ impl Session {
             storage: Storage::Runs(runs.to_owned()),
             ..NewRun::default()
         };
-        Session::create(new, &Configuration::shipped())
-            .map_err(|error| Refusal::new("not_saved", error.to_string()))
+        let mut begun = Session::create(new, &Configuration::shipped())
+            .map_err(|error| Refusal::new("not_saved", error.to_string()))?;
+        begun.company_answers = self.company_answers;
+        Ok(begun)
     }
 }

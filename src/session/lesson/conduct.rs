@@ -1,12 +1,12 @@
 //! How a lesson goes: what it does by itself before and after a week, and what it asks of the student.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
 
-use super::definition::{CapacityMover, GoalBound, GuessForm, Pitfall, PitfallBound, RationaleAsked};
-use super::lesson_call::LessonCall;
+use super::definition::{
+    CapacityMover, ForecastsAsked, GoalBound, GuessForm, LessonAccess, Pitfall, PitfallBound, RationaleAsked,
+};
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
 use super::standing::LessonStanding;
@@ -15,7 +15,7 @@ use crate::session::folder::create::NewRun;
 use crate::session::play::act::not_saved;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
-use crate::session::trajectory::{Durability, Line, Record};
+use crate::session::trajectory::{Durability, Record};
 use crate::tools::{Refusal, ToolId};
 
 /// Which lesson a new run is to be a part of.
@@ -69,106 +69,6 @@ impl Session {
         self.simulation.world.day / self.simulation.params.run.days_per_week
     }
 
-    /// Keeps the lesson with the run.
-    ///
-    /// # Errors
-    /// The folder cannot be written.
-    pub(in crate::session) fn keep_lesson(&self, entry: &LessonEntry) -> Result<(), RunError> {
-        self.folder.as_deref().map_or(Ok(()), |folder| entry.lesson.keep_with(folder))
-    }
-
-    /// Takes up the lesson of a run that was opened again.
-    ///
-    /// # Errors
-    /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
-    pub(in crate::session) fn resume_lesson(
-        &mut self,
-        folder: &Path,
-        lines: &[Line],
-    ) -> Result<(), RunError> {
-        let Some(stamp) = self.manifest.lesson.clone() else { return Ok(()) };
-        let lesson = Lesson::of_run(folder, &stamp.name)?;
-        let part = stamp.part as usize;
-        if lesson.digest != stamp.digest || !(1..=lesson.plan.parts.len()).contains(&part) {
-            return Err(RunError::Damaged {
-                path: folder.join("lesson.toml"),
-                line: 1,
-                problem: format!("the lesson is not the one that was played, {}", stamp.name),
-                safe: "The trajectory was not touched; restore lesson.toml and lesson.md from a copy to open the run"
-                    .to_owned(),
-            });
-        }
-        self.lesson = Some(Box::new(LessonStanding::of(Arc::new(lesson), part - 1, lines)));
-        // The program may have ended between a week and what it came to.
-        let is_open = |line: &Line| {
-            matches!(
-                line.record,
-                Record::Week(_) | Record::Override(_) | Record::Activity(Activity::Lesson(_))
-            )
-        };
-        if self.recorder.is_some() && lines.last().is_some_and(is_open) {
-            self.settle_lesson();
-        }
-        Ok(())
-    }
-
-    /// Plays the start of a lesson, up to the moment at which the student sees the company.
-    ///
-    /// # Errors
-    /// A call of the start is refused.
-    pub(in crate::session) fn begin_lesson(&mut self, entry: &LessonEntry) -> Result<(), RunError> {
-        let LessonEntry { lesson, part, is_judged } = entry;
-        let (lesson, is_judged) = (lesson.clone(), *is_judged);
-        self.lesson = Some(Box::new(LessonStanding {
-            lesson: lesson.clone(),
-            part: *part,
-            is_judged,
-            notes: Vec::new(),
-        }));
-        let start = &lesson.plan.parts[*part];
-        for week in 0..=start.start_weeks {
-            let due = start.start.iter().filter(|own| own.week == week);
-            for call in due.flat_map(|own| &own.calls) {
-                self.call_of_start(call).map_err(|refusal| {
-                    RunError::NotPossible(format!(
-                        "the start of lesson {} is refused: {refusal}",
-                        lesson.name
-                    ))
-                })?;
-            }
-            if week < start.start_weeks {
-                let forecasts = self.naive_forecasts();
-                let refused = |refusal: Refusal| RunError::NotPossible(refusal.to_string());
-                self.advance("the start of the lesson", &forecasts, Via::Lesson, &mut |_| {})
-                    .map_err(refused)?;
-            }
-        }
-        self.begin_step(0, 1).map_err(|refusal| RunError::NotPossible(refusal.to_string()))
-    }
-
-    fn call_of_start(&mut self, call: &LessonCall) -> Result<(), Refusal> {
-        match call {
-            LessonCall::Tool(tool, args) => self.call(tool, args, Via::Lesson).map(|_| ()),
-            LessonCall::Rules(_) => {
-                Err(Refusal::new("not_possible", "no rules answer companies in the start of a lesson"))
-            }
-        }
-    }
-
-    /// Begins a step: its parameters are set.
-    pub(super) fn begin_step(&mut self, step: usize, number: u32) -> Result<(), Refusal> {
-        let Some(own) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned() else {
-            return Ok(());
-        };
-        for (key, value) in &own.parameters {
-            let value = serde_json::to_value(value).unwrap_or_default();
-            self.set_parameter_of_lesson(key, &value)?;
-        }
-        let note =
-            LessonNote { number: Some(number), ..LessonNote::about(LessonEvent::Begun, step as u32 + 1) };
-        self.note_lesson(note).map_err(not_saved)
-    }
-
     /// Refuses a tool that the lesson does not have.
     pub(in crate::session) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
         let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
@@ -176,18 +76,30 @@ impl Session {
     }
 
     /// Whether the lesson asks for no rationale of a week.
-    pub(in crate::session) fn lesson_asks_no_rationale(&self) -> bool {
-        let access = self.lesson.as_deref().map(|standing| &standing.lesson.plan.access);
-        access.is_some_and(|access| access.rationale == RationaleAsked::Off)
+    pub fn lesson_asks_no_rationale(&self) -> bool {
+        self.lesson_access().is_some_and(|access| access.rationale == RationaleAsked::Off)
+    }
+
+    /// Whether the lesson fills the forecasts of a week in naively.
+    pub fn lesson_fills_forecasts(&self) -> bool {
+        self.lesson_access().is_some_and(|access| access.forecasts == ForecastsAsked::Naive)
+    }
+
+    fn lesson_access(&self) -> Option<&LessonAccess> {
+        self.lesson.as_deref().map(|standing| &standing.lesson.plan.access)
     }
 
     /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
     pub(in crate::session) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
-        match self.lesson_step() {
-            Some(_) => standing.refuse_before_guess(self.weeks_passed()),
-            None => Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it")),
+        let Some(step) = self.lesson_step() else {
+            return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
+        };
+        if standing.has_begun(step) {
+            return standing.refuse_before_guess(self.weeks_passed());
         }
+        let message = "the goals of the step before are not judged yet; close the run and open it again to go on";
+        Err(Refusal::new("step_not_begun", message))
     }
 
     /// What the lesson does by itself before a week.
@@ -228,6 +140,10 @@ impl Session {
             return;
         }
         if standing.is_judged {
+            if self.lacks_answers(&standing, step) {
+                // It is judged when somebody says how rules answer companies.
+                return;
+            }
             self.judge(&standing, step, begin);
         }
         if is_over {
@@ -339,7 +255,7 @@ impl Session {
         Ok(text)
     }
 
-    fn note_lesson(&mut self, note: LessonNote) -> Result<(), RunError> {
+    pub(super) fn note_lesson(&mut self, note: LessonNote) -> Result<(), RunError> {
         self.append(&Record::Activity(Activity::Lesson(note.clone())), Durability::Synced)?;
         let day = self.simulation.world.day;
         if let Some(standing) = &mut self.lesson {

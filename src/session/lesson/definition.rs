@@ -350,6 +350,10 @@ pub struct MeasuredFigure {
     pub unit: String,
     /// What is played after the start of the part.
     pub plays: Vec<ScheduledCalls>,
+    /// Its scenario, where it is measured in another world than the part is played in.
+    pub scenario: Option<String>,
+    /// Parameters in force from day 0 besides those of the part, by their full keys.
+    pub parameters: BTreeMap<String, Value>,
 }
 
 #[derive(Deserialize)]
@@ -366,19 +370,24 @@ struct MeasuredFile {
     unit: Option<String>,
     #[serde(default)]
     play: Vec<ScheduledCalls>,
+    scenario: Option<String>,
+    #[serde(default)]
+    parameters: BTreeMap<String, Value>,
 }
 
 impl TryFrom<MeasuredFile> for MeasuredFigure {
     type Error = String;
 
     fn try_from(file: MeasuredFile) -> Result<MeasuredFigure, String> {
-        let MeasuredFile { name, part, text, figure, sql, over, week, value, unit, play } = file;
+        let MeasuredFile { name, part, text, week, value, unit, play, scenario, parameters, .. } = file;
+        let MeasuredFile { figure, sql, over, .. } = file;
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
         let (part, unit) = (from_one(part)?, unit.unwrap_or_default());
         if !matches!(unit.as_str(), "" | "$" | "%") {
             return Err(format!("a unit is $ or %, not {unit}"));
         }
-        Ok(MeasuredFigure { name, part, text, measurement, week, value, unit, plays: play })
+        let plays = play;
+        Ok(MeasuredFigure { name, part, text, measurement, week, value, unit, plays, scenario, parameters })
     }
 }
 

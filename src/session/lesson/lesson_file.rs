@@ -1,6 +1,7 @@
 //! A lesson as it was read: its plan and its texts.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::definition::LessonPlan;
 use super::soundness::unsound;
@@ -125,6 +126,21 @@ impl Lesson {
     pub(in crate::session) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
         write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
         write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
+    }
+
+    /// The lesson in the world in which a figure is measured: its part with the figure's scenario and parameters.
+    pub fn in_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
+        if figure.scenario.is_none() && figure.parameters.is_empty() {
+            return self.clone();
+        }
+        let mut other = Lesson::clone(self);
+        if let Some(part) = other.plan.parts.get_mut(figure.part) {
+            if let Some(scenario) = &figure.scenario {
+                part.scenario.clone_from(scenario);
+            }
+            part.parameters.extend(figure.parameters.clone());
+        }
+        Arc::new(other)
     }
 
     /// A text with the measured figures that it names.

@@ -5,6 +5,7 @@
 //! through the same doors, in memory.
 
 mod again;
+mod beginning;
 pub(in crate::session) mod conduct;
 pub(in crate::session) mod debrief;
 pub(in crate::session) mod decisions;
@@ -13,6 +14,7 @@ pub(in crate::session) mod lesson_call;
 pub(in crate::session) mod lesson_file;
 mod measure;
 pub(in crate::session) mod measurement;
+pub(in crate::session) mod over;
 pub(in crate::session) mod page;
 pub(in crate::session) mod reference;
 pub(in crate::session) mod shelf;

@@ -42,9 +42,13 @@ pub struct PartPlay<'a> {
 impl PartPlay<'_> {
     /// Whether rules answer companies in it: what waits is asked of the database.
     fn answers_companies(&self) -> bool {
-        let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
-        self.plays.iter().any(|play| play.calls.iter().any(is_rules))
+        answers_companies(self.plays)
     }
+}
+
+fn answers_companies(plays: &[ScheduledCalls]) -> bool {
+    let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
+    plays.iter().any(|play| play.calls.iter().any(is_rules))
 }
 
 /// Plays a part in memory.
@@ -95,6 +99,7 @@ fn play_through(
         ..NewRun::default()
     };
     let mut session = Session::create(new, &Configuration::shipped())?;
+    session.company_answers = Some(answers);
     let last = play.weeks.unwrap_or(part.weeks()).min(part.weeks());
     for week in part.start_weeks..last {
         if session.ended().is_some() {
@@ -155,6 +160,35 @@ impl Lesson {
 }
 
 impl Session {
+    /// Says how rules answer companies: goals that are relative to a good play with rules are held against that. A step that
+    /// has waited for it is judged now.
+    pub fn answer_companies_by(&mut self, answers: AnswersCompanies) {
+        self.company_answers = Some(answers);
+        if self.recorder.is_some() && self.awaits_judgement() {
+            self.settle_lesson();
+        }
+    }
+
+    /// Whether the weeks of a step are over, and the next one has not begun.
+    fn awaits_judgement(&self) -> bool {
+        let Some(standing) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) else {
+            return false;
+        };
+        let (part, weeks) = (standing.own_part(), self.weeks_passed());
+        let step = weeks.checked_sub(1).and_then(|before| part.step_after(before));
+        step.is_some_and(|step| {
+            standing.has_begun(step) && !standing.has_begun(step + 1) && weeks == part.weeks_of(step).1
+        })
+    }
+
+    /// Whether a step can be judged only by somebody who says how rules answer companies.
+    pub(super) fn lacks_answers(&self, standing: &LessonStanding, step: usize) -> bool {
+        let is_relative = |goal: &LessonGoal| matches!(goal.bound, GoalBound::OfGoodPlay(_));
+        self.company_answers.is_none()
+            && standing.step(step).is_some_and(|own| own.goals.iter().any(is_relative))
+            && answers_companies(&standing.lesson.plan.good.plays)
+    }
+
     /// What the good play has on the seed of this run for the goals of a step that are relative to it; none for the others,
     /// and where it cannot be played.
     pub(super) fn good_play_values(&self, standing: &LessonStanding, step: usize) -> Vec<Option<f64>> {
@@ -172,8 +206,9 @@ impl Session {
             is_judged: false,
             asks_database: goals.iter().any(|goal| relative(goal) && goal.measurement.needs_database()),
         };
-        let refuses = |_: &str, _: &mut Session| Err(Refusal::new("not_possible", "no rules"));
-        let mut played = goals.iter().any(relative).then(|| play_part(&play, refuses)).and_then(Result::ok);
+        let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "no rules"));
+        let answers = self.company_answers.unwrap_or(refuses);
+        let mut played = goals.iter().any(relative).then(|| play_part(&play, answers)).and_then(Result::ok);
         let from = begin * self.simulation.params.run.days_per_week;
         let mut value = |goal: &LessonGoal| {
             let played = played.as_mut().filter(|_| relative(goal))?;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::definition::{GoalBound, LessonPart, ReferencePlay, ScheduledCalls};
-use super::lesson_call::LessonCall;
+use super::definition::{LessonPart, MeasuredFigure, ReferencePlay, ScheduledCalls};
 use super::lesson_file::Lesson;
+use crate::session::folder::configuration::Configuration;
 
 /// What is wrong with a lesson.
 pub(super) struct Unsound {
@@ -48,7 +48,6 @@ pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
         .or_else(|| {
             unsound_plays(lesson, "good", &plan.good).or_else(|| unsound_plays(lesson, "bad", &plan.bad))
         })
-        .or_else(|| unsound_relative(lesson))
         .or_else(|| unsound_measured(lesson))
         .or_else(|| unknown_name(lesson))
 }
@@ -89,21 +88,6 @@ fn unsound_plays(lesson: &Lesson, name: &'static str, play: &ReferencePlay) -> O
     })
 }
 
-/// A goal that is held against the good play is judged while a student plays, where no rules answer companies.
-fn unsound_relative(lesson: &Lesson) -> Option<Unsound> {
-    let mut goals = lesson.plan.parts.iter().flat_map(|part| &part.steps).flat_map(|step| &step.goals);
-    let goal = goals.find(|goal| matches!(goal.bound, GoalBound::OfGoodPlay(_)))?;
-    let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
-    let ruled = lesson.plan.good.plays.iter().any(|play| play.calls.iter().any(is_rules));
-    ruled.then(|| Unsound {
-        place: goal.text.clone(),
-        key: "goal.relative",
-        problem:
-            "a goal relative to a good play that answers companies by rules is not possible; give it a number"
-                .to_owned(),
-    })
-}
-
 fn unsound_measured(lesson: &Lesson) -> Option<Unsound> {
     let mut names = BTreeSet::new();
     for own in &lesson.plan.measured {
@@ -114,11 +98,29 @@ fn unsound_measured(lesson: &Lesson) -> Option<Unsound> {
             Some(part) if own.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
                 format!("the part has weeks 1 to {}", part.weeks())
             }
-            Some(_) => continue,
+            Some(part) => match unsound_world(part, own) {
+                Some(problem) => problem,
+                None => continue,
+            },
         };
         return Some(Unsound { place: format!("name = \"{}\"", own.name), key: "measured", problem });
     }
     None
+}
+
+/// What is wrong with the world of its own in which a figure is measured.
+fn unsound_world(part: &LessonPart, own: &MeasuredFigure) -> Option<String> {
+    if own.scenario.is_none() && own.parameters.is_empty() {
+        return None;
+    }
+    let shipped = Configuration::shipped();
+    let all = part.parameters.iter().chain(&own.parameters);
+    let overrides: Vec<(String, String)> = all.map(|(key, value)| (key.clone(), value.to_string())).collect();
+    let scenario = shipped.scenario(own.scenario.as_ref().unwrap_or(&part.scenario));
+    scenario
+        .and_then(|scenario| shipped.parameters(&scenario, &overrides, false))
+        .err()
+        .map(|error| error.to_string())
 }
 
 /// Names in braces that stand for no measured figure.

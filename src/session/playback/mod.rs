@@ -16,6 +16,7 @@ use crate::session::figures::week::week_of;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::over::is_lesson_over;
 use crate::session::play::projection::Projection;
 use crate::session::play::simulation::Simulation;
 use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
@@ -227,7 +228,9 @@ impl Playback {
     /// Whether hidden state of the recorded run may be shown, though this moment of it is not its end: what the record says
     /// counts.
     pub fn may_look_inside(&self) -> bool {
-        let is_open = self.origin.manifest.mode == Mode::Debug || self.is_recorded_to_the_end();
+        let Origin { manifest, folder, .. } = &self.origin;
+        let is_over = || self.is_recorded_to_the_end() && is_lesson_over(folder.as_deref(), manifest);
+        let is_open = manifest.mode == Mode::Debug || is_over();
         is_open && self.origin.folder.is_some() && !self.session.rules().hides_results()
     }
 

@@ -115,6 +115,7 @@ impl Session {
         session.check_memo(&trajectory, access);
         session.resume_lesson(folder, &trajectory.lines)?;
         session.finish_week(&trajectory);
+        session.finish_beginning(&trajectory.lines)?;
         Ok(session)
     }
 

@@ -28,6 +28,7 @@ pub use week::{Why, WhyPart};
 use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::past::Past;
 use super::error::RunError;
+use crate::session::lesson::over::is_lesson_over;
 use crate::session::state::Session;
 use crate::tools::Refusal;
 pub(in crate::session) use access::{Sight, sight};
@@ -138,10 +139,15 @@ impl Session {
         if !quantity.is_hidden() {
             return Ok(());
         }
-        access::refuse_hidden(*quantity, sight(&self.manifest, self.history.ended.is_some())?)?;
+        access::refuse_hidden(*quantity, self.own_sight()?)?;
         let days = self.simulation.params.run.days_per_week;
         let day = week.map(|week| week.saturating_mul(days).min(self.day()));
         self.begin_look("why", &quantity.to_string(), day).map(drop)
+    }
+
+    fn own_sight(&self) -> Result<Sight, Refusal> {
+        let is_over = self.history.ended.is_some() && is_lesson_over(self.folder.as_deref(), &self.manifest);
+        sight(&self.manifest, is_over)
     }
 
     /// The folder from which [`Causes::read`] can answer for this run.
@@ -149,7 +155,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.
     pub fn folder_of_causes(&self) -> Result<PathBuf, Refusal> {
-        sight(&self.manifest, self.history.ended.is_some())?;
+        self.own_sight()?;
         let missing = || Refusal::new("not_possible", "a run in memory has no record to simulate again");
         self.folder.clone().ok_or_else(missing)
     }

@@ -1,7 +1,10 @@
 //! Who may look, and what a look leaves behind.
 
+use std::path::Path;
+
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::over::is_lesson_over;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, Ended, XrayLook};
 use crate::session::trajectory::{Durability, Record};
@@ -10,21 +13,26 @@ use crate::tools::Refusal;
 /// Said where hidden state is not shown.
 pub const REFUSED_LOOK: &str = "the x-ray works in debug runs and in runs that are over";
 
+/// Said where a lesson goes on.
+const REFUSED_IN_LESSON: &str =
+    "hidden state of a lesson is shown once its last part is over: the next part may have the same luck";
+
 /// Whether hidden state of a run may be shown: of debug runs, and of runs that are over. Not where a study shows no results, as
-/// none does of its practice: its session is still to come.
-pub fn may_look_inside(manifest: &Manifest, ended: Option<Ended>) -> bool {
-    let is_open = manifest.mode == Mode::Debug || ended.is_some();
+/// none does of its practice: its session is still to come. Not where parts of a lesson are to come; the folder of the run
+/// tells that.
+pub fn may_look_inside(manifest: &Manifest, ended: Option<Ended>, folder: Option<&Path>) -> bool {
+    let is_open = manifest.mode == Mode::Debug || (ended.is_some() && is_lesson_over(folder, manifest));
     is_open && !manifest.session_rules().hide_result(ended)
 }
 
 impl Session {
     /// Whether its hidden state may be shown, as [`may_look_inside`] says.
     pub fn may_look_inside(&self) -> bool {
-        may_look_inside(&self.manifest, self.history.ended)
+        may_look_inside(&self.manifest, self.history.ended, self.folder.as_deref())
     }
 
-    /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study
-    /// and whether it is over.
+    /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study, its
+    /// lesson and whether they are over.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -32,7 +40,9 @@ impl Session {
         if self.may_look_inside() {
             return Ok(());
         }
-        Err(Refusal::new("not_in_this_mode", REFUSED_LOOK))
+        let parts_are_to_come = self.history.ended.is_some() && self.manifest.lesson.is_some();
+        let message = if parts_are_to_come { REFUSED_IN_LESSON } else { REFUSED_LOOK };
+        Err(Refusal::new("not_in_this_mode", message))
     }
 
     /// Whether a look becomes a line: not where the run is only read, or played again.

@@ -1,10 +1,12 @@
 //! The start menu: continue, a new run, the runs, comparisons, published results, the tour, quit.
 
+mod class;
 mod compare;
 mod form;
 mod home;
 mod lessons;
 mod paper;
+mod path_form;
 mod runs;
 #[cfg(test)]
 pub(in crate::console) mod tests;
@@ -23,11 +25,17 @@ use crate::console::request::Request;
 use crate::console::theme::Role;
 use crate::console::tour;
 use crate::console::widgets::Table;
-use crate::session::{Access, Configuration, Mode, RunPreview, RunSummary};
+use crate::report::class::Shown;
+use crate::session::{Access, CollectedClass, Configuration, Mode, RunPreview, RunSummary};
+use class::ClassPage;
 use form::{ROWS, RunForm};
 use home::HomeEntry;
 use lessons::LessonList;
+use path_form::{PathForm, PathWanted};
 use runs::Asked;
+
+/// Rows of a window below which no row is left blank above the page.
+const LOW: u16 = 26;
 
 /// Rows of a page, to walk over.
 const PAGE: u16 = 10;
@@ -52,6 +60,10 @@ pub struct Menu {
     early: Vec<Action>,
     /// Lessons, as they were read when their page was opened.
     lessons: LessonList,
+    /// The path that is asked for.
+    path: PathForm,
+    /// The class that was opened.
+    class: Option<Box<ClassPage>>,
     configuration: Configuration,
 }
 
@@ -63,6 +75,8 @@ enum MenuPage {
     Runs,
     Compare,
     Paper,
+    Path,
+    Class,
 }
 
 impl Menu {
@@ -79,6 +93,8 @@ impl Menu {
             asked: None,
             early: Vec::new(),
             lessons: LessonList::default(),
+            path: PathForm::new(PathWanted::Class),
+            class: None,
             configuration: configuration.clone(),
         }
     }
@@ -126,7 +142,15 @@ impl Menu {
             Instead::Agree(new) => Asked::Agree(new, Agreement::new(problem)),
             instead => Asked::Instead(instead, problem),
         });
+        self.path.refused = refused.clone();
         self.form.refused = refused;
+    }
+
+    /// Shows a class that was read.
+    pub fn show_class(&mut self, class: CollectedClass, shown: Shown) {
+        self.early.clear();
+        self.class = Some(Box::new(ClassPage::new(class, shown)));
+        self.page = MenuPage::Class;
     }
 
     /// Asks how a run went, unless that is known or asked already.
@@ -167,7 +191,7 @@ impl Menu {
             MenuPage::NewRun => ROWS.len(),
             MenuPage::Paper => paper::ranked(self.list()).len(),
             MenuPage::Lessons => self.lessons.count(),
-            MenuPage::Runs | MenuPage::Compare => 1,
+            MenuPage::Runs | MenuPage::Compare | MenuPage::Path | MenuPage::Class => 1,
         };
         rows.saturating_sub(1)
     }
@@ -179,6 +203,8 @@ impl Menu {
             _ if self.asked.is_some() => vec![Scope::Dialog],
             MenuPage::Runs if self.table.is_typing() => vec![Scope::Field],
             MenuPage::NewRun if self.form.is_typing() => vec![Scope::Field],
+            MenuPage::Path => vec![Scope::Field],
+            MenuPage::Class => vec![Scope::Class, Scope::List],
             MenuPage::NewRun | MenuPage::Lessons | MenuPage::Compare | MenuPage::Paper => vec![Scope::List],
             MenuPage::Home | MenuPage::Runs => vec![Scope::Menu, Scope::List],
         }
@@ -192,6 +218,8 @@ impl Menu {
             MenuPage::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
             MenuPage::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
+            MenuPage::Path => vec![Action::Commit, Action::Discard],
+            MenuPage::Class => self.class.as_ref().map(|page| page.hints()).unwrap_or_default(),
             MenuPage::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
             MenuPage::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
             MenuPage::Runs => vec![
@@ -240,6 +268,12 @@ impl Menu {
             }
             (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.enter(),
             (Action::Open, MenuPage::Home) => return self.choose(),
+            (Action::Commit, MenuPage::Path) => return self.path.enter(),
+            (_, MenuPage::Class) => {
+                if let Some(page) = &mut self.class {
+                    page.act(action);
+                }
+            }
             (Action::Open, MenuPage::Lessons) => return self.lessons.begin(self.selected),
             _ => self.walk(action),
         }
@@ -284,6 +318,8 @@ impl Menu {
                 self.lessons = LessonList::of(&self.configuration);
                 (self.page, self.selected) = (MenuPage::Lessons, 0);
             }
+            Some(HomeEntry::Handout) => self.ask_path(PathWanted::Handout),
+            Some(HomeEntry::Class) => self.ask_path(PathWanted::Class),
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
@@ -297,6 +333,11 @@ impl Menu {
         Vec::new()
     }
 
+    fn ask_path(&mut self, wanted: PathWanted) {
+        self.path = PathForm::new(wanted);
+        self.page = MenuPage::Path;
+    }
+
     fn open_runs(&mut self) -> Vec<Effect> {
         self.page = MenuPage::Runs;
         self.read_chosen()
@@ -306,6 +347,7 @@ impl Menu {
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
             MenuPage::NewRun => self.form.key(key),
+            MenuPage::Path => self.path.key(key),
             MenuPage::Runs if self.table.is_typing() => self.table.edit_filter(|field| {
                 field.key(key);
             }),
@@ -321,6 +363,7 @@ impl Menu {
     pub fn paste(&mut self, text: &str) {
         match self.page {
             MenuPage::NewRun => self.form.paste(text),
+            MenuPage::Path => self.path.paste(text),
             MenuPage::Runs => self.table.edit_filter(|field| field.insert(text.trim())),
             _ => {}
         }
@@ -337,6 +380,10 @@ impl Menu {
             let again = before == self.table.selected();
             return if again { self.act(Action::Open) } else { self.read_chosen() };
         }
+        if let (MenuPage::Class, Some(page)) = (self.page, &mut self.class) {
+            page.light(row);
+            return Vec::new();
+        }
         let row = row.min(self.last());
         let again = *self.place() == row;
         *self.place() = row;
@@ -349,17 +396,23 @@ impl Menu {
 
     /// Draws the page below the name of the program.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        if let (MenuPage::Class, Some(page)) = (self.page, &self.class) {
+            page.draw(canvas, area);
+            return self.draw_instead(canvas, area);
+        }
         let version = concat!("version ", env!("CARGO_PKG_VERSION"), " ");
         let name = Rect { x: area.x + 2, y: area.y + 1, width: area.width.saturating_sub(3), height: 1 };
         canvas.text(name, "▲  N O V A M I N D", Role::Title);
         canvas.aligned(name, version, Role::Dim, Align::Right);
         let line = Rect { x: name.x + 3, y: name.y + 1, width: name.width.saturating_sub(3), ..name };
         canvas.text(line, "one company, five hundred days, every decision yours", Role::Dim);
+        // The last blank row goes to the page where rows are few.
+        let above = if area.height < LOW { 3 } else { 4 };
         let body = Rect {
             x: area.x + 2,
-            y: area.y + 4,
+            y: area.y + above,
             width: area.width.saturating_sub(4),
-            height: area.height.saturating_sub(4),
+            height: area.height.saturating_sub(above),
         };
         match self.page {
             MenuPage::Home => self.draw_home(canvas, body),
@@ -368,6 +421,8 @@ impl Menu {
             MenuPage::Runs => self.draw_runs(canvas, body),
             MenuPage::Compare => self.draw_compare(canvas, body),
             MenuPage::Paper => self.draw_paper(canvas, body),
+            MenuPage::Path => self.path.draw(canvas, body),
+            MenuPage::Class => {}
         }
         self.draw_instead(canvas, body);
     }

@@ -1,0 +1,303 @@
+//! The panes of a class.
+
+use ratatui::layout::Rect;
+
+use super::{Below, ClassPage};
+use crate::console::canvas::{Align, Canvas, Click, rows_of};
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
+use crate::console::widgets::scale::Unit;
+use crate::console::widgets::table::first_row;
+use crate::notation::{compact, short_dollars};
+use crate::report::class::{
+    AskedClass, ClassView, RankedStudent, StudentPoints, asked, curves, pitfalls, ranked, scatter,
+    score_in_words, state_in_words,
+};
+use crate::report::count;
+
+/// Columns of the ranking, in small and in wide windows.
+const RANKING: (u16, u16) = (29, 52);
+/// Width from which tries, hints and pitfalls stand in the ranking.
+const WIDE: u16 = 110;
+/// Rows from which guesses and pitfalls have places of their own.
+const HIGH: u16 = 34;
+/// What stands at the point of the lit student.
+const LIT: &str = "◆";
+
+impl ClassPage {
+    pub(in crate::console::screens::menu) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let view = self.view();
+        let ranking = ranked(&view);
+        let title =
+            Rect { x: area.x + 1, width: area.width.saturating_sub(2), height: 1.min(area.height), ..area };
+        canvas.text(title, &format!("{} · {}", view.title(), state_in_words(&view)), Role::Title);
+        let body = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+        let width = if area.width >= WIDE { RANKING.1 } else { RANKING.0 }.min(body.width);
+        self.draw_ranking(canvas, Rect { width, ..body }, &view, &ranking);
+        let right = Rect { x: body.x + width, width: body.width - width, ..body };
+        let parts = if body.height >= HIGH { 3 } else { 2 };
+        let height = right.height / parts;
+        let at = |number: u16| {
+            let height = if number + 1 == parts { right.height - number * height } else { height };
+            Rect { y: right.y + number * (right.height / parts), height, ..right }
+        };
+        self.draw_curves(canvas, at(0), &view, &ranking);
+        if parts == 2 {
+            return match self.below {
+                Below::Scatter => self.draw_scatter(canvas, at(1), &view, &ranking),
+                Below::Guesses => self.draw_guesses(canvas, at(1), &view, &ranking),
+                Below::Pitfalls => draw_pitfalls(canvas, at(1), &view),
+            };
+        }
+        self.draw_scatter(canvas, at(1), &view, &ranking);
+        let last = at(2);
+        let left = Rect { width: last.width / 2, ..last };
+        self.draw_guesses(canvas, left, &view, &ranking);
+        draw_pitfalls(canvas, Rect { x: left.right(), width: last.width - left.width, ..last }, &view);
+    }
+
+    fn draw_ranking(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        view: &ClassView<'_>,
+        ranking: &[RankedStudent<'_>],
+    ) {
+        let note = format!("{} of {}", ranking.len(), view.class.students.len());
+        let inside = canvas.pane(area, "Ranking", &note, true);
+        let is_wide = area.width == RANKING.1;
+        let mut rows = rows_of(inside);
+        let score = if view.lesson.is_some() { "of good" } else { "cash" };
+        if let Some(row) = rows.next() {
+            draw_cells(canvas, row, ["", "student", score, "goals", "tries", "hints"], is_wide, Role::Header);
+        }
+        let lit = self.lit(ranking);
+        let measure = wrapped(&format!("by {}", view.measure()), inside.width as usize);
+        // What it is ranked by stands below, where the list leaves room for all of it.
+        let room = inside.height.saturating_sub(1);
+        let for_measure = (measure.len() as u16 + 1).min(room.saturating_sub(ranking.len() as u16));
+        let for_measure = if for_measure > measure.len() as u16 { for_measure } else { 0 };
+        let shown = (room - for_measure) as usize;
+        canvas.page = shown as u16;
+        let from = first_row(lit.unwrap_or(0), shown, ranking.len());
+        for (row, (at, student)) in rows.take(shown).zip(ranking.iter().enumerate().skip(from)) {
+            let here = lit == Some(at);
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let cells = [
+                (at + 1).to_string(),
+                student.name.clone(),
+                match view.lesson {
+                    Some(_) => score_in_words(view, student),
+                    None => short_dollars(student.score),
+                },
+                student.goals(),
+                student.tries().to_string(),
+                student.hints().to_string(),
+            ];
+            let cells: [&str; 6] = std::array::from_fn(|at| cells[at].as_str());
+            draw_cells(canvas, row, cells, is_wide, if here { Role::Selection } else { Role::Text });
+            canvas.click(row, Click::Row(0, at));
+        }
+        if ranking.is_empty() {
+            let row = Rect { y: inside.y + 1, height: room.min(1), ..inside };
+            canvas.text(row, " nobody has finished", Role::Dim);
+        }
+        let below = Rect { y: inside.bottom() - for_measure, height: for_measure, ..inside };
+        for (row, line) in rows_of(below).skip(1).zip(&measure) {
+            canvas.text(Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row }, line, Role::Dim);
+        }
+    }
+
+    /// What a pane says of the lit student and the part.
+    fn note(&self, view: &ClassView<'_>, ranking: &[RankedStudent<'_>], sign: &str) -> String {
+        let lit = self.lit(ranking).map(|at| format!("{} {sign}", ranking[at].name));
+        let part = view.part_title(self.part).map(str::to_owned);
+        part.into_iter().chain(lit).collect::<Vec<_>>().join(" · ")
+    }
+
+    fn draw_curves(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        view: &ClassView<'_>,
+        ranking: &[RankedStudent<'_>],
+    ) {
+        let inside = canvas.pane(area, "Cash by day", &self.note(view, ranking, "lit"), false);
+        let all = curves(view, ranking, self.part);
+        let mut lines: Vec<(u8, Line)> = all
+            .iter()
+            .map(|own| {
+                let line = |role| Line::through(own.points.clone(), role);
+                match own.label {
+                    None => (1, line(Role::Series(1)).named("good")),
+                    label if label == self.shown.lit.as_deref() => (2, line(Role::Series(0)).named("lit")),
+                    Some(_) => (0, line(Role::Dim)),
+                }
+            })
+            .collect();
+        lines.sort_by_key(|(place, _)| *place);
+        let lines: Vec<Line> = lines.into_iter().map(|(_, line)| line).collect();
+        if lines.is_empty() {
+            return canvas.text(inside, " nobody has finished this part", Role::Dim);
+        }
+        let zero = zero_if_near(lines.iter().flat_map(|line| line.points.iter().map(|point| point.1)));
+        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
+        Plot { lines: &lines, band: None, mark: None, x: &x, y: &Side { unit: Unit::Dollars, holds: zero } }
+            .draw(canvas, inside);
+    }
+
+    /// Points of all students, the lit one with a sign of its own.
+    fn draw_points(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        points: &[StudentPoints<'_>],
+        units: (&dyn Fn(f64) -> String, Unit),
+        diagonal: Option<[(f64, f64); 2]>,
+    ) {
+        let lit = |own: &&StudentPoints<'_>| own.label == self.shown.lit.as_deref();
+        let others = points.iter().filter(|own| !lit(own)).flat_map(|own| own.points.clone()).collect();
+        let mine: Vec<(f64, f64)> = points.iter().filter(lit).flat_map(|own| own.points.clone()).collect();
+        let scattered = |points, role| Line { scattered: true, ..Line::through(points, role) };
+        let mut lines = vec![scattered(others, Role::Text), scattered(mine.clone(), Role::Series(0))];
+        lines.extend(diagonal.map(|ends| Line::through(ends.to_vec(), Role::Dim)));
+        let sign = |(x, y): (f64, f64)| Sign { x, y, text: LIT, role: Role::Series(0) };
+        let signs: Vec<Sign> = mine.into_iter().map(sign).collect();
+        let x = Axis { write: units.0, holds: &[] };
+        let y = Side { unit: units.1, holds: &[] };
+        Plot { lines: &lines, band: None, mark: None, x: &x, y: &y }.draw_with(canvas, area, &signs);
+    }
+
+    fn draw_scatter(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        view: &ClassView<'_>,
+        ranking: &[RankedStudent<'_>],
+    ) {
+        let found = scatter(view, ranking, self.part);
+        let title = match &found {
+            Some(own) => format!("{} across, {} up", own.decision, own.figure),
+            None => "Decisions".to_owned(),
+        };
+        let inside = canvas.pane(area, &title, &self.note(view, ranking, LIT), false);
+        match found.filter(|own| !own.points.is_empty()) {
+            Some(own) => {
+                let unit = if own.figure == "cash" { Unit::Dollars } else { Unit::Number };
+                self.draw_points(canvas, inside, &own.points, (&compact, unit), None);
+            }
+            None => canvas.text(inside, " nobody decided otherwise than the others", Role::Dim),
+        }
+    }
+
+    fn draw_guesses(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        view: &ClassView<'_>,
+        ranking: &[RankedStudent<'_>],
+    ) {
+        let all: Vec<AskedClass<'_>> =
+            asked(view).into_iter().filter(|own| own.part == self.part && !own.answers.is_empty()).collect();
+        let inside = canvas.pane(area, "Guesses", &self.note(view, ranking, LIT), false);
+        let Some(own) = all.get(self.question.min(all.len().saturating_sub(1))) else {
+            return canvas.text(inside, " nothing was guessed", Role::Dim);
+        };
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let number = match all.len() {
+            1 => String::new(),
+            all => format!("{}/{all} ", self.question + 1),
+        };
+        let question = wrapped(&format!("{number}{}", own.question), inside.width as usize);
+        let rows = (question.len() as u16).min(inside.height);
+        for (row, line) in rows_of(inside).zip(&question) {
+            canvas.text(row, line, Role::Strong);
+        }
+        let rest = Rect { y: inside.y + rows, height: inside.height - rows, ..inside };
+        if own.choices.is_empty() {
+            self.draw_numbers(canvas, rest, own);
+        } else {
+            draw_choices(canvas, rest, own);
+        }
+    }
+
+    /// Guesses across, outcomes up; on the line a guess was right.
+    fn draw_numbers(&self, canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
+        let points: Vec<StudentPoints<'_>> = own
+            .answers
+            .iter()
+            .map(|(label, guess, outcome)| StudentPoints {
+                label: Some(label),
+                points: vec![(*guess, *outcome)],
+            })
+            .collect();
+        let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
+        let (least, most) = both().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+            (least.min(value), most.max(value))
+        });
+        let head = Rect { height: 1.min(area.height), ..area };
+        canvas.text(head, "guess across, outcome up; on the line it was right", Role::Dim);
+        let chart = Rect { y: area.y + head.height, height: area.height - head.height, ..area };
+        let diagonal = (most > least).then_some([(least, least), (most, most)]);
+        self.draw_points(canvas, chart, &points, (&compact, Unit::Number), diagonal);
+    }
+}
+
+/// Cells of the ranking; tries and hints in wide windows only.
+fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: bool, role: Role) {
+    let columns: [(u16, u16, Align); 6] = [
+        (0, 3, Align::Right),
+        (4, 8, Align::Left),
+        (13, 7, Align::Right),
+        (21, 5, Align::Right),
+        (28, 6, Align::Right),
+        (36, 6, Align::Right),
+    ];
+    for ((x, width, align), cell) in columns.into_iter().zip(cells).take(if is_wide { 6 } else { 4 }) {
+        let place = Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
+        canvas.aligned(place, cell, role, align);
+    }
+}
+
+/// How many took each choice.
+fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
+    let mut rows = rows_of(area);
+    for (number, choice) in (1..).zip(own.choices) {
+        let taken = own.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+        let is_right = own.answers.iter().any(|answer| answer.2 == f64::from(number));
+        let (sign, role) = if is_right { (" ✓", Role::Good) } else { ("", Role::Text) };
+        let lines = wrapped(&format!("{choice}{sign}"), area.width.saturating_sub(5) as usize);
+        for (at, line) in lines.iter().enumerate() {
+            let Some(row) = rows.next() else { return };
+            if at == 0 {
+                canvas.aligned(
+                    Rect { width: 3.min(row.width), ..row },
+                    &taken.to_string(),
+                    role,
+                    Align::Right,
+                );
+            }
+            canvas.text(Rect { x: row.x + 5, width: row.width.saturating_sub(5), ..row }, line, role);
+        }
+    }
+}
+
+/// The pitfall that most students met, and how many met each.
+fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
+    let met = pitfalls(view);
+    let inside = canvas.pane(area, "Pitfall met most", "", false);
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let Some((most, others)) = met.split_first() else {
+        return canvas.text(inside, "nobody met one", Role::Dim);
+    };
+    let head = format!("{}, by {}", most.name, count(most.students as u32, "student"));
+    let mut lines = vec![(head, Role::Strong)];
+    lines.extend(wrapped(&most.say, inside.width as usize).into_iter().map(|line| (line, Role::Text)));
+    lines.extend(others.iter().map(|own| (format!("{:>3}  {}", own.students, own.name), Role::Dim)));
+    for (row, (line, role)) in rows_of(inside).zip(&lines) {
+        canvas.text(row, line, *role);
+    }
+}

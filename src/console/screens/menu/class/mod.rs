@@ -1,0 +1,132 @@
+//! A class that was collected: the ranking, all curves with one lit, a decision against a figure, guesses, pitfalls.
+
+mod draw;
+#[cfg(test)]
+mod tests;
+
+use crate::console::action::Action;
+use crate::report::class::{ClassView, RankedStudent, Shown, asked, ranked};
+use crate::session::CollectedClass;
+
+/// Students of a page, to walk over.
+const PAGE: usize = 10;
+
+/// What a small window shows below the curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Below {
+    Scatter,
+    Guesses,
+    Pitfalls,
+}
+
+/// A class on the screen.
+pub(super) struct ClassPage {
+    class: CollectedClass,
+    shown: Shown,
+    /// The part, counted from 1.
+    part: u32,
+    /// The question whose guesses are shown, among those of the part that were answered.
+    question: usize,
+    below: Below,
+}
+
+impl ClassPage {
+    /// Shows a class; one student is lit.
+    pub(super) fn new(class: CollectedClass, shown: Shown) -> ClassPage {
+        let mut page = ClassPage { class, shown, part: 1, question: 0, below: Below::Scatter };
+        if page.shown.lit.is_none() {
+            page.light(0);
+        }
+        page
+    }
+
+    fn view(&self) -> ClassView<'_> {
+        ClassView::of(&self.class, self.shown.clone())
+    }
+
+    /// Lights a student by the place in the ranking, counted from 0; the last one if there are fewer.
+    pub(super) fn light(&mut self, place: usize) {
+        let view = self.view();
+        let ranking = ranked(&view);
+        let lit = ranking.get(place).or(ranking.last()).map(|student| student.label.to_owned());
+        self.shown.lit = lit.or(self.shown.lit.take());
+    }
+
+    /// Place of the lit student in the ranking.
+    fn lit(&self, ranking: &[RankedStudent<'_>]) -> Option<usize> {
+        ranking.iter().position(|student| Some(student.label) == self.shown.lit.as_deref())
+    }
+
+    /// Actions worth showing.
+    pub(super) fn hints(&self) -> Vec<Action> {
+        let mut hints = vec![Action::Up, Action::Down, Action::ClassDecision, Action::ClassFigure];
+        hints.extend((self.questions() > 1).then_some(Action::ClassQuestion));
+        hints.extend((self.view().parts() > 1).then_some(Action::ClassPart));
+        hints.extend([Action::HideNames, Action::ClassView, Action::Close]);
+        hints
+    }
+
+    /// How many questions of the part were answered.
+    fn questions(&self) -> usize {
+        let view = self.view();
+        let answered =
+            asked(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count();
+        answered
+    }
+
+    /// Does an action.
+    pub(super) fn act(&mut self, action: Action) {
+        match action {
+            Action::HideNames => self.shown.hides_names = !self.shown.hides_names,
+            Action::ClassDecision => self.turn_decision(),
+            Action::ClassFigure => self.turn_figure(),
+            Action::ClassQuestion => self.question = (self.question + 1) % self.questions().max(1),
+            Action::ClassPart => {
+                self.part = self.part % self.view().parts() + 1;
+                (self.question, self.shown.decision) = (0, None);
+            }
+            Action::ClassView => {
+                self.below = match self.below {
+                    Below::Scatter => Below::Guesses,
+                    Below::Guesses => Below::Pitfalls,
+                    Below::Pitfalls => Below::Scatter,
+                };
+            }
+            _ => self.walk(action),
+        }
+    }
+
+    fn walk(&mut self, action: Action) {
+        let view = self.view();
+        let ranking = ranked(&view);
+        let place = match (action, self.lit(&ranking)) {
+            (Action::Up, Some(place)) => place.saturating_sub(1),
+            (Action::Down, Some(place)) => place + 1,
+            (Action::PageUp, Some(place)) => place.saturating_sub(PAGE),
+            (Action::PageDown, Some(place)) => place + PAGE,
+            (Action::Last, _) => ranking.len(),
+            (Action::First, _) | (Action::Up | Action::Down | Action::PageUp | Action::PageDown, None) => 0,
+            _ => return,
+        };
+        self.light(place);
+    }
+
+    /// The decision after the one that is plotted; the first is the one in which students differ most.
+    fn turn_decision(&mut self) {
+        let all = self.view().decisions(self.part);
+        let now = self.shown.decision.as_ref().or(all.first());
+        self.shown.decision = next_of(&all, now).or(self.shown.decision.take());
+    }
+
+    fn turn_figure(&mut self) {
+        let all = self.view().figures();
+        let now = self.shown.figure.as_ref().or(all.first());
+        self.shown.figure = next_of(&all, now).or(self.shown.figure.take());
+    }
+}
+
+/// The name after another one, the first after the last; none where there are none.
+fn next_of(all: &[String], now: Option<&String>) -> Option<String> {
+    let at = all.iter().position(|own| Some(own) == now);
+    all.get(at.map_or(0, |at| (at + 1) % all.len())).cloned()
+}

@@ -1,0 +1,156 @@
+//! A class on the screen: walked over, plotted otherwise, without names.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::*;
+use crate::console::test_kit::painted;
+use crate::session::{
+    Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
+};
+
+/// A class of a lesson whose students have set prices from 10 up; the last one has not finished.
+fn collected(students: u32) -> CollectedClass {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
+    let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = place.path().join("class");
+    let class = Class::create(&folder, &ToHandOut::Lesson(lesson.clone()), students).expect("a class");
+    let runs = class.students.iter().enumerate().map(|(at, student)| {
+        let evidence = evidence(&lesson, at);
+        let verdict =
+            if at + 1 == students as usize { RunVerdict::NotFinished } else { RunVerdict::Finished };
+        ClassRun {
+            label: student.label.clone(),
+            run: student.run.clone(),
+            created: "2026-11-20T10:00:00Z".to_owned(),
+            source: std::path::PathBuf::new(),
+            verdict,
+            evidence,
+        }
+    });
+    let runs: Vec<ClassRun> = runs.collect();
+    let good = evidence(&lesson, 0);
+    let collection = ClassCollection {
+        references: vec![
+            serde_json::from_value(serde_json::json!({ "evidence": good })).expect("a reference"),
+        ],
+        runs,
+        findings: Vec::new(),
+        superseded: 0,
+        others: 0,
+    };
+    CollectedClass { class, lesson: Some(lesson), collection }
+}
+
+fn evidence(lesson: &Lesson, at: usize) -> Evidence {
+    let worth = 1e6 - 3e4 * at as f64;
+    let goal =
+        || serde_json::from_value(serde_json::json!({ "value": worth, "met": at < 3 })).expect("a goal");
+    let step = |own: &crate::session::LessonStep| StepEvidence {
+        guess: own.guess.as_ref().map(|_| 1.0 + (at % 2) as f64),
+        outcome: own.guess.as_ref().map(|_| 1.0),
+        goals: own.goals.iter().map(|_| goal()).collect(),
+    };
+    Evidence {
+        part: 1,
+        seed: 1,
+        day: 21,
+        is_over: true,
+        tries: 1 + (at % 3) as u32,
+        steps: lesson.plan.parts[0].steps.iter().map(step).collect(),
+        pitfalls: lesson.plan.pitfalls.iter().filter(|_| at % 2 == 1).map(|own| own.name.clone()).collect(),
+        cash: vec![(0, 1e6), (7, 1e6 - 1e4 * at as f64), (14, worth), (21, worth)],
+        decisions: BTreeMap::from([
+            ("price A".to_owned(), 10.0 + at as f64),
+            ("price B".to_owned(), 20.0 + (at / 2) as f64),
+            ("price C".to_owned(), 55.0),
+        ]),
+        figures: BTreeMap::from([("cash".to_owned(), worth), ("subscribers".to_owned(), 100.0 * at as f64)]),
+        ..Evidence::default()
+    }
+}
+
+fn page(students: u32) -> ClassPage {
+    ClassPage::new(collected(students), Shown::default())
+}
+
+fn shown(page: &ClassPage, width: u16, height: u16) -> String {
+    painted(width, height, |canvas, area| page.draw(canvas, area)).join("\n")
+}
+
+#[test]
+fn up_and_down_light_another_student() {
+    let mut page = page(12);
+    let first = shown(&page, 120, 39);
+    for part in
+        ["Ranking", "11 of 12", "S01 lit", "price A across, cash up", "S01 ◆", "Guesses", "Pitfall met most"]
+    {
+        assert!(first.contains(part), "{part} is missing in\n{first}");
+    }
+    page.act(Action::Down);
+    assert!(shown(&page, 120, 39).contains("S02 lit"));
+    page.act(Action::Last);
+    assert!(shown(&page, 120, 39).contains("S11 lit"), "S12 has not finished");
+    page.act(Action::Down);
+    assert!(shown(&page, 120, 39).contains("S11 lit"));
+    page.act(Action::PageUp);
+    assert!(shown(&page, 120, 39).contains("S01 lit"));
+    page.light(4);
+    assert_eq!(page.shown.lit.as_deref(), Some("S05"));
+}
+
+#[test]
+fn keys_choose_decision_and_figure_among_those_that_differ() {
+    let mut page = page(6);
+    page.act(Action::ClassDecision);
+    page.act(Action::ClassFigure);
+    assert!(shown(&page, 120, 39).contains("price B across, subscribers up"));
+    page.act(Action::ClassDecision);
+    page.act(Action::ClassFigure);
+    assert!(shown(&page, 120, 39).contains("price A across, cash up"), "price C is the same for all");
+}
+
+#[test]
+fn hidden_names_are_nowhere_on_the_screen() {
+    for (width, height) in [(80, 23), (120, 39)] {
+        let mut page = page(12);
+        assert!(shown(&page, width, height).contains("S03"));
+        page.act(Action::HideNames);
+        for _ in 0..3 {
+            let hidden = shown(&page, width, height);
+            assert!(!hidden.contains("S0") && !hidden.contains("S1"), "{hidden}");
+            assert!(hidden.contains("no. 3"), "{hidden}");
+            page.act(Action::ClassView);
+        }
+        page.act(Action::HideNames);
+        assert!(shown(&page, width, height).contains("S03"));
+    }
+}
+
+#[test]
+fn a_small_window_shows_one_after_the_other_below_the_curves() {
+    let mut page = page(12);
+    for part in ["price A across", "Guesses", "Pitfall met most", "price A across"] {
+        let screen = shown(&page, 80, 23);
+        assert!(screen.contains(part) && screen.contains("Cash by day"), "{part} is missing in\n{screen}");
+        page.act(Action::ClassView);
+    }
+}
+
+#[test]
+fn every_window_has_its_page() {
+    for students in [1, 2, 30] {
+        let mut page = page(students);
+        for below in 0..3 {
+            for width in (0..140).step_by(7) {
+                for height in (0..50).step_by(3) {
+                    shown(&page, width, height);
+                }
+            }
+            page.act(Action::ClassView);
+            page.question = below;
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! A page that asks for one path: the folder of a class, or the hand-out of a student.
+
+use std::path::PathBuf;
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use crate::console::canvas::{Canvas, rows_of};
+use crate::console::effect::Effect;
+use crate::console::request::Request;
+use crate::console::text::wrapped;
+use crate::console::theme::Role;
+use crate::console::widgets::Field;
+use crate::report::class::Shown;
+
+/// Widest text that reads well.
+const WIDEST: u16 = 100;
+
+/// What a path leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PathWanted {
+    /// The folder of a class.
+    Class,
+    /// The hand-out of a student.
+    Handout,
+}
+
+impl PathWanted {
+    fn title(self) -> &'static str {
+        match self {
+            PathWanted::Class => "Class",
+            PathWanted::Handout => "Hand-out",
+        }
+    }
+
+    fn asked(self) -> &'static str {
+        match self {
+            PathWanted::Class => "Folder of the class",
+            PathWanted::Handout => "File of the hand-out",
+        }
+    }
+
+    fn explained(self) -> &'static str {
+        match self {
+            PathWanted::Class => {
+                "The folder that `novamind class new` has made. `novamind class collect DIR PLACES` collects what came back; this \
+                 page shows what was collected last: ranking, curves, decisions, guesses, pitfalls."
+            }
+            PathWanted::Handout => {
+                "The file that your instructor gave you, such as S07.nm. Enter begins what it holds; later it goes on with the try \
+                 or the part that was played last and is not over. From then on the start menu shows your runs only."
+            }
+        }
+    }
+}
+
+/// A page that asks for one path.
+pub(super) struct PathForm {
+    wanted: PathWanted,
+    field: Field,
+    /// Why what was typed could not be opened.
+    pub(super) refused: Option<String>,
+}
+
+impl PathForm {
+    pub(super) fn new(wanted: PathWanted) -> PathForm {
+        PathForm { wanted, field: Field::default(), refused: None }
+    }
+
+    pub(super) fn key(&mut self, key: &KeyEvent) {
+        self.refused = None;
+        self.field.key(key);
+    }
+
+    pub(super) fn paste(&mut self, text: &str) {
+        self.refused = None;
+        self.field.insert(text.trim());
+    }
+
+    /// Opens what was typed.
+    pub(super) fn enter(&self) -> Vec<Effect> {
+        // Terminals put dropped files into quotes.
+        let typed = self.field.text().trim().trim_matches(['\'', '"']);
+        if typed.is_empty() {
+            return vec![Effect::Complain(format!("type a path: {}", self.wanted.asked().to_lowercase()))];
+        }
+        let path = PathBuf::from(typed);
+        vec![Effect::Request(match self.wanted {
+            PathWanted::Class => Request::ReadClass(path, Shown::default()),
+            PathWanted::Handout => Request::OpenHandout(path),
+        })]
+    }
+
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let inside = canvas.pane(area, self.wanted.title(), "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2).min(WIDEST), ..inside };
+        let mut rows = rows_of(inside);
+        if let Some(row) = rows.next() {
+            canvas.text(row, self.wanted.asked(), Role::Strong);
+        }
+        if let Some(row) = rows.next() {
+            self.field.draw(canvas, row);
+        }
+        rows.next();
+        let (text, role) = match &self.refused {
+            Some(problem) => (format!("! {problem}"), Role::Bad),
+            None => (self.wanted.explained().to_owned(), Role::Text),
+        };
+        for (row, line) in rows.zip(wrapped(&text, inside.width as usize)) {
+            canvas.text(row, &line, role);
+        }
+    }
+}

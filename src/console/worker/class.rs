@@ -1,0 +1,52 @@
+//! The session's thread with classes: what was collected of one, and the hand-out of a student.
+
+use std::path::{Path, PathBuf};
+
+use super::SessionThread;
+use crate::console::message::News;
+use crate::report::class::{ClassView, Shown};
+use crate::session::{Access, CollectedClass, Handout, RunError, Session, base_of_runs, participant_folder};
+
+impl SessionThread {
+    /// Reads a class; what is not there of what is to be shown is told instead.
+    pub(super) fn read_class(&self, folder: &Path, shown: Shown) {
+        let read = CollectedClass::read(&from_home(folder)).map_err(|error| error.to_string());
+        let checked = read.and_then(|class| {
+            ClassView::of(&class, shown.clone()).check()?;
+            Ok((class, shown))
+        });
+        self.say(News::Class(Box::new(checked)));
+    }
+
+    /// Begins, or goes on with, what a hand-out holds. The runs are those of its student then.
+    pub(super) fn open_handout(&mut self, path: &Path) {
+        let placed = Handout::read(&from_home(path)).and_then(|handout| {
+            let (base, whose) = base_of_runs(&self.first_runs);
+            if let Some(whose) = whose.filter(|whose| *whose != handout.label) {
+                return Err(RunError::NotPossible(format!(
+                    "this is the hand-out of {}, not of {whose}, whose runs these are. Nothing was begun",
+                    handout.label
+                )));
+            }
+            let run = handout.place(base)?;
+            let runs = participant_folder(base, &handout.label).map_err(RunError::NotPossible)?;
+            Ok((run, runs, handout.label))
+        });
+        let (run, runs, label) = match placed {
+            Ok(placed) => placed,
+            Err(problem) => return self.say(News::NotOpened(problem.to_string(), None)),
+        };
+        self.runs = runs;
+        self.say(News::HandedOut(label));
+        let opened = Session::open(&self.runs.join(&run), Access::Write, true);
+        self.take(opened, &run, None);
+    }
+}
+
+/// A path as somebody types it: `~/` stands for the home folder, as in a shell.
+fn from_home(path: &Path) -> PathBuf {
+    match (path.strip_prefix("~"), std::env::home_dir()) {
+        (Ok(rest), Some(home)) => home.join(rest),
+        _ => path.to_owned(),
+    }
+}

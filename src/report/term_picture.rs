@@ -1,0 +1,316 @@
+//! Small pictures of terms, drawn from figures that a player of the run sees: what a term means here and now. Where the run has
+//! no figure for it, published parameters or a made-up customer stand in. Nothing hidden is in them.
+
+use super::fit::Fit;
+use super::plot::{Drawn, plot};
+use crate::notation::{compact, percent};
+use crate::session::{DeliveredQuality, GroupWeek, Numbers, WeekFigures, churn_of_last_week, example_curve};
+use crate::world::identifiers::{ByGroup, Group, Plan};
+
+/// A change of reputation, as an example.
+const CHANGE: f64 = 0.1;
+/// Weeks over which a cohort is followed.
+const WEEKS: u32 = 26;
+/// Cells of the longest bar in text.
+const BAR: f64 = 30.0;
+
+/// Figures of a run that its player sees.
+pub struct SeenFigures<'a> {
+    /// Figures of every week.
+    pub weeks: &'a [WeekFigures],
+    /// Figures of the groups for every week.
+    pub group_weeks: &'a [ByGroup<GroupWeek>],
+    /// Every known group beside the plans.
+    pub fits: &'a [Fit],
+    /// Delivered quality of every known group.
+    pub quality: &'a [DeliveredQuality],
+    /// Quality before any improvement, and what development has added for everybody.
+    pub quality_base: (f64, f64),
+    /// The numbers that documentation names.
+    pub numbers: &'a Numbers,
+}
+
+/// A picture of a term.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TermPicture {
+    /// What is drawn, in a sentence.
+    pub caption: String,
+    /// The drawing; none while the run has no figure for it.
+    pub drawing: Option<TermDrawing>,
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TermDrawing {
+    /// Lines between axes.
+    Lines(TermLines),
+    /// Amounts, each with its name.
+    Bars(Vec<(String, f64)>),
+}
+
+/// Lines between axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TermLines {
+    /// Name at the end of each line, empty for none, and its points.
+    pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
+    /// What is shaded: place, lower and upper end.
+    pub band: Vec<(f64, f64, f64)>,
+    /// Plans at their places.
+    pub plans: Vec<(Plan, f64, f64)>,
+    /// What stands below.
+    pub across: Across,
+}
+
+/// What the axis below counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Across {
+    /// Dollars.
+    Dollars,
+    /// Weeks.
+    Weeks,
+    /// Anything from 0 to 1.
+    Share,
+}
+
+/// Whether a term has a picture.
+pub fn has_picture(term: &str) -> bool {
+    matches!(
+        term,
+        "participation-curve"
+            | "required-quality"
+            | "fit"
+            | "cohort"
+            | "spill-over"
+            | "quality-bank"
+            | "network-source"
+    )
+}
+
+/// The picture of a term, if it has one.
+pub fn term_picture(term: &str, seen: &SeenFigures<'_>) -> Option<TermPicture> {
+    Some(match term {
+        "participation-curve" | "required-quality" => curve(),
+        "fit" => beside_plans(seen.fits),
+        "cohort" => cohort(seen.weeks),
+        "spill-over" => spill_over(seen.numbers),
+        "quality-bank" => quality_bank(seen),
+        "network-source" => network(seen.group_weeks),
+        _ => return None,
+    })
+}
+
+fn lines(lines: Vec<(&'static str, Vec<(f64, f64)>)>, across: Across) -> Option<TermDrawing> {
+    Some(TermDrawing::Lines(TermLines { lines, band: Vec::new(), plans: Vec::new(), across }))
+}
+
+fn curve() -> TermPicture {
+    TermPicture {
+        caption: "A made-up customer with a budget of $50: the quality it requires, by price.".to_owned(),
+        drawing: lines(vec![("", example_curve())], Across::Dollars),
+    }
+}
+
+/// The first group whose estimates are the narrowest, beside the plans.
+fn beside_plans(fits: &[Fit]) -> TermPicture {
+    let individuals = fits.iter().filter(|own| !own.group.is_enterprise());
+    let Some(own) = individuals.min_by(|one, other| one.noise.total_cmp(&other.noise)) else {
+        return TermPicture { caption: "No group of individuals is known yet.".to_owned(), drawing: None };
+    };
+    let places = || Plan::ALL.into_iter().map(|plan| (plan, own.plans[plan].price, own.plans[plan].quality));
+    let right = places().map(|place| place.1).fold(own.budget.most, f64::max) * 1.05;
+    let top = places().map(|place| place.2).fold(own.floor.most, f64::max) * 1.05;
+    let upright = |at: f64| ("", vec![(at, 0.0), (at, top)]);
+    TermPicture {
+        caption: format!(
+            "{}, estimates of day {}: plans at price and quality. Shaded lies the mean floor, upright the mean budget.",
+            own.group, own.as_of
+        ),
+        drawing: Some(TermDrawing::Lines(TermLines {
+            lines: vec![upright(own.budget.least), upright(own.budget.most)],
+            band: [0.0, right].map(|at| (at, own.floor.least, own.floor.most)).to_vec(),
+            plans: places().collect(),
+            across: Across::Dollars,
+        })),
+    }
+}
+
+/// What the churn of the last week would leave of a cohort.
+fn cohort(weeks: &[WeekFigures]) -> TermPicture {
+    let Some(churn) = churn_of_last_week(weeks) else {
+        let caption = "No week after one with subscribers has run yet.".to_owned();
+        return TermPicture { caption, drawing: None };
+    };
+    let left = |week: u32| (f64::from(week), libm::pow(1.0 - churn, f64::from(week)));
+    TermPicture {
+        caption: format!(
+            "Share of a cohort that is still there after so many weeks, if each loses as many as the last week did: {}.",
+            percent(churn, 1)
+        ),
+        drawing: lines(vec![("", (0..=WEEKS).map(left).collect())], Across::Weeks),
+    }
+}
+
+/// What of a change reaches a group, by the influence that the other one has on it.
+fn spill_over(numbers: &Numbers) -> TermPicture {
+    let value = |key| numbers.value(key);
+    let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
+    let Some((factor, least)) = both else {
+        return TermPicture { caption: String::new(), drawing: None };
+    };
+    let reaching = |influence: f64| {
+        let spilt = CHANGE * influence * factor;
+        (influence, if spilt < least { 0.0 } else { spilt })
+    };
+    let points = (0..=100).map(|step| reaching(f64::from(step) / 100.0)).collect();
+    TermPicture {
+        caption: format!(
+            "What of a change of reputation of {CHANGE} reaches a group, by influence from 0 to 1."
+        ),
+        drawing: lines(vec![("", points)], Across::Share),
+    }
+}
+
+/// What has been added to the product. What rivals have copied of it is shown to nobody.
+fn quality_bank(seen: &SeenFigures<'_>) -> TermPicture {
+    let (base, shared) = seen.quality_base;
+    let of_group = |own: &DeliveredQuality| (format!("added for {}", own.group), own.group_bonus);
+    let groups = seen.quality.iter().map(of_group).filter(|own| own.1 > 0.0);
+    let first = [("without additions".to_owned(), base), ("added for everybody".to_owned(), shared)];
+    TermPicture {
+        caption: "Quality by what has been added so far. How much of it rivals have copied is never shown."
+            .to_owned(),
+        drawing: Some(TermDrawing::Bars(first.into_iter().chain(groups).collect())),
+    }
+}
+
+/// Leads of all groups by week: by word of mouth, and paid.
+fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
+    if weeks.is_empty() {
+        return TermPicture { caption: "No week has run yet, so nobody has come.".to_owned(), drawing: None };
+    }
+    let by_week = |of: fn(&GroupWeek) -> u32| {
+        let sum =
+            |week: &ByGroup<GroupWeek>| Group::all().map(|group| f64::from(of(&week[group]))).sum::<f64>();
+        weeks.iter().enumerate().map(|(at, week)| (at as f64 + 1.0, sum(week))).collect::<Vec<(f64, f64)>>()
+    };
+    TermPicture {
+        caption: "Leads of all groups by week: by word of mouth, and through channels.".to_owned(),
+        drawing: lines(
+            vec![("paid", by_week(GroupWeek::paid_leads)), ("network", by_week(|week| week.word_of_mouth))],
+            Across::Weeks,
+        ),
+    }
+}
+
+impl TermPicture {
+    /// The picture as lines of text.
+    pub fn as_text(&self) -> String {
+        let drawn = self.drawing.as_ref().map_or(String::new(), |drawing| match drawing {
+            TermDrawing::Lines(own) => own.as_text(),
+            TermDrawing::Bars(bars) => bars_as_text(bars),
+        });
+        format!("{}\n{drawn}", self.caption)
+    }
+}
+
+impl TermLines {
+    fn as_text(&self) -> String {
+        let ends = |of: fn(&(f64, f64, f64)) -> f64| self.band.iter().map(|end| (end.0, of(end))).collect();
+        let edges: [Vec<(f64, f64)>; 2] = [ends(|end| end.1), ends(|end| end.2)];
+        let sign = |name: &str| name.chars().next().unwrap_or('*');
+        let mut drawn: Vec<Drawn<'_>> =
+            edges.iter().map(|points| Drawn { sign: ':', points, is_line: true }).collect();
+        drawn.extend(self.lines.iter().map(|(name, points)| Drawn {
+            sign: sign(name),
+            points,
+            is_line: true,
+        }));
+        let plans: Vec<[(f64, f64); 1]> = self.plans.iter().map(|(_, x, y)| [(*x, *y)]).collect();
+        let letter = |plan: Plan| plan.id().chars().next().unwrap_or('?');
+        drawn.extend(self.plans.iter().zip(&plans).map(|((plan, ..), points)| Drawn {
+            sign: letter(*plan),
+            points,
+            is_line: false,
+        }));
+        let named = self.lines.iter().filter(|(name, _)| !name.is_empty());
+        let legend: Vec<String> = named.map(|(name, _)| format!("{} {name}", sign(name))).collect();
+        let legend = if legend.is_empty() { String::new() } else { format!("  {}\n", legend.join(" · ")) };
+        plot(&drawn) + &legend
+    }
+}
+
+fn bars_as_text(bars: &[(String, f64)]) -> String {
+    let most = bars.iter().map(|bar| bar.1).fold(0.0, f64::max);
+    let width = bars.iter().map(|bar| bar.0.chars().count()).max().unwrap_or(0);
+    let line = |(name, value): &(String, f64)| {
+        let cells = if most > 0.0 { (value.max(0.0) / most * BAR).round() as usize } else { 0 };
+        format!("{name:<width$}  {:>7}  {}", compact(*value), "#".repeat(cells)).trim_end().to_owned() + "\n"
+    };
+    bars.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fit::fits;
+    use crate::report::test_kit;
+
+    fn picture(term: &str, weeks: usize) -> TermPicture {
+        let session = test_kit::played(weeks);
+        let (fits, quality, numbers) = (fits(&session), session.delivered_quality(), session.numbers());
+        let seen = SeenFigures {
+            weeks: session.weeks(),
+            group_weeks: session.group_weeks(),
+            fits: &fits,
+            quality: &quality,
+            quality_base: session.quality_base(),
+            numbers: &numbers,
+        };
+        assert!(has_picture(term));
+        term_picture(term, &seen).unwrap_or_else(|| panic!("{term} has no picture"))
+    }
+
+    #[test]
+    fn every_picture_is_there_from_the_first_day_or_says_why_not() {
+        for term in ["participation-curve", "required-quality", "fit", "spill-over", "quality-bank"] {
+            let own = picture(term, 0);
+            assert!(own.drawing.is_some() && own.as_text().lines().count() > 2, "{term}: {own:?}");
+        }
+        for term in ["cohort", "network-source"] {
+            let own = picture(term, 0);
+            assert!(own.drawing.is_none() && own.caption.contains("has run yet"), "{term}: {own:?}");
+            assert!(picture(term, 4).drawing.is_some(), "{term}");
+        }
+        assert!(!has_picture("cash"));
+    }
+
+    #[test]
+    fn what_is_drawn_are_the_figures_of_the_run() {
+        let session = test_kit::played(3);
+        let Some(TermDrawing::Lines(leads)) = picture("network-source", 3).drawing else {
+            panic!("no lines")
+        };
+        let week = &session.group_weeks()[2];
+        let all: u32 = Group::all().map(|group| week[group].leads).sum();
+        let drawn: f64 = leads.lines.iter().map(|(_, points)| points[2].1).sum();
+        assert_eq!((leads.lines[0].1.len(), drawn), (3, f64::from(all)));
+        let Some(TermDrawing::Bars(bars)) = picture("quality-bank", 3).drawing else { panic!("no bars") };
+        assert_eq!((bars[0].1, bars[1].1), session.quality_base());
+        let Some(TermDrawing::Lines(fit)) = picture("fit", 3).drawing else { panic!("no lines") };
+        assert_eq!(fit.plans.len(), 3);
+        let text = picture("fit", 3).as_text();
+        assert!(["A", "B", "C", ":"].iter().all(|sign| text.contains(sign)), "{text}");
+    }
+
+    #[test]
+    fn a_small_influence_carries_nothing_over() {
+        let Some(TermDrawing::Lines(own)) = picture("spill-over", 0).drawing else { panic!("no lines") };
+        let points = &own.lines[0].1;
+        let numbers = Numbers::shipped();
+        let value = |key: &str| numbers.value(key).expect("a number");
+        let least = value("reputation.cross_delta_min_abs");
+        assert!(points.iter().all(|(_, spilt)| *spilt == 0.0 || *spilt >= least));
+        let most = CHANGE * value("reputation.cross_group_spillover_factor");
+        assert!((points[100].1 - most).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,139 @@
+//! Classes in the start menu: a hand-out is opened by its path, and what came back of a class is a screen.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use novamind::console::theme::Theme;
+use novamind::rules::answers_to_companies;
+use novamind::session::{
+    Access, Class, ClassCollection, ClassSources, Configuration, Handout, Lesson, Session, ToHandOut, Via,
+};
+use serde_json::json;
+
+use super::harness::Console;
+
+const SMALL: (u16, u16) = (80, 24);
+const WIDE: (u16, u16) = (120, 40);
+
+fn class(folder: &Path, students: u32) -> Class {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
+    let lesson = ToHandOut::Lesson(Arc::new(Lesson::of_file(&path).expect("a lesson")));
+    Class::create(folder, &lesson, students).expect("a class")
+}
+
+/// Plays a hand-out to its end at a price.
+fn play(handout: &Path, runs: &Path, price: f64) {
+    let handout = Handout::read(handout).expect("a hand-out");
+    let run = handout.place(runs).expect("a run");
+    let folder = runs.join("participants").join(&handout.label).join(run);
+    let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
+    let prices = json!({"A": price, "B": price * 2.5, "C": price * 6.25});
+    session.call("set_prices", &prices, Via::Script).expect("prices");
+    while session.ended().is_none() {
+        let _ = session.guess_in_lesson(if price < 20.0 { 2.0 } else { 1.0 });
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+}
+
+/// Chooses an entry of the first page of the start menu.
+fn choose(console: &mut Console, entry: &str) {
+    for _ in 0..12 {
+        if console.screen().contains(&format!("› {entry}")) {
+            return console.press("enter");
+        }
+        console.press("down");
+    }
+    panic!("the menu has no {entry}:\n{}", console.screen());
+}
+
+/// Types a text and accepts it.
+fn enter(console: &mut Console, text: &str) {
+    console.press(&format!("'{text}' enter"));
+}
+
+#[test]
+fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
+    class(&folder, 2);
+    let mut console = Console::start(&runs, SMALL);
+    choose(&mut console, "Hand-out");
+    console.shows("File of the hand-out");
+    console.press("enter");
+    console.shows("type a path");
+    enter(&mut console, "nothing.nm");
+    console.shows("nothing.nm");
+    assert!(console.app.run().is_none());
+    console.press("esc");
+    choose(&mut console, "Hand-out");
+    let path = folder.join("S01.nm").display().to_string();
+    enter(&mut console, &path);
+    console.shows("Three weeks");
+    let own = |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
+    let first = own(&console);
+    assert!(first.starts_with(runs.join("participants/S01")), "{}", first.display());
+    // The menu shows the student's runs, and the same file goes on.
+    console.press("esc ; q");
+    console.shows("1 on this machine");
+    choose(&mut console, "Hand-out");
+    enter(&mut console, &path);
+    assert_eq!(own(&console), first);
+    // Another student sits down at the same machine.
+    console.press("esc ; q");
+    choose(&mut console, "Hand-out");
+    enter(&mut console, &folder.join("S02.nm").display().to_string());
+    assert!(own(&console).starts_with(runs.join("participants/S02")));
+    console.press("esc q");
+    let left = console.left.clone().expect("it has left");
+    assert!(left.1.expect("a farewell").contains("`novamind --as S02 --run latest` continues"));
+}
+
+#[test]
+fn the_hand_out_of_somebody_else_is_refused_where_the_runs_are_one_persons() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (folder, runs) = (place.path().join("class"), place.path().join("runs/participants/S02"));
+    class(&folder, 2);
+    let mut console = Console::start(&runs, SMALL);
+    choose(&mut console, "Hand-out");
+    enter(&mut console, &folder.join("S01.nm").display().to_string());
+    console.shows("this is the hand-out of S01, not of S02");
+    assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());
+}
+
+#[test]
+fn a_class_is_a_screen_of_the_start_menu() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
+    let class = class(&folder, 7);
+    let mut console = Console::start(&place.path().join("own"), WIDE);
+    choose(&mut console, "Class");
+    let path = folder.display().to_string();
+    enter(&mut console, &path);
+    console.shows("nothing was collected in");
+    for (number, student) in class.students.iter().enumerate().take(6) {
+        play(&folder.join(format!("{}.nm", student.label)), &runs, 8.0 + 6.0 * number as f64);
+    }
+    let sources = ClassSources { class: &class, folder: &folder, places: &[runs] };
+    ClassCollection::collect(&sources, answers_to_companies, &mut |_, _| {}).expect("collected");
+    console.press("enter");
+    let mut pictures = String::new();
+    for (keys, size) in [("", WIDE), ("down down d f", WIDE), ("h", SMALL), ("tab", SMALL), ("tab", SMALL)] {
+        console.size = size;
+        console.press(keys);
+        let letters: Vec<String> = ["dark", "light"]
+            .into_iter()
+            .map(|theme| {
+                console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+                console.screen()
+            })
+            .collect();
+        assert_eq!(letters[0], letters[1], "a theme changes letters");
+        pictures += &format!("{keys} {}×{}\n{}\n", size.0, size.1, letters[0]);
+    }
+    assert!(pictures.contains("6 of 7"), "{pictures}");
+    insta::assert_snapshot!("class", pictures);
+    console.press("esc");
+    console.shows("› ");
+    assert!(!console.screen().contains("Ranking"));
+}

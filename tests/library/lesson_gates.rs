@@ -1,0 +1,334 @@
+//! What a lesson lets pass and when: goals relative to a good play with rules, hidden state of a part while another is to
+//! come, beginnings that a kill has cut, and figures that are measured in another world.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use novamind::rules::answers_to_companies;
+use novamind::session::{
+    Access, Configuration, Lesson, LessonEntry, Mode, NewRun, PartPlay, Playback, Refusal, SealKey, Session,
+    Storage, Via, WeekQuestion, may_look_inside, play_part,
+};
+use novamind::world::identifiers::Group;
+
+fn lesson_of(folder: &Path, plan: &str) -> Result<Lesson, String> {
+    let path = folder.join("gates.toml");
+    std::fs::write(&path, plan).expect("a file");
+    std::fs::write(folder.join("gates.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
+    Lesson::of_file(&path).map_err(|error| error.to_string())
+}
+
+fn begin(folder: &Path, plan: &str) -> Session {
+    let lesson = Arc::new(lesson_of(folder, plan).expect("a lesson"));
+    let new = NewRun {
+        mode: Mode::Lesson,
+        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        storage: Storage::Runs(folder.join("runs")),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+}
+
+fn week(session: &mut Session) -> Result<(), Refusal> {
+    let forecasts = session.naive_forecasts();
+    session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
+}
+
+fn code(result: Result<impl Sized, Refusal>) -> &'static str {
+    result.err().map_or("accepted", |refusal| refusal.code)
+}
+
+fn folder_of(session: &Session) -> PathBuf {
+    session.folder().expect("a folder").to_owned()
+}
+
+/// Two parts on one seed, each of two weeks after one that is played already.
+const PARTS: &str = r#"
+title = "Two parts"
+minutes = 5
+learning_goal = "You find out that luck comes twice."
+
+[[part]]
+title = "First"
+seed = 7
+start_weeks = 1
+
+[[part.start]]
+week = 0
+calls = [
+  'set_prices {"A": 12, "B": 25, "C": 55}',
+  'set_model_tiers {"A": 1, "B": 2, "C": 4}',
+]
+
+[[part.start]]
+week = 1
+calls = ['set_daily_spend {"operations": 100, "development": 0}']
+
+[[part.step]]
+title = "Once"
+text = "Wait."
+weeks = 2
+hints = ["Wait."]
+parameters = { "quality.base_product_quality" = 0.4, "ads.log_curve_k" = 8.0 }
+
+[[part]]
+title = "Second"
+seed = 7
+
+[[part.step]]
+title = "Again"
+text = "Wait once more."
+weeks = 1
+hints = ["Wait."]
+
+[[pitfall]]
+name = "none"
+figure = "cash"
+below = 0.5
+say = "Nothing is left."
+
+[good]
+text = "Nothing."
+
+[bad]
+text = "Nothing either."
+pitfall = "none"
+"#;
+
+#[test]
+fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut first = begin(folder.path(), PARTS);
+    week(&mut first).expect("a week");
+    week(&mut first).expect("a week");
+    assert!(first.ended().is_some());
+    let own = folder_of(&first);
+    let hidden = |session: &mut Session| {
+        assert!(!session.may_look_inside());
+        let refused = session.refuse_to_look_inside().expect_err("it is refused");
+        assert!(refused.message.contains("once its last part is over"), "{refused}");
+        // The causes are those that a player of an unfinished run sees: no hidden figure, no look.
+        let asked: WeekQuestion = "satisfaction 3".parse().expect("a question");
+        assert_eq!(code(session.look_at_figure(&asked)), "not_in_this_mode");
+        assert_eq!(code(session.branch(2, Mode::Debug)), "not_in_this_mode");
+        assert_eq!(code(session.branch(2, Mode::Sandbox)), "accepted");
+        assert!(!may_look_inside(session.manifest(), session.ended(), session.folder()));
+    };
+    hidden(&mut first);
+    let mut second = first.begin_part(1).expect("the second part");
+    hidden(&mut first);
+    drop(first);
+    let playback = Playback::open(&own).expect("a replay");
+    assert!(!playback.may_look_inside());
+    assert!(Session::open_to_look_inside(&own, SealKey::default()).is_err());
+    week(&mut second).expect("a week");
+    assert!(second.ended().is_some() && second.may_look_inside());
+    drop(second);
+    let mut first = Session::open(&own, Access::Write, true).expect("it opens");
+    assert!(first.may_look_inside() && Playback::open(&own).expect("a replay").may_look_inside());
+    first.quality_equation(Group::parse("S1").expect("a group"), None).expect("a look");
+    assert_eq!(code(first.branch(2, Mode::Debug)), "accepted");
+}
+
+#[test]
+fn a_beginning_that_was_cut_anywhere_goes_on_when_the_run_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = begin(folder.path(), PARTS);
+    let (own, hash) = (folder_of(&session), session.state_hash());
+    let standing = session.lesson().expect("a lesson").clone();
+    let parameters = session.params().ads.log_curve_k;
+    drop(session);
+    let path = own.join("trajectory.jsonl");
+    let whole = std::fs::read_to_string(&path).expect("lines");
+    let lines: Vec<&str> = whole.lines().collect();
+    assert!(lines.len() >= 9, "start, calls, a week, parameters, the step");
+    for kept in 1..=lines.len() {
+        cut(&own, &lines[..kept]);
+        let mut again =
+            Session::open(&own, Access::Write, true).unwrap_or_else(|error| panic!("{kept}: {error}"));
+        assert_eq!(again.lesson(), Some(&standing), "{kept} lines were left");
+        assert_eq!(again.params().ads.log_curve_k, parameters, "{kept}");
+        assert_eq!(again.state_hash(), hash, "{kept} lines were left");
+        week(&mut again).unwrap_or_else(|refusal| panic!("{kept}: {refusal}"));
+    }
+}
+
+#[test]
+fn a_try_that_was_cut_before_its_step_began_is_counted_when_it_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path(), PARTS);
+    week(&mut session).expect("a week");
+    let again = session.try_step_again(0).expect("another try");
+    let own = folder_of(&again);
+    let standing = again.lesson().expect("a lesson").clone();
+    assert_eq!(standing.tries(0), 2);
+    drop((again, session));
+    let whole = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
+    let lines: Vec<&str> = whole.lines().collect();
+    let branch = lines.iter().position(|line| line.contains("\"kind\":\"branch\"")).expect("a branch");
+    for kept in branch + 1..=lines.len() {
+        cut(&own, &lines[..kept]);
+        let again = Session::open(&own, Access::Write, true).expect("it opens");
+        assert_eq!(again.lesson().map(|own| own.tries(0)), Some(2), "{kept} lines were left");
+    }
+}
+
+/// Leaves some lines of a run, as a kill does; what had heard of later ones is gone with them.
+fn cut(folder: &Path, lines: &[&str]) {
+    std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n") + "\n").expect("written");
+    for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with("world.db") || name.starts_with("snapshot") {
+            std::fs::remove_file(entry.path()).expect("removed");
+        }
+    }
+}
+
+/// Companies are waiting after some weeks; the good play answers them by rules.
+const RULED: &str = r#"
+title = "Answers"
+minutes = 5
+learning_goal = "You find out what an answer is worth."
+
+[[part]]
+scenario = "competitor-off"
+seed = 11
+cash = 20_000_000
+capacity = "follows usage"
+start_weeks = 4
+
+[[part.start]]
+week = 0
+calls = [
+  'set_prices {"A": 14, "B": 32, "C": 55}',
+  'set_model_tiers {"A": 4, "B": 4, "C": 4}',
+  'set_usage_quotas {"A": 300, "B": 30000, "C": 1000000}',
+  'set_targeted_dev_spend {"targeted_spend": {"E1": 4000, "E2": 5000, "E3": 5000}}',
+  'set_targeted_ad_spend {"targeted_spend": {"social_media": {"E1": 4000, "E2": 4000, "E3": 4000}, "linkedin": {"E1": 4000, "E2": 4000, "E3": 4000}}}',
+]
+
+[[part.step]]
+title = "Answer"
+text = "Answer them."
+weeks = 4
+hints = ["Answer."]
+
+[[part.step.goal]]
+text = "Recurring revenue as of the good play"
+figure = "recurring revenue"
+relative = 0.9
+
+[[part.step]]
+title = "Wait"
+text = "Wait."
+weeks = 1
+hints = ["Wait."]
+
+[[pitfall]]
+name = "silence"
+figure = "recurring revenue"
+below = 1.0
+say = "Nobody has signed."
+
+[good]
+text = "Half of the list price for everybody."
+[[good.play]]
+week = 4
+every = 1
+until = 8
+calls = ['rules: offer rest: C list*0.5, B list*0.5, A list*0.5']
+
+[bad]
+text = "No answer."
+pitfall = "silence"
+"#;
+
+#[test]
+fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begin(folder.path(), RULED);
+    let own = folder_of(&session);
+    for _ in 0..3 {
+        week(&mut session).expect("a week");
+    }
+    // Nobody has said how rules answer: the step waits for its judge instead of being judged wrongly.
+    week(&mut session).expect("a week");
+    assert!(session.lesson().expect("a lesson").goals(0).is_empty());
+    assert_eq!(code(week(&mut session)), "step_not_begun");
+    drop(session);
+    let mut session = Session::open(&own, Access::Write, true).expect("it opens");
+    session.answer_companies_by(answers_to_companies);
+    let standing = session.lesson().expect("a lesson").clone();
+    let goal = standing.goals(0)[0].clone();
+    assert!(goal.bound.is_some_and(|bound| bound > 0.0), "{goal:?}");
+    assert_eq!((goal.value, goal.met), (Some(0.0), Some(false)));
+    assert!(standing.has_begun(1));
+    week(&mut session).expect("a week");
+    // Played as the good play does, it is reached.
+    let lesson = Arc::new(lesson_of(folder.path(), RULED).expect("a lesson"));
+    let plays = lesson.plan.good.plays.clone();
+    let play = PartPlay {
+        lesson: &lesson,
+        part: 0,
+        seed: None,
+        plays: &plays,
+        weeks: None,
+        is_judged: true,
+        asks_database: false,
+    };
+    let good = play_part(&play, answers_to_companies).expect("the good play");
+    let reached = good.lesson().expect("a lesson").goals(0)[0].clone();
+    assert_eq!(reached.met, Some(true));
+    assert_eq!(reached.bound, goal.bound);
+    assert_eq!(reached.bound, reached.value.map(|value| value * 0.9));
+}
+
+#[test]
+fn a_figure_is_measured_in_a_world_of_its_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let measured = r#"
+[[measured]]
+name = "elsewhere"
+text = "cash with rivals"
+figure = "cash"
+value = 1
+scenario = "competitor-off"
+parameters = { "quality.base_product_quality" = 0.3 }
+
+[[measured]]
+name = "here"
+text = "cash"
+figure = "cash"
+value = 1
+"#;
+    let lesson = Arc::new(lesson_of(folder.path(), &(PARTS.to_owned() + measured)).expect("a lesson"));
+    let [elsewhere, here] = [0, 1].map(|at| lesson.in_world_of(&lesson.plan.measured[at]));
+    assert!(Arc::ptr_eq(&here, &lesson));
+    let play = |lesson: &Arc<Lesson>| {
+        let play = PartPlay {
+            lesson,
+            part: 0,
+            seed: Some(1),
+            plays: &[],
+            weeks: Some(1),
+            is_judged: false,
+            asks_database: false,
+        };
+        play_part(&play, answers_to_companies).expect("a play")
+    };
+    let [played, own] = [play(&elsewhere), play(&here)];
+    assert_eq!(
+        (played.manifest().scenario.as_str(), own.manifest().scenario.as_str()),
+        ("competitor-off", "default")
+    );
+    assert!(
+        played.params().competitor.competitor_events_disabled
+            && !own.params().competitor.competitor_events_disabled
+    );
+    let wrong = measured.replace("competitor-off", "no-such-world");
+    let said = lesson_of(folder.path(), &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    assert!(said.contains("no-such-world") && said.contains("line "), "{said}");
+    let wrong = measured.replace("quality.base_product_quality", "quality.luck");
+    let said = lesson_of(folder.path(), &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    assert!(said.contains("quality.luck"), "{said}");
+}

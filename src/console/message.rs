@@ -13,8 +13,8 @@ use crate::report::Story;
 use crate::report::class::Shown;
 use crate::session::record::Limit;
 use crate::session::{
-    Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library, NextStep,
-    PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
+    Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library,
+    NextStep, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
 use crate::tools::{Answer, ToolId};
 

@@ -3,6 +3,8 @@
 mod audited;
 mod classes;
 mod determinism;
+#[cfg(feature = "server")]
+mod doors;
 mod edges;
 mod exports;
 mod forged;

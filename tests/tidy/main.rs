@@ -168,9 +168,10 @@ fn may_use(house: &str) -> &'static [&'static str] {
         "console" | "plain" => {
             &["report", "rules", "session", "glossary", "tools", "database", "world", "notation"]
         }
+        "server" => &["session", "tools", "database", "notation"],
         "cli" => &[
-            "console", "plain", "lab", "report", "rules", "session", "glossary", "tools", "database",
-            "world", "notation",
+            "console", "plain", "lab", "server", "report", "rules", "session", "glossary", "tools",
+            "database", "world", "notation",
         ],
         other => panic!("{other} has no floor yet: say in this test and in src/lib.rs where it stands"),
     }
@@ -178,7 +179,8 @@ fn may_use(house: &str) -> &'static [&'static str] {
 
 /// What of `world` the upper floors may use: plain identifiers. The laboratory works on debug runs and reads all.
 fn of_world(house: &str) -> Option<&'static str> {
-    matches!(house, "report" | "rules" | "console" | "plain" | "cli").then_some("crate::world::identifiers")
+    matches!(house, "report" | "rules" | "console" | "plain" | "server" | "cli")
+        .then_some("crate::world::identifiers")
 }
 
 #[test]

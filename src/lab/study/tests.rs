@@ -214,7 +214,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
 
 #[test]
 fn the_study_of_the_guide_is_one() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab/examples/copying.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/laboratory/examples/copying.toml");
     let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
     assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as its first line says");
 }

@@ -90,7 +90,11 @@ pub(super) fn glossary(word: &str, session: &Session) -> Answer {
         data["picture"] = picture.as_str().into();
     }
     let picture = picture.map_or(String::new(), |picture| format!("\n{picture}"));
-    Answer::done("glossary", format!("{text}({count}; explain TERM for more)\n{picture}").trim_end(), data)
+    Answer::done(
+        "glossary",
+        format!("{text}({count}; explain TERM for more)\n{picture}").trim_end().to_owned(),
+        data,
+    )
 }
 
 #[cfg(test)]

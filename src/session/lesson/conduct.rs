@@ -98,7 +98,8 @@ impl Session {
         if standing.has_begun(step) {
             return standing.refuse_before_guess(self.weeks_passed());
         }
-        let message = "the goals of the step before are not judged yet; close the run and open it again to go on";
+        let message =
+            "the goals of the step before are not judged yet; close the run and open it again to go on";
         Err(Refusal::new("step_not_begun", message))
     }
 

@@ -1,0 +1,291 @@
+//! The doors for programs: HTTP, the Model Context Protocol, and the Python client.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::support::home::Home;
+
+/// A server of a new run; it ends with the test.
+struct Server {
+    child: Child,
+    port: u16,
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A status and the JSON beside it.
+type Answered = (u16, Value);
+
+impl Server {
+    fn start(home: &Home, options: &[&str]) -> Server {
+        let mut child = home.program().arg("serve").args(options).spawn().expect("the program starts");
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut line).expect("a line");
+        let ready: Value = serde_json::from_str(&line).expect("JSON");
+        let port = ready["port"].as_u64().expect("a port") as u16;
+        assert_eq!(ready["pid"], child.id());
+        Server { child, port }
+    }
+
+    /// Sends bytes and reads until the server closes.
+    fn raw(&self, bytes: &[u8]) -> String {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
+        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a socket");
+        // A server that has had enough closes before everything is sent.
+        let _ = stream.write_all(bytes);
+        let mut answer = String::new();
+        let _ = stream.read_to_string(&mut answer);
+        answer
+    }
+
+    fn with_head(&self, method: &str, path: &str, head: &str, body: &str) -> Answered {
+        let length = body.len();
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\n{head}connection: close\r\ncontent-length: {length}\r\n\r\n{body}"
+        );
+        let answer = self.raw(request.as_bytes());
+        let status = answer.split(' ').nth(1).and_then(|code| code.parse().ok()).expect("a status");
+        let body = answer.split_once("\r\n\r\n").map(|(_, body)| body).unwrap_or_default();
+        (status, serde_json::from_str(body).unwrap_or(Value::Null))
+    }
+
+    fn get(&self, path: &str) -> Value {
+        let (status, body) = self.with_head("GET", path, "host: 127.0.0.1\r\n", "");
+        assert_eq!(status, 200, "{path}: {body}");
+        body
+    }
+
+    fn post(&self, path: &str, body: &Value) -> Answered {
+        self.with_head("POST", path, "host: localhost\r\n", &body.to_string())
+    }
+
+    fn week(&self) -> Answered {
+        self.post("/next-week", &json!({ "rationale": "on", "predictions": predictions() }))
+    }
+
+    #[cfg(unix)]
+    fn stop(mut self) -> i32 {
+        let pid = self.child.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &pid]).status().expect("kill").success());
+        self.child.wait().expect("it ends").code().expect("it ends by itself")
+    }
+}
+
+fn predictions() -> Value {
+    let forecast = json!({ "point": 1e6, "lower": 0, "upper": 2e6 });
+    json!({ "cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast })
+}
+
+const NEW: [&str; 5] = ["--new", "--seed", "7", "--days", "28"];
+
+/// Decisions that every door is told.
+const CALLS: [(&str, &str); 3] = [
+    ("set_prices", r#"{"A": 10, "B": 20, "C": null}"#),
+    ("set_usage_quotas", r#"{"A": 50000, "B": 200000, "C": 900000}"#),
+    ("set_targeted_ad_spend", r#"{"content_marketing": {"S1": 500}}"#),
+];
+
+/// The hash of the last state of a run of two weeks that left nothing else behind.
+fn last_hash(home: &Home) -> String {
+    let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
+    let verified = home.run(&["replay", &id, "--verify", "--json"]);
+    assert_eq!(verified.code, 0, "{}", verified.err);
+    let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
+    let weeks = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let last = weeks.filter(|line| line["kind"] == "week").last().expect("a week");
+    last["state_hash"].as_str().expect("a hash").to_owned()
+}
+
+fn of_plain_mode() -> String {
+    let home = Home::new();
+    let mut lines: String = CALLS.iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
+    for _ in 0..2 {
+        lines += &format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
+    }
+    lines = lines.replace(r#", "C": null"#, "");
+    let said = home.play(&["--seed", "7", "--days", "28", "--mode", "baseline", "--strict"], &lines);
+    assert_eq!(said.code, 0, "{}", said.out);
+    last_hash(&home)
+}
+
+#[cfg(unix)]
+#[test]
+fn the_same_decisions_over_http_are_the_same_run() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    assert_eq!(server.get("/health"), json!({ "status": "ok" }));
+    assert_eq!(server.get("/vars"), json!({ "current_day": 0 }));
+    for (tool, args) in CALLS {
+        let args: Value = serde_json::from_str(args).expect("JSON");
+        let (status, body) = server.post("/call", &json!({ "tool": tool, "args": args }));
+        assert_eq!((status, &body["success"]), (200, &json!(true)), "{body}");
+    }
+    let (status, refused) =
+        server.post("/call", &json!({ "tool": "set_capacity_tier", "args": { "tier": 9 } }));
+    assert_eq!((status, refused["success"].as_bool(), refused["data"].is_null()), (200, Some(false), true));
+    assert_eq!(server.post("/next-week", &json!({ "rationale": "x" })).0, 400);
+    for day in [7, 14] {
+        let (status, week) = server.week();
+        assert_eq!((status, &week["day"], &week["ended"]), (200, &json!(day), &Value::Null), "{week}");
+    }
+    let status = server.get("/game-status");
+    assert_eq!((status["day"].as_u64(), status["timed_out"].as_bool()), (Some(14), Some(false)));
+    assert!(server.get("/dashboard")["dashboard"].as_str().is_some_and(|text| text.contains("Cash")));
+    let asked = |sql: &str| server.post("/query", &json!({ "sql": sql }));
+    let (ok, rows) = asked("SELECT SUM(amount) AS cash FROM ledger");
+    assert_eq!((ok, &rows["row_count"], &rows["rows"][0]["cash"]), (200, &json!(1), &status["cash"]));
+    assert_eq!(asked("SELECT * FROM events").0, 403);
+    assert_eq!(asked("DELETE FROM ledger").0, 403);
+    assert_eq!(asked("").0, 400);
+    assert_eq!(asked("SELECT nothing FROM ledger").0, 500);
+    assert_eq!(server.get("/tools").as_array().map(Vec::len), Some(36));
+    assert_eq!(server.get("/tables").as_array().map(Vec::len), Some(19));
+    assert!(server.get("/openapi.json")["components"]["schemas"]["set_prices"].is_object());
+    assert_eq!(server.stop(), 0);
+    assert_eq!(last_hash(&home), of_plain_mode());
+}
+
+#[cfg(unix)]
+#[test]
+fn hostile_requests_leave_the_run_as_it_is() {
+    let home = Home::new();
+    let token = home.0.path().join("token.txt");
+    let server = Server::start(&home, &[&NEW[..], &["--token", &token.to_string_lossy()]].concat());
+    let secret = std::fs::read_to_string(&token).expect("a token");
+    let known = format!("host: 127.0.0.1\r\nauthorization: Bearer {}\r\n", secret.trim());
+    let call = json!({ "tool": "get_vars" }).to_string();
+    for (head, status) in [
+        ("host: 127.0.0.1\r\n".to_owned(), 401),
+        ("host: 127.0.0.1\r\nauthorization: Bearer x\r\n".to_owned(), 401),
+        (known.replace("127.0.0.1", "example.org"), 403),
+        (format!("{known}origin: https://example.org\r\n"), 403),
+        (known.clone(), 200),
+    ] {
+        assert_eq!(server.with_head("POST", "/call", &head, &call).0, status, "{head}");
+    }
+    let ask = |method: &str, path: &str, body: &str| server.with_head(method, path, &known, body).0;
+    for body in ["", "{", "[]", "null", "7", "\"x\"", "{\"tool\": }", "\u{0}"] {
+        assert_eq!(ask("POST", "/call", body), 400, "{body}");
+    }
+    for body in [
+        json!({}),
+        json!({ "tool": 7 }),
+        json!({ "tool": "next_week" }),
+        json!({ "tool": "set_prices", "args": [[]] }),
+    ] {
+        let (status, answer) = server.with_head("POST", "/call", &known, &body.to_string());
+        assert_eq!((status, answer["success"].as_bool()), (200, Some(false)), "{body}");
+    }
+    assert_eq!(ask("GET", "/nothing", ""), 404);
+    assert_eq!(ask("DELETE", "/call", ""), 404);
+    assert_eq!(ask("DELETE", "/daily-scripts", r#"{"name": "none"}"#), 404);
+    let large = format!("{{\"tool\": \"{}\"}}", "x".repeat(2 << 20));
+    assert_eq!(ask("POST", "/call", &large), 413);
+    for garbage in
+        [&b"\x16\x03\x01\x02\x00"[..], b"GET\r\n\r\n", b"POST /call HTTP/1.1\r\ncontent-length: -1\r\n\r\n"]
+    {
+        let answer = server.raw(garbage);
+        assert!(answer.is_empty() || answer.starts_with("HTTP/1.1 400"), "{answer}");
+    }
+    // Somebody goes away in the middle of a week.
+    let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
+    let request = format!("POST /next-week HTTP/1.1\r\n{known}content-length: {}\r\n\r\n{body}", body.len());
+    let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
+    stream.write_all(request.as_bytes()).expect("sent");
+    drop(stream);
+    assert_eq!(ask("GET", "/vars", ""), 200);
+    assert_eq!(server.stop(), 0);
+    let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
+    assert_eq!(home.run(&["replay", &id, "--verify"]).code, 0);
+}
+
+#[test]
+fn a_client_of_the_protocol_finds_every_tool_and_plays() {
+    let home = Home::new();
+    let mut child = home.program().arg("mcp").args(NEW).spawn().expect("the program starts");
+    let mut to = child.stdin.take().expect("a pipe");
+    let mut from = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let mut ask = |id: u32, method: &str, params: Value| -> Value {
+        let request = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params });
+        writeln!(to, "{request}").expect("sent");
+        loop {
+            let line = from.next().expect("an answer").expect("a line");
+            let answer: Value = serde_json::from_str(&line).expect("JSON");
+            if answer["id"] == id {
+                return answer;
+            }
+        }
+    };
+    let client = json!({ "protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": { "name": "t", "version": "1" } });
+    assert_eq!(ask(1, "initialize", client)["result"]["serverInfo"]["name"], "novamind");
+    let tools = ask(2, "tools/list", json!({}));
+    assert_eq!(tools["result"]["tools"].as_array().map(Vec::len), Some(36), "{tools}");
+    let mut call = |id, name: &str, arguments: Value| {
+        ask(id, "tools/call", json!({ "name": name, "arguments": arguments }))["result"].clone()
+    };
+    for (at, (tool, args)) in CALLS.iter().enumerate() {
+        let said = call(10 + at as u32, tool, serde_json::from_str(args).expect("JSON"));
+        assert_eq!(said["structuredContent"]["success"], true, "{said}");
+    }
+    assert_eq!(call(20, "set_capacity_tier", json!({ "tier": 9 }))["isError"], true);
+    for at in 0..2 {
+        let said = call(30 + at, "next_week", json!({ "rationale": "on", "predictions": predictions() }));
+        assert_eq!(said["structuredContent"]["day"], 7 * (at + 1), "{said}");
+    }
+    let rows = call(40, "query", json!({ "sql": "SELECT COUNT(*) AS n FROM customers" }));
+    assert_eq!(rows["structuredContent"]["row_count"], 1);
+    let manual = ask(50, "resources/read", json!({ "uri": "novamind://manual" }));
+    assert!(manual["result"]["contents"][0]["text"].as_str().is_some_and(|text| text.contains("set_prices")));
+    assert!(ask(51, "resources/read", json!({ "uri": "novamind://hidden" }))["error"].is_object());
+    drop(to);
+    assert!(child.wait().expect("it ends").success());
+    assert_eq!(last_hash(&home), of_plain_mode());
+}
+
+#[test]
+fn the_python_client_plays() {
+    if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
+        println!("SKIPPED: python3 is not installed");
+        return;
+    }
+    let home = Home::new();
+    let folder = home.0.path().join("client");
+    assert_eq!(home.run(&["serve", "--client", &folder.to_string_lossy()]).code, 0);
+    let server = Server::start(&home, &NEW);
+    let program = "
+import novamind
+from novamind import infrastructure, marketing, pricing
+pricing.set_prices(A=10, B=20)
+pricing.set_usage_quotas(A=50000, B=200000, C=900000)
+marketing.set_targeted_ad_spend({'content_marketing': {'S1': 500}})
+try:
+    infrastructure.set_capacity_tier(9)
+except novamind.NovamindError as error:
+    assert error.code, error
+else:
+    raise SystemExit('not refused')
+forecast = {'point': 1e6, 'lower': 0, 'upper': 2e6}
+filed = {key: forecast for key in novamind.naive_predictions()}
+for day in (7, 14):
+    assert novamind.next_week('on', filed)['day'] == day == novamind.current_day()
+assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
+";
+    let mut python = home.command("python3");
+    python.env("PYTHONPATH", &folder).env("NOVAMIND_API_PORT", server.port.to_string());
+    let said = python.args(["-c", program]).output().expect("python");
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    #[cfg(unix)]
+    {
+        assert_eq!(server.stop(), 0);
+        assert_eq!(last_hash(&home), of_plain_mode());
+    }
+}

@@ -296,7 +296,64 @@ fn ask_line(input: &mut Lines, text: &str) -> io::Result<Option<String>> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
     use super::*;
+    use crate::session::{Configuration, Lesson, LessonEntry, NewRun};
+
+    /// The lesson of two weeks, in memory; its access may be another.
+    fn in_lesson(access: &str) -> Session {
+        let place = tempfile::tempdir().expect("a folder");
+        let file = place.path().join("two-weeks.toml");
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
+        let plan = std::fs::read_to_string(shipped).expect("a plan");
+        std::fs::write(&file, plan.replace("forecasts = \"naive\"\nrationale = \"off\"", access))
+            .expect("a file");
+        let lesson = Arc::new(Lesson::of_file(&file).expect("a lesson"));
+        let entry = LessonEntry { lesson, part: 0, is_judged: true };
+        let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        session.guess_in_lesson(0.5).expect("a guess");
+        session
+    }
+
+    fn argument(value: &str) -> Argument {
+        Argument { key: None, value: value.into(), column: 6 }
+    }
+
+    #[test]
+    fn a_lesson_that_asks_for_nothing_needs_no_argument_and_its_end_names_no_score() {
+        let mut session = in_lesson("forecasts = \"naive\"\nrationale = \"off\"");
+        for prompts in [false, true] {
+            let filing = read(&[], &session, prompts).expect("it is filed");
+            assert!(matches!(&filing, Filing::Given { naive: [true, true, true, true], .. }), "{filing:?}");
+        }
+        let filing = read(&[], &session, false).expect("it is filed");
+        assert!(run(&mut session, filing).is_ok());
+        session.guess_in_lesson(1.0).expect("a guess");
+        let filing = read(&[], &session, true).expect("it is filed");
+        let told = run(&mut session, filing).as_text();
+        assert!(told.contains("run ended: lesson \u{b7} day 14\n") && !told.contains("score"), "{told}");
+    }
+
+    #[test]
+    fn a_lesson_that_asks_for_a_rationale_takes_it_alone() {
+        let mut session = in_lesson("forecasts = \"naive\"\nrationale = \"required\"");
+        assert_eq!(read(&[], &session, true), Ok(Filing::Ask));
+        let nothing = read(&[], &session, false).expect("it is read");
+        let refused = run(&mut session, nothing).as_text();
+        assert!(refused.contains("write next \"WHY\", and"), "{refused}");
+        let filing = read(&[argument("because")], &session, false).expect("it is filed");
+        assert!(run(&mut session, filing).is_ok());
+    }
+
+    #[test]
+    fn outside_of_such_lessons_forecasts_are_the_players() {
+        let session = in_lesson("forecasts = \"required\"\nrationale = \"off\"");
+        assert_eq!(read(&[], &session, true), Ok(Filing::Ask));
+        assert!(read(&[argument("because")], &session, false).is_err());
+    }
 
     #[test]
     fn typed_forecasts_are_checked_line_by_line() {

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use serde_json::Value;
+
 use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::figures::changes::Decisions;
@@ -12,7 +14,6 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::list_world;
-use crate::session::lesson::reference::AnswersCompanies;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
@@ -28,11 +29,14 @@ use crate::session::witness::code_words;
 use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::session::xray::hidden_day::Diary;
 use crate::session::xray::hidden_tables::HiddenTables;
-use crate::tools::Numbers;
+use crate::tools::{Numbers, Refusal, ToolId};
 use crate::voice::CompanyNames;
 use crate::world::identifiers::ByGroup;
 use crate::world::params::Params;
 use crate::world::settings::Settings;
+
+/// What rules would have the companies that wait be told. A session does not know rules: whoever plays says it.
+pub type AnswersCompanies = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
 
 /// A run that is open.
 pub struct Session {

@@ -16,7 +16,7 @@ use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::{Manifest, write_whole};
 use crate::session::lesson::lesson_file::Lesson;
-use crate::session::lesson::reference::AnswersCompanies;
+use crate::session::state::AnswersCompanies;
 use crate::session::study::gather::{CollectNote, FoundRun, gather};
 
 /// Name of the file in the folder of the class.

@@ -9,7 +9,8 @@ use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
 use crate::session::error::RunError;
 use crate::session::lesson::definition::{GoalBound, LessonPart};
 use crate::session::lesson::lesson_file::Lesson;
-use crate::session::lesson::reference::{AnswersCompanies, PartPlay, play_part};
+use crate::session::lesson::reference::{PartPlay, play_part};
+use crate::session::state::AnswersCompanies;
 
 /// The good play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,10 +9,10 @@ use super::decisions::{PartedDecision, WeekDecisions, parted};
 use super::definition::{CapacityMover, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
-use super::reference::{AnswersCompanies, PartPlay, play_part_watched};
+use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
 use crate::session::figures::journal::JournalEntry;
-use crate::session::state::Session;
+use crate::session::state::{AnswersCompanies, Session};
 use crate::session::trajectory::record::Ended;
 use crate::tools::{Refusal, ToolId};
 

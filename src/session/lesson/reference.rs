@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use serde_json::Value;
-
 use super::conduct::LessonEntry;
 use super::definition::{GoalBound, GuessForm, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
@@ -13,12 +11,9 @@ use crate::session::error::RunError;
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::create::NewRun;
 use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
+use crate::session::state::{AnswersCompanies, Session};
 use crate::session::trajectory::record::Via;
-use crate::tools::{Refusal, ToolId};
-
-/// What rules would have the companies that wait be told.
-pub type AnswersCompanies = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
+use crate::tools::Refusal;
 
 /// A play of a part that is done by its file.
 #[derive(Debug, Clone, PartialEq)]

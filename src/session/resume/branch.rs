@@ -7,7 +7,6 @@ use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
 use crate::session::folder::manifest::{FORMAT, Manifest};
 use crate::session::folder::mode::Mode;
-use crate::session::lesson::over::is_lesson_over;
 use crate::session::state::Session;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
@@ -89,11 +88,6 @@ fn unnamed_branch(
     }
     if mode != Mode::Debug && parent.fault.is_some() {
         let message = "it has a planted fault, so a branch of it is a debug run";
-        return Err(Refusal::new("not_in_this_mode", message));
-    }
-    if mode == Mode::Debug && !is_lesson_over(Some(folder), parent) {
-        let message =
-            "a debug run shows hidden state, and the lesson is not over; a sandbox branch is possible";
         return Err(Refusal::new("not_in_this_mode", message));
     }
     let shared = shared_lines(lines);

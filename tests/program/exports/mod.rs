@@ -125,6 +125,40 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
 }
 
 #[test]
+fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() {
+    let (home, other) = (Home::new(), Home::new());
+    let run = played(&home, "P01");
+    let (archive, _) = export(&home, &run, "run.tar");
+    assert_eq!(import(&other, &archive).code, 0);
+    // Both go on, and otherwise.
+    for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
+        let lines = format!("set_prices {price}\nnext \"on\" naive\n");
+        assert_eq!(home.play(&["--run", &id(&run)], &lines).code, 0);
+    }
+    let there = other.runs().join(id(&run));
+    let before = bytes_of(&there, "trajectory.jsonl");
+    let (second, _) = export(&home, &run, "second.tar");
+    let parts = ["already exists", "differ from line", "in the archive", "lines up to day", "--under NAME"];
+    import(&other, &second).fails(1, &parts);
+    let path = text(&second);
+    other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is no name for a run"]);
+    other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["there is a run"]);
+    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["names one run"]);
+    let imported = other.run(&["runs", "import", &path, "--under", "second"]);
+    assert!(
+        imported.code == 0 && imported.out.contains("as second imported"),
+        "{}{}",
+        imported.out,
+        imported.err
+    );
+    let beside = other.runs().join("second");
+    assert_eq!(bytes_of(&beside, "trajectory.jsonl"), bytes_of(&run, "trajectory.jsonl"));
+    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the record that was there is as it was");
+    assert_eq!(other.run(&["replay", "second", "--verify"]).code, 0);
+    assert!(other.run(&["runs", "list"]).out.contains("second"));
+}
+
+#[test]
 fn the_database_of_an_archive_opens_without_the_program() {
     let home = Home::new();
     let run = played(&home, "P01");

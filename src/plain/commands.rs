@@ -36,7 +36,6 @@ use super::signals::{Phase, Watch};
 use crate::database::text::table;
 use crate::notation::nearest;
 use crate::report::research::late_in_words;
-use crate::rules::answers_to_companies;
 use crate::session::record::{Help, Select};
 use crate::session::{
     Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
@@ -192,7 +191,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// An interpreter with named queries; `prompts` says that a person types and can be asked.
     pub fn new(mut session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
-        session.answer_companies_by(answers_to_companies);
+        session.answer_companies_by(crate::rules::answers_to_companies);
         Interpreter {
             session,
             library,

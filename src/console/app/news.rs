@@ -20,7 +20,8 @@ use crate::console::tour::Tour;
 use crate::console::viewer::Viewer;
 use crate::notation::{dollars, signed_dollars};
 use crate::report::Story;
-use crate::session::{Change, Interrupt, Refusal, Week};
+use crate::report::class::Shown;
+use crate::session::{Change, CollectedClass, Interrupt, Refusal, Week};
 
 impl App {
     pub(super) fn news(&mut self, news: News) {
@@ -46,14 +47,7 @@ impl App {
                     self.follow(effects);
                 }
             }
-            News::Class(read) => {
-                self.busy = None;
-                match (*read, &mut self.stage) {
-                    (Ok((class, shown)), Stage::Menu(menu)) => menu.show_class(class, shown),
-                    (Err(problem), Stage::Menu(menu)) => menu.refused(problem, None),
-                    _ => {}
-                }
-            }
+            News::Class(read) => self.class_was_read(*read),
             News::HandedOut(label) => self.again = as_student(&self.again, &label),
             News::Opened(company, interrupt) => self.opened(company, interrupt, None),
             News::Replays(company, interrupt, place) => {
@@ -421,6 +415,21 @@ impl App {
                 }
             }
             Err(refusal) => self.complain(refusal.to_string()),
+        }
+    }
+}
+
+impl App {
+    /// A class was read, or could not be.
+    fn class_was_read(&mut self, read: Result<(CollectedClass, Shown), String>) {
+        self.busy = None;
+        let Stage::Menu(menu) = &mut self.stage else { return };
+        match read {
+            Ok((class, shown)) => menu.show_class(class, shown),
+            Err(problem) => {
+                menu.refused(problem.clone(), None);
+                self.complain(problem);
+            }
         }
     }
 }

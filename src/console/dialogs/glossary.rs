@@ -174,7 +174,8 @@ impl Glossary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+    use crate::console::company::Company;
+    use crate::console::test_kit::{company, dialog_picture, in_dialog, played};
 
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {
@@ -214,6 +215,28 @@ mod tests {
         );
         let small = dialog_picture(&dialog, &company, 80, 24);
         assert!(small.contains("Participation curve") && !small.contains("$50"), "{small}");
+    }
+
+    #[test]
+    fn terms_are_drawn_from_the_figures_of_the_company() {
+        let company = Company::of(&played(2));
+        for (word, caption) in [
+            ("fit", "estimates of day 0"),
+            ("cohort", "as many as the last week did"),
+            ("spill-over", "a change of reputation of 0.1"),
+            ("quality bank", "without additions"),
+            ("network leads", "by word of mouth, and through"),
+        ] {
+            let mut dialog = Glossary::new(company.numbers.clone());
+            in_dialog(&mut dialog, Action::Filter, &company);
+            dialog.table.edit_filter(|field| field.insert(word));
+            in_dialog(&mut dialog, Action::Commit, &company);
+            let shown = dialog_picture(&dialog, &company, 130, 44);
+            assert!(shown.contains(caption), "{word}: {shown}");
+            for (width, height) in [(0, 0), (20, 60), (60, 60), (80, 24), (90, 60)] {
+                dialog_picture(&dialog, &company, width, height);
+            }
+        }
     }
 
     #[test]

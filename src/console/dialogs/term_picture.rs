@@ -15,6 +15,8 @@ use crate::report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, T
 
 /// Lowest picture that can be read.
 pub const LEAST_ROWS: u16 = 7;
+/// Narrowest picture that can be read.
+const LEAST_COLUMNS: u16 = 20;
 /// Most rows that one takes.
 pub const MOST_ROWS: u16 = 11;
 /// Columns that one takes beside text.
@@ -33,7 +35,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Company) 
         numbers: &company.numbers,
     };
     let Some(TermPicture { caption, drawing }) = term_picture(term, &seen) else { return };
-    if area.height < LEAST_ROWS {
+    if area.height < LEAST_ROWS || area.width < LEAST_COLUMNS {
         return;
     }
     let words = wrapped(&caption, area.width as usize);

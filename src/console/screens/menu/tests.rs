@@ -266,6 +266,39 @@ fn modes_without_anything_to_them_are_not_offered() {
 }
 
 #[test]
+fn hand_outs_and_classes_are_asked_for_by_their_paths() {
+    let mut menu = three();
+    let screen = shown(&menu, 80, 23);
+    assert!(
+        screen.contains("such as S07.nm") && screen.contains("Class") && screen.contains("Quit"),
+        "{screen}"
+    );
+    menu.act(Action::Last);
+    menu.act(Action::Up);
+    menu.act(Action::Open);
+    assert_eq!((menu.page, menu.scopes()), (MenuPage::Path, vec![Scope::Field]));
+    assert!(matches!(&menu.act(Action::Commit)[..], [Effect::Complain(_)]), "nothing is typed");
+    type_text(&mut menu, "'~/q class'");
+    match &menu.act(Action::Commit)[..] {
+        [Effect::Request(Request::ReadClass(path, _))] => assert_eq!(path, std::path::Path::new("~/q class")),
+        other => panic!("{other:?}"),
+    }
+    menu.refused("~/q class holds no class".to_owned(), None);
+    assert!(shown(&menu, 80, 23).contains("! ~/q class holds no class"));
+    menu.act(Action::Discard);
+    assert!(menu.page == MenuPage::Home);
+    menu.act(Action::Last);
+    menu.act(Action::Up);
+    menu.act(Action::Up);
+    menu.act(Action::Open);
+    menu.paste("S07.nm\n");
+    match &menu.act(Action::Commit)[..] {
+        [Effect::Request(Request::OpenHandout(path))] => assert_eq!(path, std::path::Path::new("S07.nm")),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn the_paper_table_shows_both_kinds_of_results() {
     let mut menu = three();
     menu.page = MenuPage::Paper;
@@ -284,7 +317,15 @@ fn the_paper_table_shows_both_kinds_of_results() {
 fn every_page_is_drawn_in_every_window() {
     for mut menu in [menu(Vec::new()), three(), Menu::new(&Configuration::shipped())] {
         menu.marked = menu.list().iter().map(|run| run.id.clone()).collect();
-        for page in [MenuPage::Home, MenuPage::NewRun, MenuPage::Runs, MenuPage::Compare, MenuPage::Paper] {
+        let pages = [
+            MenuPage::Home,
+            MenuPage::NewRun,
+            MenuPage::Runs,
+            MenuPage::Compare,
+            MenuPage::Paper,
+            MenuPage::Path,
+        ];
+        for page in pages {
             menu.page = page;
             for width in (0..130).step_by(13) {
                 for height in (0..40).step_by(3) {

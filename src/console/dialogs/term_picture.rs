@@ -52,7 +52,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Company) 
 }
 
 fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
-    let line = |(at, (name, points)): (usize, &(&'static str, Vec<(f64, f64)>))| {
+    let line = |(at, &(name, ref points)): (usize, &(&'static str, Vec<(f64, f64)>))| {
         Line::through(points.clone(), Role::Series(at)).named(name)
     };
     let lines: Vec<Line> = own.lines.iter().enumerate().map(line).collect();

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CASH, ClassView, RankedStudent};
+use crate::session::ClassRun;
 
 /// A line or a point of a student in a drawing.
 pub struct StudentPoints<'a> {
@@ -19,9 +20,7 @@ pub fn curves<'a>(
     part: u32,
 ) -> Vec<StudentPoints<'a>> {
     let points = |cash: &[(u32, f64)]| cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
-    let of_part =
-        |student: &RankedStudent<'a>| student.runs.iter().find(|run| run.evidence.part == part).copied();
-    let own: Vec<_> = ranking.iter().filter_map(|student| Some((student.label, of_part(student)?))).collect();
+    let own = runs_of(ranking, part);
     let good = own.first().and_then(|(_, run)| view.good(run));
     let good = good.map(|good| StudentPoints { label: None, points: points(&good.cash) });
     let students = own
@@ -40,33 +39,39 @@ pub struct Scatter<'a> {
     pub points: Vec<StudentPoints<'a>>,
 }
 
+/// What of each student counts in a part.
+fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
+    let of_part = |student: &RankedStudent<'a>| {
+        let run = student.runs.iter().find(|run| run.evidence.part == part).copied()?;
+        Some((student.label, run))
+    };
+    ranking.iter().filter_map(of_part).collect()
+}
+
+/// Names of the decisions of a part in which students differ, the most different first; parts are counted from 1.
+pub fn decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
+    let runs = runs_of(ranking, part);
+    by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
+}
+
 /// The scatter of a part; none where students do not differ in any decision.
 pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u32) -> Option<Scatter<'a>> {
-    let runs: Vec<_> = ranking
-        .iter()
-        .filter_map(|student| {
-            Some((student.label, student.runs.iter().find(|run| run.evidence.part == part)?))
-        })
-        .collect();
-    let decision = view.shown.decision.clone().or_else(|| {
-        let all: Vec<&BTreeMap<String, f64>> = runs.iter().map(|(_, run)| &run.evidence.decisions).collect();
-        by_difference(&all).into_iter().next()
-    })?;
+    let decision = view.shown.decision.clone().or_else(|| decisions(ranking, part).into_iter().next())?;
     let figure = view.shown.figure.clone().unwrap_or_else(|| CASH.to_owned());
-    let point = |(label, run): &(&'a str, &&'a crate::session::ClassRun)| {
+    let point = |(label, run): (&'a str, &'a ClassRun)| {
         let across = run.evidence.decisions.get(&decision).copied().unwrap_or(0.0);
         Some(StudentPoints {
-            label: Some(*label),
+            label: Some(label),
             points: vec![(across, *run.evidence.figures.get(&figure)?)],
         })
     };
-    let points: Vec<StudentPoints<'a>> = runs.iter().filter_map(point).collect();
+    let points: Vec<StudentPoints<'a>> = runs_of(ranking, part).into_iter().filter_map(point).collect();
     Some(Scatter { decision, figure, points })
 }
 
 /// Names of the decisions in which students differ: the one with more different values first, then the one whose values lie
 /// further apart as a share of the largest. Of two that reach equally far, more values tell more.
-pub(super) fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
+fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));
         let (least, most) = values()

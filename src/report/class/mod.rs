@@ -11,7 +11,7 @@ mod words;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-pub use curves::{Scatter, StudentPoints, curves, scatter};
+pub use curves::{Scatter, StudentPoints, curves, decisions, scatter};
 pub use guesses::{AskedClass, PitfallMet, asked, pitfalls};
 pub use html::as_html;
 pub use ranking::{RankedStudent, ranked};
@@ -93,12 +93,6 @@ impl ClassView<'_> {
             .runs
             .iter()
             .filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished))
-    }
-
-    /// Names of the decisions of a part, the one in which students differ most first; parts are counted from 1.
-    pub fn decisions(&self, part: u32) -> Vec<String> {
-        let own = self.whole().filter(|run| run.evidence.part == part);
-        curves::by_difference(&own.map(|run| &run.evidence.decisions).collect::<Vec<_>>())
     }
 
     /// Names of the figures that a run has, cash first.

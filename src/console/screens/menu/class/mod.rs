@@ -5,7 +5,7 @@ mod draw;
 mod tests;
 
 use crate::console::action::Action;
-use crate::report::class::{ClassView, RankedStudent, Shown, asked, ranked};
+use crate::report::class::{ClassView, RankedStudent, Shown, asked, decisions, ranked};
 use crate::session::CollectedClass;
 
 /// Students of a page, to walk over.
@@ -69,9 +69,7 @@ impl ClassPage {
     /// How many questions of the part were answered.
     fn questions(&self) -> usize {
         let view = self.view();
-        let answered =
-            asked(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count();
-        answered
+        asked(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count()
     }
 
     /// Does an action.
@@ -113,7 +111,7 @@ impl ClassPage {
 
     /// The decision after the one that is plotted; the first is the one in which students differ most.
     fn turn_decision(&mut self) {
-        let all = self.view().decisions(self.part);
+        let all = decisions(&ranked(&self.view()), self.part);
         let now = self.shown.decision.as_ref().or(all.first());
         self.shown.decision = next_of(&all, now).or(self.shown.decision.take());
     }

@@ -15,11 +15,11 @@ mod tests {
     /// Seeds that no strong policy was tuned on; the second has a surge while companies sign.
     const SEEDS: [u64; 2] = [113, 114];
 
-    /// Cash of a living company on day 84 of a run of 500 days, dollars.
+    /// Cash of a living company on day 70 of a run of 500 days, dollars.
     fn early_cash(name: &str, seed: u64) -> f64 {
         let configuration = Configuration::shipped();
         let policy = Policy::find(name, &configuration).expect(name);
-        let spec = RunSpec { until: Some(84), ..RunSpec::of_seed(seed) };
+        let spec = RunSpec { until: Some(70), ..RunSpec::of_seed(seed) };
         let outcome = play(&policy, &spec, &configuration, &mut Collector::idle()).expect(name);
         assert_eq!(outcome.ended, RunEnd::Until, "{name} on seed {seed}");
         outcome.cash

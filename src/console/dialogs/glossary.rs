@@ -222,10 +222,10 @@ mod tests {
         let company = Company::of(&played(2));
         for (word, caption) in [
             ("fit", "estimates of day 0"),
-            ("cohort", "as many as the last week did"),
+            ("cohort", "Share of a cohort that is still there"),
             ("spill-over", "a change of reputation of 0.1"),
             ("quality bank", "without additions"),
-            ("network leads", "by word of mouth, and through"),
+            ("network leads", "Leads of all groups by week"),
         ] {
             let mut dialog = Glossary::new(company.numbers.clone());
             in_dialog(&mut dialog, Action::Filter, &company);

@@ -63,7 +63,7 @@ impl Menu {
             choices.push(tour);
         }
         choices.push((HomeEntry::Lessons, "Lessons", "one idea each, 12 to 25 minutes".to_owned()));
-        choices.push((HomeEntry::Handout, "Hand-out", "the file of a class, such as S07.nm".to_owned()));
+        choices.push((HomeEntry::Handout, "Hand-out", "the file you got, such as S07.nm".to_owned()));
         choices.push((HomeEntry::Class, "Class", "what came back of your students".to_owned()));
         choices.push((HomeEntry::Quit, "Quit", "everything confirmed is saved".to_owned()));
         choices

@@ -52,10 +52,10 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Company) 
 }
 
 fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
-    let line = |(at, &(name, ref points)): (usize, &(&'static str, Vec<(f64, f64)>))| {
-        Line::through(points.clone(), Role::Series(at)).named(name)
-    };
-    let lines: Vec<Line> = own.lines.iter().enumerate().map(line).collect();
+    let named = own.lines.iter().enumerate();
+    let lines: Vec<Line> = named
+        .map(|(at, (name, points))| Line::through(points.clone(), Role::Series(at)).named(name))
+        .collect();
     let band = Band { ends: own.band.clone(), name: "" };
     let write = |value: f64| match own.across {
         Across::Dollars => dollars(value),

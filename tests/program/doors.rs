@@ -100,8 +100,8 @@ fn last_hash(home: &Home) -> String {
     let verified = home.run(&["replay", &id, "--verify", "--json"]);
     assert_eq!(verified.code, 0, "{}", verified.err);
     let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
-    let weeks = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
-    let last = weeks.filter(|line| line["kind"] == "week").last().expect("a week");
+    let mut weeks = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let last = weeks.rfind(|line| line["kind"] == "week").expect("a week");
     last["state_hash"].as_str().expect("a hash").to_owned()
 }
 

@@ -58,6 +58,14 @@ impl NewRunOptions {
         NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
     }
 
+    /// The same, played by somebody of this label unless another was named.
+    pub fn played_by(&self, label: &str) -> NewRunOptions {
+        NewRunOptions {
+            participant: Some(self.participant.clone().unwrap_or_else(|| label.to_owned())),
+            ..self.clone()
+        }
+    }
+
     /// The run, in a mode unless another was asked for.
     ///
     /// # Errors

@@ -35,7 +35,9 @@ impl WhichRun {
             context.check_play(&folder)?;
             return Ok(Session::open(&folder, Access::Write, true)?);
         }
-        let new = self.made_of.new_run(Mode::Baseline, context)?;
+        // A baseline run says who played it.
+        let label = context.participant.as_deref().unwrap_or("program");
+        let new = self.made_of.played_by(label).new_run(Mode::Baseline, context)?;
         match Session::create(new, &context.configuration) {
             Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
                 "this folder of configuration asks participants to agree to a text first, which no program can do: \

@@ -85,7 +85,7 @@ fn predictions() -> Value {
     json!({ "cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast })
 }
 
-const NEW: [&str; 5] = ["--new", "--seed", "7", "--days", "28"];
+const NEW: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
 
 /// Decisions that every door is told.
 const CALLS: [(&str, &str); 3] = [
@@ -97,7 +97,7 @@ const CALLS: [(&str, &str); 3] = [
 /// The hash of the last state of a run of two weeks that left nothing else behind.
 fn last_hash(home: &Home) -> String {
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
-    let verified = home.run(&["replay", &id, "--verify", "--json"]);
+    let verified = home.run(&["replay", &id, "--verify"]);
     assert_eq!(verified.code, 0, "{}", verified.err);
     let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
     let mut weeks = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
@@ -112,7 +112,7 @@ fn of_plain_mode() -> String {
         lines += &format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
     }
     lines = lines.replace(r#", "C": null"#, "");
-    let said = home.play(&["--seed", "7", "--days", "28", "--mode", "baseline", "--strict"], &lines);
+    let said = home.play(&["--seed", "7", "--days", "28", "--mode", "sandbox", "--strict"], &lines);
     assert_eq!(said.code, 0, "{}", said.out);
     last_hash(&home)
 }

@@ -13,8 +13,10 @@ mod forecasts;
 mod laws;
 mod metrics;
 mod output;
+mod read_runs;
 mod results;
 mod study;
+mod world;
 
 use std::path::{Path, PathBuf};
 

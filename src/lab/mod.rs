@@ -23,6 +23,7 @@ mod lesson_check;
 mod metrics;
 mod normal;
 mod policy;
+mod ranks;
 pub(crate) mod results;
 mod routine;
 mod runner;

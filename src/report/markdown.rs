@@ -1,6 +1,7 @@
 //! A page as Markdown, readable as it stands and where Markdown is shown.
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
+use super::plot::{LEVELS, level};
 use crate::notation::acts;
 
 /// Characters of a full bar.
@@ -113,7 +114,6 @@ fn trend_of(curve: &Curve) -> String {
 
 /// Values as bars of one row, from the lowest to the highest by size; costs count by what they took.
 fn trend(values: &[f64]) -> String {
-    const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let count = values.len().min(TREND);
     let picked: Vec<f64> = (0..count)
         .map(|at| values[at * (values.len() - 1) / (count - 1).max(1)])
@@ -121,11 +121,11 @@ fn trend(values: &[f64]) -> String {
         .collect();
     let least = picked.iter().copied().fold(f64::INFINITY, f64::min);
     let most = picked.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let level = |value: &f64| match most > least {
-        true => LEVELS[(((value - least) / (most - least)) * 7.0).round() as usize],
+    let height = |value: &f64| match most > least {
+        true => level((value - least) / (most - least)),
         false => LEVELS[3],
     };
-    picked.iter().map(level).collect()
+    picked.iter().map(height).collect()
 }
 
 /// Text that means itself in Markdown: on one line, without markup of its own.

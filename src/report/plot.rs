@@ -53,6 +53,15 @@ const OF_REPORTS: Frame = Frame { width: 81, height: 14, across: AxisScale::Line
 /// Letters of the labels to the left and of the axis.
 const LABELS: usize = 11;
 
+/// Heights of a curve in one row, the lowest first.
+pub const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// The height of a share, 0 to 1, in a curve in one row.
+pub fn level(share: f64) -> char {
+    let highest = LEVELS.len() - 1;
+    LEVELS[((share * highest as f64).round() as usize).min(highest)]
+}
+
 /// Something that is drawn with a sign; later ones are drawn over earlier ones.
 pub struct Drawn<'a> {
     /// The sign.

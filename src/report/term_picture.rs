@@ -1,10 +1,12 @@
 //! Small pictures of terms, drawn from figures that a player of the run sees: what a term means here and now. Where the run has
 //! no figure for it, published parameters or a made-up customer stand in. Nothing hidden is in them.
 
-use super::fit::Fit;
+use super::fit::{Fit, fits};
 use super::plot::{Drawn, plot};
 use crate::notation::{compact, percent};
-use crate::session::{DeliveredQuality, GroupWeek, Numbers, WeekFigures, churn_of_last_week, example_curve};
+use crate::session::{
+    DeliveredQuality, GroupWeek, Numbers, Session, WeekFigures, churn_of_last_week, example_curve,
+};
 use crate::world::identifiers::{ByGroup, Group, Plan};
 
 /// A change of reputation, as an example.
@@ -249,25 +251,31 @@ fn bars_as_text(bars: &[(String, f64)]) -> String {
     bars.iter().map(line).collect()
 }
 
+/// The picture of a term from figures of a run, if the term has one.
+pub fn term_picture_of(term: &str, session: &Session) -> Option<TermPicture> {
+    if !has_picture(term) {
+        return None;
+    }
+    let (fits, quality, numbers) = (fits(session), session.delivered_quality(), session.numbers());
+    let seen = SeenFigures {
+        weeks: session.weeks(),
+        group_weeks: session.group_weeks(),
+        fits: &fits,
+        quality: &quality,
+        quality_base: session.quality_base(),
+        numbers: &numbers,
+    };
+    term_picture(term, &seen)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::fit::fits;
     use crate::report::test_kit;
 
     fn picture(term: &str, weeks: usize) -> TermPicture {
-        let session = test_kit::played(weeks);
-        let (fits, quality, numbers) = (fits(&session), session.delivered_quality(), session.numbers());
-        let seen = SeenFigures {
-            weeks: session.weeks(),
-            group_weeks: session.group_weeks(),
-            fits: &fits,
-            quality: &quality,
-            quality_base: session.quality_base(),
-            numbers: &numbers,
-        };
         assert!(has_picture(term));
-        term_picture(term, &seen).unwrap_or_else(|| panic!("{term} has no picture"))
+        term_picture_of(term, &test_kit::played(weeks)).unwrap_or_else(|| panic!("{term} has no picture"))
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod owner;
 mod request;
 mod schema;
 
-pub use announcement::{Announcement, announced};
+pub use announcement::Announcement;
 pub use client::write_client;
 pub use http::{HttpOptions, serve_http};
 pub use mcp::serve_mcp;

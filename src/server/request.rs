@@ -57,6 +57,8 @@ pub enum Status {
     Done,
     /// What was asked is wrong.
     Refused,
+    /// It does not carry the token.
+    Unauthorized,
     /// It may not be asked.
     Forbidden,
     /// There is nothing of that name.
@@ -65,8 +67,12 @@ pub enum Status {
     Busy,
     /// It failed.
     Failed,
-    /// It took too long.
+    /// It took too long to answer.
     TimedOut,
+    /// It took too long to arrive.
+    TooSlow,
+    /// It is larger than what is read.
+    TooLarge,
 }
 
 /// What a program is answered.

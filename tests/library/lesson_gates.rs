@@ -6,37 +6,11 @@ use std::sync::Arc;
 
 use novamind::rules::answers_to_companies;
 use novamind::session::{
-    Access, Configuration, Lesson, LessonEntry, Mode, NewRun, PartPlay, Playback, Refusal, SealKey, Session,
-    Storage, Via, WeekQuestion, may_look_inside, play_part,
+    Access, Lesson, PartPlay, Playback, SealKey, Session, WeekQuestion, may_look_inside, play_part,
 };
 use novamind::world::identifiers::Group;
 
-fn lesson_of(folder: &Path, plan: &str) -> Result<Lesson, String> {
-    let path = folder.join("gates.toml");
-    std::fs::write(&path, plan).expect("a file");
-    std::fs::write(folder.join("gates.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
-    Lesson::of_file(&path).map_err(|error| error.to_string())
-}
-
-fn begin(folder: &Path, plan: &str) -> Session {
-    let lesson = Arc::new(lesson_of(folder, plan).expect("a lesson"));
-    let new = NewRun {
-        mode: Mode::Lesson,
-        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
-        storage: Storage::Runs(folder.join("runs")),
-        ..NewRun::default()
-    };
-    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
-}
-
-fn week(session: &mut Session) -> Result<(), Refusal> {
-    let forecasts = session.naive_forecasts();
-    session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
-}
-
-fn code(result: Result<impl Sized, Refusal>) -> &'static str {
-    result.err().map_or("accepted", |refusal| refusal.code)
-}
+use crate::support::lessons::{begin, code, lesson_of, week};
 
 fn folder_of(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
@@ -98,7 +72,7 @@ pitfall = "none"
 #[test]
 fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut first = begin(folder.path(), PARTS);
+    let mut first = begin(folder.path(), "gates", PARTS);
     week(&mut first).expect("a week");
     week(&mut first).expect("a week");
     assert!(first.ended().is_some());
@@ -130,7 +104,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
 #[test]
 fn a_beginning_that_was_cut_anywhere_goes_on_when_the_run_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session = begin(folder.path(), PARTS);
+    let session = begin(folder.path(), "gates", PARTS);
     let (own, hash) = (folder_of(&session), session.state_hash());
     let standing = session.lesson().expect("a lesson").clone();
     let parameters = session.params().ads.log_curve_k;
@@ -153,7 +127,7 @@ fn a_beginning_that_was_cut_anywhere_goes_on_when_the_run_is_opened() {
 #[test]
 fn a_try_that_was_cut_before_its_step_began_is_counted_when_it_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path(), PARTS);
+    let mut session = begin(folder.path(), "gates", PARTS);
     week(&mut session).expect("a week");
     let again = session.try_step_again(0).expect("another try");
     let own = folder_of(&again);
@@ -243,7 +217,7 @@ pitfall = "silence"
 #[test]
 fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path(), RULED);
+    let mut session = begin(folder.path(), "gates", RULED);
     let own = folder_of(&session);
     for _ in 0..3 {
         week(&mut session).expect("a week");
@@ -263,7 +237,7 @@ fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {
     assert!(standing.has_begun(1));
     week(&mut session).expect("a week");
     // Played as the good play does, it is reached.
-    let lesson = Arc::new(lesson_of(folder.path(), RULED).expect("a lesson"));
+    let lesson = Arc::new(lesson_of(folder.path(), "gates", RULED).expect("a lesson"));
     let plays = lesson.plan.good.plays.clone();
     let play = PartPlay {
         lesson: &lesson,
@@ -299,7 +273,8 @@ text = "cash"
 figure = "cash"
 value = 1
 "#;
-    let lesson = Arc::new(lesson_of(folder.path(), &(PARTS.to_owned() + measured)).expect("a lesson"));
+    let lesson =
+        Arc::new(lesson_of(folder.path(), "gates", &(PARTS.to_owned() + measured)).expect("a lesson"));
     let [elsewhere, here] = [0, 1].map(|at| lesson.in_world_of(&lesson.plan.measured[at]));
     assert!(Arc::ptr_eq(&here, &lesson));
     let play = |lesson: &Arc<Lesson>| {
@@ -324,9 +299,9 @@ value = 1
             && !own.params().competitor.competitor_events_disabled
     );
     let wrong = measured.replace("competitor-off", "no-such-world");
-    let said = lesson_of(folder.path(), &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    let said = lesson_of(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
     assert!(said.contains("no-such-world") && said.contains("line "), "{said}");
     let wrong = measured.replace("quality.base_product_quality", "quality.luck");
-    let said = lesson_of(folder.path(), &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    let said = lesson_of(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
     assert!(said.contains("quality.luck"), "{said}");
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use novamind::lab::check_plays;
 use novamind::session::{
-    Access, Configuration, DecisionEdit, Ended, Lesson, LessonEntry, Mode, NewRun, OfRecord, Refusal,
-    Session, Storage, Via, WhatIf, verify,
+    Access, Configuration, DecisionEdit, Ended, Mode, OfRecord, Session, Via, WhatIf, verify,
 };
 use serde_json::json;
+
+use crate::support::lessons::{self, code, lesson_of, week};
 
 /// Two steps of two weeks, with a number to guess and a choice.
 const PLAN: &str = r#"
@@ -87,31 +88,8 @@ figure = "cash"
 value = 960_000
 "#;
 
-fn lesson_of(folder: &Path, plan: &str) -> Result<Lesson, String> {
-    let path = folder.join("two.toml");
-    std::fs::write(&path, plan).expect("a file");
-    std::fs::write(folder.join("two.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
-    Lesson::of_file(&path).map_err(|error| error.to_string())
-}
-
 fn begin(folder: &Path) -> Session {
-    let lesson = Arc::new(lesson_of(folder, PLAN).expect("a lesson"));
-    let new = NewRun {
-        mode: Mode::Lesson,
-        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
-        storage: Storage::Runs(folder.join("runs")),
-        ..NewRun::default()
-    };
-    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
-}
-
-fn week(session: &mut Session) -> Result<(), Refusal> {
-    let forecasts = session.naive_forecasts();
-    session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
-}
-
-fn code(result: Result<impl Sized, Refusal>) -> &'static str {
-    result.err().map_or("accepted", |refusal| refusal.code)
+    lessons::begin(folder, "two", PLAN)
 }
 
 #[test]
@@ -133,11 +111,11 @@ fn wrong_files_name_line_and_key() {
         (
             "[good]\ntext = \"Nothing.\"",
             "[good]\ntext = \"x\"\n[[good.play]]\nweek = 2\ncalls = ['rules: reject rest']",
-            "give it a number",
+            "accepted",
         ),
     ] {
         assert!(PLAN.contains(old), "{old}");
-        let said = lesson_of(folder.path(), &PLAN.replacen(old, new, 1)).err();
+        let said = lesson_of(folder.path(), "two", &PLAN.replacen(old, new, 1)).err();
         let said = said.unwrap_or_else(|| "accepted".to_owned());
         assert!(said.contains(part), "{new}: {said}");
     }
@@ -326,7 +304,7 @@ fn a_lesson_that_was_altered_beside_its_run_is_named() {
 #[test]
 fn pitfalls_are_met_once_and_reference_plays_differ() {
     let folder = tempfile::tempdir().expect("a folder");
-    let lesson = Arc::new(lesson_of(folder.path(), PLAN).expect("a lesson"));
+    let lesson = Arc::new(lesson_of(folder.path(), "two", PLAN).expect("a lesson"));
     let check = check_plays(&lesson, &[7, 8]).expect("plays");
     assert!(check.problems().is_empty(), "{:?}", check.problems());
     assert_eq!(check.bad[0].pitfalls, ["costly"]);

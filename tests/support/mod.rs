@@ -5,5 +5,6 @@ pub mod company;
 pub mod dice;
 pub mod forging;
 pub mod home;
+pub mod lessons;
 pub mod python;
 pub mod record;

@@ -3,10 +3,9 @@
 use clap::Args;
 
 use super::output::OutputOptions;
-use crate::cli::run::parse_override;
+use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::bound::{BoundAccount, Premises, bound_exhibit, sensitivity};
-use crate::session::DEFAULT_SCENARIO;
 
 /// Options of `lab bound`.
 #[derive(Debug, Args)]
@@ -14,20 +13,15 @@ pub struct Options {
     /// So many times over is targeted development paid that is just enough.
     #[arg(long, default_value = "3", value_name = "1..4", value_parser = clap::value_parser!(u8).range(1..=4))]
     slack: u8,
-    /// Scenario whose parameters are in force.
-    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
-    scenario: String,
-    /// Set a parameter; can be repeated.
-    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
-    set: Vec<(String, String)>,
+    #[command(flatten)]
+    world: WorldOptions,
     #[command(flatten)]
     output: OutputOptions,
 }
 
 /// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let scenario = context.configuration.scenario(&options.scenario)?;
-    let params = context.configuration.parameters(&scenario, &options.set, true)?;
+    let params = options.world.params(context)?;
     let account = BoundAccount::of(Premises::of_the_paper(f64::from(options.slack)), &params);
     let slacks = sensitivity(&[1.0, 2.0, 3.0, 4.0], &params);
     options.output.show(&bound_exhibit(&account, &slacks))

@@ -3,10 +3,9 @@
 use clap::Args;
 
 use super::output::OutputOptions;
-use crate::cli::run::parse_override;
+use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::laws::{Luck, WorldDraw, all_laws, one_law};
-use crate::session::DEFAULT_SCENARIO;
 
 /// Options of `lab laws`.
 #[derive(Debug, Args)]
@@ -23,20 +22,15 @@ pub struct Options {
     /// Seed of the draws.
     #[arg(long, default_value = "1", value_name = "N")]
     seed: u64,
-    /// Scenario whose parameters are in force.
-    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
-    scenario: String,
-    /// Set a parameter; can be repeated.
-    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
-    set: Vec<(String, String)>,
+    #[command(flatten)]
+    world: WorldOptions,
     #[command(flatten)]
     output: OutputOptions,
 }
 
 /// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let scenario = context.configuration.scenario(&options.scenario)?;
-    let params = context.configuration.parameters(&scenario, &options.set, true)?;
+    let params = options.world.params(context)?;
     let luck = Luck::of(params, options.seed);
     let Some(name) = &options.name else {
         return options.output.show(&all_laws(&luck, options.draws));

@@ -66,10 +66,13 @@ impl OutputOptions {
     }
 
     fn room(&self) -> usize {
-        if let Some(width) = self.width {
-            return usize::from(width);
-        }
-        let terminal = std::io::stdout().is_terminal().then(crossterm::terminal::size).and_then(Result::ok);
-        terminal.map_or(WIDTH, |(columns, _)| usize::from(columns).min(WIDTH))
+        let asked = self.width.map(usize::from);
+        asked.unwrap_or_else(|| terminal_columns().map_or(WIDTH, |columns| columns.min(WIDTH)))
     }
+}
+
+/// Columns of the terminal; none where standard output is none.
+pub fn terminal_columns() -> Option<usize> {
+    let size = std::io::stdout().is_terminal().then(crossterm::terminal::size)?;
+    size.ok().map(|(columns, _)| usize::from(columns))
 }

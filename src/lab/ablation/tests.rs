@@ -1,24 +1,12 @@
 use super::*;
-use crate::lab::experiment::{Conduct, Experiment, ExperimentResults};
+use crate::lab::experiment::{ExperimentResults, test_kit};
 use crate::lab::policy::Policy;
-use crate::session::Configuration;
 
 /// A policy against rivals, until a day of a run of so many.
 fn played(policy: &Policy, settings: &[RivalSetting], (days, until): (u32, u32)) -> ExperimentResults {
     let mut arms = arms(policy, settings, days);
     arms.iter_mut().for_each(|arm| arm.spec.until = Some(until));
-    let experiment = Experiment::of(arms, 1..=2);
-    let configuration = Configuration::shipped();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-    let with = Conduct {
-        configuration: &configuration,
-        store: None,
-        pool: &pool,
-        stop: &std::sync::atomic::AtomicBool::new(false),
-        on_run: &|| {},
-    };
-    let prepared = experiment.prepare(&configuration, None, true).expect("an experiment");
-    prepared.conduct(&with).expect("results")
+    test_kit::played(arms, 1..=2)
 }
 
 #[test]

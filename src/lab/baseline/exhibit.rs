@@ -1,11 +1,11 @@
 //! The configurations as a table: as the paper's for one seed, with spread and stability for many.
 
 use super::grid::Grid;
-use super::ranks::{concordance, places};
 use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
 use crate::lab::experiment::{ExperimentResults, RunResult};
+use crate::lab::ranks::{concordance, places};
 use crate::notation::dollars;
 use crate::report::ranking::published;
 use crate::statistics::{Interval, Quartiles, mean, median};

@@ -2,7 +2,6 @@
 
 mod exhibit;
 mod grid;
-mod ranks;
 mod shared_play;
 #[cfg(test)]
 mod tests;

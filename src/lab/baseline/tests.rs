@@ -1,6 +1,5 @@
 use super::*;
-use crate::lab::experiment::{Arm, Conduct, Experiment, ExperimentResults};
-use crate::session::Configuration;
+use crate::lab::experiment::{Arm, ExperimentResults, test_kit};
 
 /// The results of some configurations over a few days, all played.
 fn played(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
@@ -9,18 +8,7 @@ fn played(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
         arm.spec.until = Some(days);
         arm
     });
-    let experiment = Experiment::of(arms.collect(), seeds.iter().copied());
-    let configuration = Configuration::shipped();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-    let with = Conduct {
-        configuration: &configuration,
-        store: None,
-        pool: &pool,
-        stop: &std::sync::atomic::AtomicBool::new(false),
-        on_run: &|| {},
-    };
-    let prepared = experiment.prepare(&configuration, None, true).expect("an experiment");
-    prepared.conduct(&with).expect("results")
+    test_kit::played(arms.collect(), seeds.iter().copied())
 }
 
 #[test]

@@ -2,18 +2,18 @@
 //!
 //! Nothing is measured here: figures are those of `report::measures`, by the names under which `lab compare` tells them.
 
-mod correlation;
 mod drawn;
 
+use super::ranks::rank_correlation;
 use crate::lab::comparison::{ComparedFigure, figure_of, measure_of};
 use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
 use crate::report::Logbook;
 use crate::report::books::{Books, GroupBook};
 use crate::report::measures::{Wording, planning_sentences};
+use crate::report::plot::level;
 use crate::report::ranking::published;
 use crate::session::{Line, Record, Session};
 use crate::statistics::Sample;
-use correlation::rank_correlation;
 
 /// A run with what its behaviour is told by.
 pub struct ObservedRun {
@@ -206,9 +206,6 @@ fn customers(runs: &[ObservedRun]) -> Tabulation {
     Tabulation { rows, ..Tabulation::new("customers", caption, columns) }
 }
 
-/// Heights of a small curve, the lowest first.
-const HEIGHTS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
-
 /// Points of a small curve.
 const POINTS: usize = 36;
 
@@ -216,10 +213,7 @@ const POINTS: usize = 36;
 fn cash(runs: &[ObservedRun]) -> Tabulation {
     let all = || runs.iter().flat_map(|run| run.cash_by_day.iter().copied());
     let (least, most) = (all().fold(0.0, f64::min), all().fold(1.0, f64::max));
-    let height = |value: f64| {
-        let place = (value - least) / (most - least) * (HEIGHTS.len() - 1) as f64;
-        HEIGHTS[(place.round() as usize).min(HEIGHTS.len() - 1)]
-    };
+    let height = |value: f64| level((value - least) / (most - least));
     // A run that ended early has a shorter curve.
     let longest = runs.iter().map(|run| run.cash_by_day.len()).max().unwrap_or(1).max(2);
     let curve = |run: &ObservedRun| {

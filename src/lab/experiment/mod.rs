@@ -8,6 +8,8 @@ mod key;
 mod result;
 mod store;
 #[cfg(test)]
+pub(super) mod test_kit;
+#[cfg(test)]
 mod tests;
 
 pub use engine::{Conduct, ExperimentError, ExperimentResults, Prepared};

@@ -8,14 +8,13 @@ use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
 use crate::notation::grouped;
+use crate::report::plot::LEVELS;
 use crate::statistics::Sample;
 
 /// Bins of a histogram.
 const BINS: usize = 40;
 /// Letters of a small histogram.
 const SMALL: usize = 12;
-/// Steps of a small histogram.
-const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// All laws, each drawn so often for the first member of its family.
 pub fn all_laws(luck: &Luck, draws: u64) -> Exhibit {

@@ -1,7 +1,7 @@
 //! Large studies: policies by scenarios by parameters by seeds, in shards if they are to be split (docs/laboratory/study.md).
 //!
 //! A study file names what is played; every run has a number. Shard i of n plays the runs i, i + n, i + 2n, …, and
-//! [`merge`] puts the rows of all shards into the order of their runs: the bytes of the study that was not split.
+//! `lab merge` puts the rows of all shards into the order of their runs: the bytes of the study that was not split.
 
 mod definition;
 mod grid;

@@ -4,8 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use crate::glossary::{self, Explanation, Subject, Term, terms};
-use crate::report::fit::fits;
-use crate::report::term_picture::{SeenFigures, has_picture, term_picture};
+use crate::report::term_picture::term_picture_of;
 use crate::session::{Numbers, Session};
 
 /// `explain TERM`, and `what TERM`.
@@ -42,23 +41,6 @@ pub(super) fn answer(command: &str, subject: Subject, numbers: &Numbers) -> Answ
     Answer::done(command, told.as_text(), data)
 }
 
-/// The picture of a term from figures of the run, as text.
-fn picture_of(term: &Term, session: &Session) -> Option<String> {
-    if !has_picture(&term.id) {
-        return None;
-    }
-    let (fits, quality, numbers) = (fits(session), session.delivered_quality(), session.numbers());
-    let seen = SeenFigures {
-        weeks: session.weeks(),
-        group_weeks: session.group_weeks(),
-        fits: &fits,
-        quality: &quality,
-        quality_base: session.quality_base(),
-        numbers: &numbers,
-    };
-    term_picture(&term.id, &seen).map(|picture| picture.as_text())
-}
-
 /// `glossary [WORD]`; of a word that is a term with a picture, the picture follows.
 pub(super) fn glossary(word: &str, session: &Session) -> Answer {
     let wanted = word.to_lowercase();
@@ -82,14 +64,14 @@ pub(super) fn glossary(word: &str, session: &Session) -> Answer {
     }
     let count = if found.len() == 1 { "1 term".to_owned() } else { format!("{} terms", found.len()) };
     let picture = match glossary::find(word) {
-        Ok(Subject::Term(term)) => picture_of(term, session),
+        Ok(Subject::Term(term)) => term_picture_of(&term.id, session),
         _ => None,
     };
     let mut data = json!({ "terms": found });
     if let Some(picture) = &picture {
-        data["picture"] = picture.as_str().into();
+        data["picture"] = picture.as_text().into();
     }
-    let picture = picture.map_or(String::new(), |picture| format!("\n{picture}"));
+    let picture = picture.map_or(String::new(), |picture| format!("\n{}", picture.as_text()));
     Answer::done(
         "glossary",
         format!("{text}({count}; explain TERM for more)\n{picture}").trim_end().to_owned(),

@@ -1,6 +1,7 @@
 //! What students guessed, against what came of it.
 
 use super::ClassView;
+use super::curves::StudentPoints;
 use crate::session::{ClassRun, GuessForm};
 
 /// A question of the lesson and the answers of the class.
@@ -13,6 +14,19 @@ pub struct AskedClass<'a> {
     pub choices: &'a [String],
     /// Label, guess, outcome, of everybody who has both.
     pub answers: Vec<(&'a str, f64, f64)>,
+}
+
+impl<'a> AskedClass<'a> {
+    /// Each student: the guess across, what came of it up.
+    pub fn points(&self) -> Vec<StudentPoints<'a>> {
+        let answers = self.answers.iter();
+        answers
+            .map(|(label, guess, outcome)| StudentPoints {
+                label: Some(label),
+                points: vec![(*guess, *outcome)],
+            })
+            .collect()
+    }
 }
 
 /// The questions of the lesson, in order.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::curves::{StudentPoints, curves, scatter};
+use super::curves::{curves, scatter};
 use super::drawing::{Drawing, draw};
 use super::guesses::{asked, pitfalls};
 use super::ranking::{RankedStudent, ranked};
@@ -144,14 +144,7 @@ fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let mut text = String::new();
     for asked in asked(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
         if asked.choices.is_empty() {
-            let points: Vec<StudentPoints<'_>> = asked
-                .answers
-                .iter()
-                .map(|(label, guess, outcome)| StudentPoints {
-                    label: Some(label),
-                    points: vec![(*guess, *outcome)],
-                })
-                .collect();
+            let points = asked.points();
             let title = format!("{} What came of it, against the guess", asked.question);
             let across = "guess; on the line it was right".to_owned();
             let drawing = Drawing { title, across, points: &points, is_line: false, has_diagonal: true };

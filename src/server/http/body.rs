@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use axum::body::{Body, to_bytes};
-use axum::http::StatusCode;
 use serde_json::{Map, Value};
 
 use crate::server::request::{Answer, Status};
@@ -13,28 +12,24 @@ const MOST_BYTES: usize = 1024 * 1024;
 /// A body that takes longer is not waited for.
 const DEADLINE: Duration = Duration::from_secs(30);
 
-/// A body that is no object, with the status that says so.
-pub type WrongBody = (StatusCode, Answer);
-
 /// Reads a body.
 ///
 /// # Errors
 /// It is too large, too slow, no JSON, or no object.
-pub async fn read_object(body: Body) -> Result<Map<String, Value>, WrongBody> {
-    let wrong = |status, code, message: String| (status, Answer::wrong(Status::Refused, code, message));
+pub async fn read_object(body: Body) -> Result<Map<String, Value>, Answer> {
     let read = tokio::time::timeout(DEADLINE, to_bytes(body, MOST_BYTES)).await;
     let bytes = match read {
         Err(_) => {
             let message = format!("the body did not arrive within {} seconds", DEADLINE.as_secs());
-            return Err(wrong(StatusCode::REQUEST_TIMEOUT, "body_timeout", message));
+            return Err(Answer::wrong(Status::TooSlow, "body_timeout", message));
         }
         Ok(Err(_)) => {
             let message = format!("the body must be whole and have at most {MOST_BYTES} bytes");
-            return Err(wrong(StatusCode::PAYLOAD_TOO_LARGE, "body_too_large", message));
+            return Err(Answer::wrong(Status::TooLarge, "body_too_large", message));
         }
         Ok(Ok(bytes)) => bytes,
     };
-    let malformed = |message| wrong(StatusCode::BAD_REQUEST, "malformed_json", message);
+    let malformed = |message: String| Answer::wrong(Status::Refused, "malformed_json", message);
     match serde_json::from_slice(&bytes) {
         Ok(Value::Object(fields)) => Ok(fields),
         Ok(_) => Err(malformed("the body must be a JSON object".to_owned())),

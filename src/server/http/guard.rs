@@ -19,17 +19,17 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Looks at the head of a request: none if it may be asked, else the answer and whether it is the token that is wrong.
-    pub fn bar(&self, head: &HeaderMap) -> Option<(Answer, Barred)> {
+    /// Looks at the head of a request: none if it may be asked, else the answer.
+    pub fn bar(&self, head: &HeaderMap) -> Option<Answer> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
         if !text(HOST).is_some_and(is_loopback) {
             let message = "the Host header must name this machine: 127.0.0.1, localhost or [::1]";
-            return Some((Answer::wrong(Status::Forbidden, "host", message), Barred::ByPlace));
+            return Some(Answer::wrong(Status::Forbidden, "host", message));
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
         if !origin.is_none_or(is_loopback) {
             let message = "pages of other machines may not ask";
-            return Some((Answer::wrong(Status::Forbidden, "origin", message), Barred::ByPlace));
+            return Some(Answer::wrong(Status::Forbidden, "origin", message));
         }
         let expected = self.token.as_deref()?;
         let given = text(AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer ")).unwrap_or_default();
@@ -37,17 +37,8 @@ impl Guard {
             return None;
         }
         let message = "requests must carry the token: Authorization: Bearer TOKEN";
-        Some((Answer::wrong(Status::Forbidden, "token", message), Barred::ByToken))
+        Some(Answer::wrong(Status::Unauthorized, "token", message))
     }
-}
-
-/// Why a request is not looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Barred {
-    /// It comes from elsewhere.
-    ByPlace,
-    /// It does not know the token.
-    ByToken,
 }
 
 /// Whether `HOST` or `HOST:PORT` names this machine.
@@ -120,8 +111,8 @@ mod tests {
             "[::1]x",
             "127.0.0.1@x",
         ] {
-            let barred = open.bar(&head(&[(HOST, host)])).map(|(_, by)| by);
-            assert_eq!(barred, Some(Barred::ByPlace), "{host}");
+            let barred = open.bar(&head(&[(HOST, host)])).map(|answer| answer.status);
+            assert_eq!(barred, Some(Status::Forbidden), "{host}");
         }
         assert!(open.bar(&HeaderMap::new()).is_some());
         let page = |origin| head(&[(HOST, "127.0.0.1"), (ORIGIN, origin)]);
@@ -133,8 +124,8 @@ mod tests {
         let carrying = |value| head(&[(HOST, "127.0.0.1"), (AUTHORIZATION, value)]);
         assert!(closed.bar(&carrying("Bearer secret")).is_none());
         for value in ["Bearer secre", "Bearer ", "secret", "bearer secret"] {
-            let barred = closed.bar(&carrying(value)).map(|(_, by)| by);
-            assert_eq!(barred, Some(Barred::ByToken), "{value}");
+            let barred = closed.bar(&carrying(value)).map(|answer| answer.status);
+            assert_eq!(barred, Some(Status::Unauthorized), "{value}");
         }
     }
 }

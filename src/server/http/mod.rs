@@ -49,7 +49,6 @@ pub fn serve_http(
     ready: impl FnOnce(&Announcement),
 ) -> Result<(), RunError> {
     let token = options.token.as_deref().map(token_of).transpose()?;
-    let folder = session.folder().map(Path::to_owned);
     let run = session.manifest().id.clone();
     let numbers = session.numbers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -62,11 +61,9 @@ pub fn serve_http(
         let listener = TcpListener::bind(address).await.map_err(failed())?;
         let port = listener.local_addr().map_err(failed())?.port();
         let announcement = Announcement { run, port, pid: std::process::id(), token: options.token.clone() };
-        let announced = folder.as_deref().map(|folder| announcement.publish(folder)).transpose()?;
         let shutdown = Shutdown::listen().map_err(failed())?;
         ready(&announcement);
         take_connections(&listener, routes::router(handle, Guard { token }, numbers), shutdown).await;
-        drop(announced);
         Ok(())
     });
     // Requests that were cut off hold handles of the owner.

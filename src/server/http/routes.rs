@@ -11,8 +11,8 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde_json::{Map, Value, json};
 
-use super::body::{WrongBody, read_object};
-use super::guard::{Barred, Guard};
+use super::body::read_object;
+use super::guard::Guard;
 use crate::database::tables;
 use crate::server::openapi;
 use crate::server::owner::Handle;
@@ -55,8 +55,7 @@ pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
 async fn guarded(State(door): State<Door>, request: HttpRequest, next: Next) -> Response {
     match door.guard.bar(request.headers()) {
         None => next.run(request).await,
-        Some((answer, Barred::ByToken)) => json_response(StatusCode::UNAUTHORIZED, &answer.body),
-        Some((answer, Barred::ByPlace)) => response(&answer),
+        Some(answer) => response(&answer),
     }
 }
 
@@ -85,7 +84,7 @@ async fn ask(State(door): State<Door>, request: Request) -> Response {
 async fn ask_with(door: &Door, body: Body, request: impl FnOnce(Fields) -> Request) -> Response {
     match read_object(body).await {
         Ok(fields) => response(&door.handle.ask(request(Fields(fields))).await),
-        Err(wrong) => wrong_response(&wrong),
+        Err(wrong) => closing(response(&wrong)),
     }
 }
 
@@ -144,11 +143,14 @@ fn status_code(status: Status) -> StatusCode {
     match status {
         Status::Done => StatusCode::OK,
         Status::Refused => StatusCode::BAD_REQUEST,
+        Status::Unauthorized => StatusCode::UNAUTHORIZED,
         Status::Forbidden => StatusCode::FORBIDDEN,
         Status::Missing => StatusCode::NOT_FOUND,
         Status::Busy => StatusCode::CONFLICT,
         Status::Failed => StatusCode::INTERNAL_SERVER_ERROR,
         Status::TimedOut => StatusCode::GATEWAY_TIMEOUT,
+        Status::TooSlow => StatusCode::REQUEST_TIMEOUT,
+        Status::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
     }
 }
 
@@ -156,9 +158,8 @@ fn response(answer: &Answer) -> Response {
     json_response(status_code(answer.status), &answer.body)
 }
 
-fn wrong_response((status, answer): &WrongBody) -> Response {
-    // What is left of a body that was not read would be taken for the next request.
-    let mut response = json_response(*status, &answer.body);
+/// A response after which the connection ends: what is left of a body that was not read would be taken for the next request.
+fn closing(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response
 }

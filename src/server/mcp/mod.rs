@@ -66,7 +66,7 @@ impl ServerHandler for McpDoor {
     }
 
     fn get_tool(&self, name: &str) -> Option<Tool> {
-        tools::all(&self.numbers).into_iter().find(|tool| tool.name == name)
+        tools::named(name, &self.numbers)
     }
 
     async fn call_tool(

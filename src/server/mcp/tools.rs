@@ -15,6 +15,11 @@ pub fn all(numbers: &Numbers) -> Vec<Tool> {
     schema::specs().map(|spec| tool(spec, numbers)).collect()
 }
 
+/// The tool of a name.
+pub fn named(name: &str, numbers: &Numbers) -> Option<Tool> {
+    schema::specs().find(|spec| spec.name() == name).map(|spec| tool(spec, numbers))
+}
+
 fn tool(spec: &'static Spec, numbers: &Numbers) -> Tool {
     let arguments = Arc::new(schema::arguments(spec, numbers));
     Tool::new(spec.name(), manual(spec, numbers), arguments).with_annotations(hints(spec))

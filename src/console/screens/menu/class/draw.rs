@@ -226,14 +226,7 @@ impl ClassPage {
 
     /// Guesses across, outcomes up; on the line a guess was right.
     fn draw_numbers(&self, canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
-        let points: Vec<StudentPoints<'_>> = own
-            .answers
-            .iter()
-            .map(|(label, guess, outcome)| StudentPoints {
-                label: Some(label),
-                points: vec![(*guess, *outcome)],
-            })
-            .collect();
+        let points = own.points();
         let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
         let (least, most) = both().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
             (least.min(value), most.max(value))

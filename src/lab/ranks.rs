@@ -1,4 +1,4 @@
-//! How alike the seeds rank the configurations.
+//! Ranks: places by value, and how alike several rankings are.
 
 /// Places by value, the greatest first, from 1; equal values share the mean of their places.
 pub fn places(values: &[f64]) -> Vec<f64> {
@@ -8,6 +8,22 @@ pub fn places(values: &[f64]) -> Vec<f64> {
         better + (equal + 1.0) / 2.0
     };
     values.iter().map(place).collect()
+}
+
+/// Spearman's rank correlation of pairs, equal values sharing their mean rank; none below three pairs, or where one side
+/// does not vary.
+pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
+    if pairs.len() < 3 {
+        return None;
+    }
+    let left = places(&pairs.iter().map(|pair| pair.0).collect::<Vec<f64>>());
+    let right = places(&pairs.iter().map(|pair| pair.1).collect::<Vec<f64>>());
+    let middle = (pairs.len() as f64 + 1.0) / 2.0;
+    let product = |one: &[f64], other: &[f64]| -> f64 {
+        one.iter().zip(other).map(|(one, other)| (one - middle) * (other - middle)).sum()
+    };
+    let spread = (product(&left, &left) * product(&right, &right)).sqrt();
+    (spread > 0.0).then(|| product(&left, &right) / spread)
 }
 
 /// Kendall's coefficient of concordance W of several rankings of the same things: 1 where all rank alike, about 1 / (number
@@ -58,5 +74,19 @@ mod tests {
         let sums = [6.0, 5.0, 9.0, 10.0];
         let spread: f64 = sums.iter().map(|sum: &f64| (sum - 7.5) * (sum - 7.5)).sum();
         assert!((own - 12.0 * spread / (9.0 * 60.0)).abs() < 1e-12, "{own}");
+    }
+    #[test]
+    fn order_counts_and_size_does_not() {
+        assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 5.0), (300.0, 1.0)]), Some(-1.0));
+        assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0), (3.0, 900.0)]), Some(1.0));
+        // Ranks 1, 2.5, 2.5, 4 against 1, 3, 2, 4.
+        let tied = rank_correlation(&[(1.0, 1.0), (2.0, 3.0), (2.0, 2.0), (5.0, 4.0)]).expect("it varies");
+        assert!((tied - 0.948_683_298_050_513_8).abs() < 1e-12, "{tied}");
+    }
+
+    #[test]
+    fn too_few_or_equal_pairs_have_none() {
+        assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0)]), None);
+        assert_eq!(rank_correlation(&[(1.0, 5.0), (2.0, 5.0), (3.0, 5.0)]), None);
     }
 }

@@ -1,0 +1,29 @@
+//! Runs that a command reads, one after the other.
+
+use crate::cli::run::progress_bar;
+use crate::cli::{Context, Failure};
+use crate::session::{Access, Session, Trajectory, find_run_to_read};
+
+/// What is read of each run that was named; that it is read is recorded with the run.
+///
+/// # Errors
+/// A run is missing, damaged, or may not be looked at.
+pub fn of_runs<T>(
+    names: &[String],
+    command: &str,
+    context: &Context,
+    of: impl Fn(&Session, &Trajectory) -> T,
+) -> Result<Vec<T>, Failure> {
+    let folder = context.runs()?;
+    let progress = progress_bar(names.len() as u64, "runs");
+    let mut read = Vec::new();
+    for name in names {
+        let own = find_run_to_read(&folder, name)?;
+        context.look(&own, command, &names.join(" "))?;
+        let session = Session::open(&own, Access::Read, true)?;
+        read.push(of(&session, &Trajectory::read(&own.join("trajectory.jsonl"))?));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok(read)
+}

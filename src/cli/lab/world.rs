@@ -1,0 +1,30 @@
+//! The parameters of commands that play nothing.
+
+use clap::Args;
+
+use crate::cli::run::parse_override;
+use crate::cli::{Context, Failure};
+use crate::session::DEFAULT_SCENARIO;
+use crate::world::params::Params;
+
+/// Which parameters are in force.
+#[derive(Debug, Args)]
+pub struct WorldOptions {
+    /// Scenario whose parameters are in force.
+    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+    scenario: String,
+    /// Set a parameter; can be repeated.
+    #[arg(long, value_name = "TABLE.KEY=VALUE", value_parser = parse_override)]
+    set: Vec<(String, String)>,
+}
+
+impl WorldOptions {
+    /// The parameters.
+    ///
+    /// # Errors
+    /// There is no such scenario, or a parameter is wrong.
+    pub fn params(&self, context: &Context) -> Result<Params, Failure> {
+        let scenario = context.configuration.scenario(&self.scenario)?;
+        Ok(context.configuration.parameters(&scenario, &self.set, true)?)
+    }
+}

@@ -1,0 +1,37 @@
+//! Lessons of a test: a plan in a folder, and how its first part goes.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use novamind::session::{Configuration, Lesson, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via};
+
+/// The lesson of a plan, in a file of that name.
+pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {
+    let path = folder.join(format!("{name}.toml"));
+    std::fs::write(&path, plan).expect("a file");
+    std::fs::write(folder.join(format!("{name}.md")), "## Debrief\n\nSo it goes.\n").expect("a file");
+    Lesson::of_file(&path).map_err(|error| error.to_string())
+}
+
+/// The first part of it, begun.
+pub fn begin(folder: &Path, name: &str, plan: &str) -> Session {
+    let lesson = Arc::new(lesson_of(folder, name, plan).expect("a lesson"));
+    let new = NewRun {
+        mode: Mode::Lesson,
+        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        storage: Storage::Runs(folder.join("runs")),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+}
+
+/// A week without a rationale, with naive forecasts.
+pub fn week(session: &mut Session) -> Result<(), Refusal> {
+    let forecasts = session.naive_forecasts();
+    session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
+}
+
+/// The code of a refusal, or that there was none.
+pub fn code(result: Result<impl Sized, Refusal>) -> &'static str {
+    result.err().map_or("accepted", |refusal| refusal.code)
+}

@@ -15,5 +15,5 @@ pub struct Options {
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    Ok(serve_mcp(options.which.open(context)?)?)
+    Ok(serve_mcp(options.which.open(context)?, |words| eprintln!("{words}"))?)
 }

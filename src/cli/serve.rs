@@ -37,6 +37,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let session = options.which.open(context)?;
     let http = HttpOptions { port: options.port, token: options.token.clone() };
     let mut told = Ok(());
-    serve_http(session, &http, |ready| told = print(&format!("{}\n", json!(ready))))?;
+    serve_http(
+        session,
+        &http,
+        |ready| told = print(&format!("{}\n", json!(ready))),
+        |words| eprintln!("{words}"),
+    )?;
     told
 }

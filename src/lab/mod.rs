@@ -33,6 +33,7 @@ pub mod study;
 mod symbols;
 
 pub use crate::rules::answers_to_companies;
+pub use crate::world::params::Params;
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};

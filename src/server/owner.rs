@@ -14,6 +14,20 @@ use super::request::{Answer, Request, Status};
 use crate::session::record::LeavingCause;
 use crate::session::{Access, Interface, RunError, Session, Via};
 
+/// Hears of defects of ours.
+pub type OnDefect = fn(&str);
+
+/// How programs come to a session.
+#[derive(Clone, Copy)]
+pub struct Door {
+    /// What the lines of their calls say.
+    pub via: Via,
+    /// What the lines of their sessions say.
+    pub interface: &'static str,
+    /// Hears of defects of ours.
+    pub on_defect: OnDefect,
+}
+
 /// A request and where its answer goes.
 struct Asked {
     request: Request,
@@ -27,12 +41,12 @@ pub struct Owner {
 
 impl Owner {
     /// Gives a session to a thread of its own; the handle asks it.
-    pub fn start(session: Session, via: Via, interface: &'static str) -> (Owner, Handle) {
+    pub fn start(session: Session, door: Door) -> (Owner, Handle) {
         let (sender, receiver) = channel();
         let advancing = Arc::new(AtomicBool::new(false));
         let handle = Handle { sender, advancing: advancing.clone() };
-        let owned = Owned { folder: session.folder().map(PathBuf::from), session: Some(session), via };
-        let thread = std::thread::spawn(move || owned.work(&receiver, &advancing, interface));
+        let owned = Owned { folder: session.folder().map(PathBuf::from), session: Some(session), door };
+        let thread = std::thread::spawn(move || owned.work(&receiver, &advancing));
         (Owner { thread }, handle)
     }
 
@@ -80,17 +94,12 @@ struct Owned {
     /// None between a defect of ours and opening the run again.
     session: Option<Session>,
     folder: Option<PathBuf>,
-    via: Via,
+    door: Door,
 }
 
 impl Owned {
-    fn work(
-        mut self,
-        asked: &Receiver<Asked>,
-        advancing: &AtomicBool,
-        interface: &'static str,
-    ) -> Result<(), RunError> {
-        let interface = Interface { name: interface, window: None };
+    fn work(mut self, asked: &Receiver<Asked>, advancing: &AtomicBool) -> Result<(), RunError> {
+        let interface = Interface { name: self.door.interface, window: None };
         if let Some(session) = &mut self.session {
             session.take_up(interface);
         }
@@ -117,11 +126,11 @@ impl Owned {
             return Answer::wrong(Status::Failed, "internal_error", error);
         }
         let Some(session) = &mut self.session else { return gone() };
-        let via = self.via;
+        let Door { via, on_defect, .. } = self.door;
         catch_unwind(AssertUnwindSafe(|| answer(session, request, via))).unwrap_or_else(|_| {
             // What the session holds may be half done; the trajectory is not.
             self.session = None;
-            internal_error()
+            internal_error(on_defect)
         })
     }
 
@@ -137,12 +146,12 @@ impl Owned {
     }
 }
 
-/// A defect of ours, with a number by which its report on standard error is found.
-fn internal_error() -> Answer {
+/// A defect of ours, with a number by which its report is found.
+fn internal_error(on_defect: OnDefect) -> Answer {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =
         format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
-    eprintln!("request {id} met a defect of the program; the run is opened again from its record");
+    on_defect(&format!("request {id} met a defect of the program; the run is opened again from its record"));
     let mut answer = Answer::wrong(
         Status::Failed,
         "internal_error",

@@ -34,12 +34,16 @@ fn what_needs_no_run_is_told_in_every_form() {
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
     // Other parameters, another account.
-    let estimate = |arguments: &[&str]| {
+    let own = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
-        all["tables"]["account"]["rows"][15]["own"].as_f64().expect("a number")
+        all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")
     };
-    let off = estimate(&["--scenario", "competitor-off"]);
-    assert!(off > estimate(&[]), "without rivals development is cheap: {off}");
+    let (development, estimate) = (6, 15);
+    let off = ["--scenario", "competitor-off"];
+    assert!(own(development, &off) < own(development, &[]), "without rivals development is cheap");
+    // Where it is paid once and not three times over, more is left of it, too.
+    let once = ["--slack", "1"];
+    assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
 }
 
 #[test]

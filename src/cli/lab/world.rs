@@ -4,8 +4,8 @@ use clap::Args;
 
 use crate::cli::run::parse_override;
 use crate::cli::{Context, Failure};
+use crate::lab::Params;
 use crate::session::DEFAULT_SCENARIO;
-use crate::world::params::Params;
 
 /// Which parameters are in force.
 #[derive(Debug, Args)]

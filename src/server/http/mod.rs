@@ -18,7 +18,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
 use super::announcement::Announcement;
-use super::owner::Owner;
+use super::owner::{Door, OnDefect, Owner};
 use crate::session::{RunError, Session, Via};
 use guard::Guard;
 use shutdown::Shutdown;
@@ -39,7 +39,7 @@ pub struct HttpOptions {
     pub token: Option<PathBuf>,
 }
 
-/// Serves a run until a signal asks to stop. `ready` is told where, once requests are taken.
+/// Serves a run until a signal asks to stop. `ready` is told where, once requests are taken; `on_defect` hears of defects of ours.
 ///
 /// # Errors
 /// The port is taken; the file of the token cannot be read; the disk did not take the end of the record.
@@ -47,13 +47,14 @@ pub fn serve_http(
     session: Session,
     options: &HttpOptions,
     ready: impl FnOnce(&Announcement),
+    on_defect: OnDefect,
 ) -> Result<(), RunError> {
     let token = options.token.as_deref().map(token_of).transpose()?;
     let run = session.manifest().id.clone();
     let numbers = session.numbers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("the network")))?;
-    let (owner, handle) = Owner::start(session, Via::Http, "http");
+    let (owner, handle) = Owner::start(session, Door { via: Via::Http, interface: "http", on_defect });
     let served = runtime.block_on(async {
         let address = (Ipv4Addr::LOCALHOST, options.port.unwrap_or(0));
         let shown = format!("port {}", address.1);

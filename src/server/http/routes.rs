@@ -22,7 +22,7 @@ use crate::tools::{CATALOGUE, Numbers};
 
 /// What the routes need.
 #[derive(Clone)]
-struct Door {
+struct Routed {
     handle: Handle,
     guard: Arc<Guard>,
     numbers: Arc<Numbers>,
@@ -30,18 +30,20 @@ struct Door {
 
 /// Every route, behind the guard.
 pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
-    let door = Door { handle, guard: Arc::new(guard), numbers };
+    let door = Routed { handle, guard: Arc::new(guard), numbers };
     Router::new()
         .route("/health", get(health))
-        .route("/vars", get(|door: State<Door>| ask(door, Request::Vars)))
-        .route("/dashboard", get(|door: State<Door>| ask(door, Request::Dashboard)))
-        .route("/game-status", get(|door: State<Door>| ask(door, Request::GameStatus)))
+        .route("/vars", get(|door: State<Routed>| ask(door, Request::Vars)))
+        .route("/dashboard", get(|door: State<Routed>| ask(door, Request::Dashboard)))
+        .route("/game-status", get(|door: State<Routed>| ask(door, Request::GameStatus)))
         .route("/call", post(call))
         .route("/next-week", post(next_week))
         .route("/query", post(query))
         .route(
             "/daily-scripts",
-            get(|door: State<Door>| ask(door, Request::DailyScripts)).post(keep_script).delete(forget_script),
+            get(|door: State<Routed>| ask(door, Request::DailyScripts))
+                .post(keep_script)
+                .delete(forget_script),
         )
         .route("/tools", get(tools))
         .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
@@ -52,7 +54,7 @@ pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
         .with_state(door)
 }
 
-async fn guarded(State(door): State<Door>, request: HttpRequest, next: Next) -> Response {
+async fn guarded(State(door): State<Routed>, request: HttpRequest, next: Next) -> Response {
     match door.guard.bar(request.headers()) {
         None => next.run(request).await,
         Some(answer) => response(&answer),
@@ -68,27 +70,27 @@ async fn unknown(request: HttpRequest) -> Response {
     json_response(StatusCode::NOT_FOUND, &json!({ "error": error }))
 }
 
-async fn tools(State(door): State<Door>) -> Response {
+async fn tools(State(door): State<Routed>) -> Response {
     let all: Vec<ToolDocument> = CATALOGUE.iter().map(|tool| document(tool.spec(), &door.numbers)).collect();
     json_response(StatusCode::OK, &json!(all))
 }
 
-async fn describe(State(door): State<Door>) -> Response {
+async fn describe(State(door): State<Routed>) -> Response {
     json_response(StatusCode::OK, &openapi::document(&door.numbers))
 }
 
-async fn ask(State(door): State<Door>, request: Request) -> Response {
+async fn ask(State(door): State<Routed>, request: Request) -> Response {
     response(&door.handle.ask(request).await)
 }
 
-async fn ask_with(door: &Door, body: Body, request: impl FnOnce(Fields) -> Request) -> Response {
+async fn ask_with(door: &Routed, body: Body, request: impl FnOnce(Fields) -> Request) -> Response {
     match read_object(body).await {
         Ok(fields) => response(&door.handle.ask(request(Fields(fields))).await),
         Err(wrong) => closing(response(&wrong)),
     }
 }
 
-async fn call(State(door): State<Door>, body: Body) -> Response {
+async fn call(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| {
         // Where the name of the tool is no text, it names no tool.
         let tool = match fields.take("tool") {
@@ -105,7 +107,7 @@ async fn call(State(door): State<Door>, body: Body) -> Response {
     .await
 }
 
-async fn next_week(State(door): State<Door>, body: Body) -> Response {
+async fn next_week(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::NextWeek {
         rationale: fields.take("rationale"),
         predictions: fields.take("predictions"),
@@ -113,11 +115,11 @@ async fn next_week(State(door): State<Door>, body: Body) -> Response {
     .await
 }
 
-async fn query(State(door): State<Door>, body: Body) -> Response {
+async fn query(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::Query { sql: fields.take("sql") }).await
 }
 
-async fn keep_script(State(door): State<Door>, body: Body) -> Response {
+async fn keep_script(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::KeepDailyScript {
         name: fields.take("name"),
         content: fields.take("content"),
@@ -125,7 +127,7 @@ async fn keep_script(State(door): State<Door>, body: Body) -> Response {
     .await
 }
 
-async fn forget_script(State(door): State<Door>, body: Body) -> Response {
+async fn forget_script(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::ForgetDailyScript { name: fields.take("name") }).await
 }
 

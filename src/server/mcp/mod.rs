@@ -16,7 +16,7 @@ use rmcp::service::RequestContext;
 use rmcp::transport::stdio;
 use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
-use super::owner::{Handle, Owner};
+use super::owner::{Door, Handle, OnDefect, Owner};
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
 
@@ -24,15 +24,15 @@ use crate::tools::Numbers;
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
      with next_week. Read the resource novamind://manual first.";
 
-/// Serves a run on standard input and output until the input ends.
+/// Serves a run on standard input and output until the input ends; `on_defect` hears of defects of ours.
 ///
 /// # Errors
 /// The disk did not take the end of the record, or standard input and output cannot be used.
-pub fn serve_mcp(session: Session) -> Result<(), RunError> {
+pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> {
     let numbers = session.numbers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
-    let (owner, handle) = Owner::start(session, Via::Mcp, "mcp");
+    let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
     let served = runtime.block_on(async {
         let running = McpDoor { handle, numbers }.serve(stdio()).await.map_err(io::Error::other)?;
         running.waiting().await.map_err(io::Error::other)

@@ -59,6 +59,7 @@ impl NewRunOptions {
     }
 
     /// The same, played by somebody of this label unless another was named.
+    #[cfg(feature = "server")]
     pub fn played_by(&self, label: &str) -> NewRunOptions {
         NewRunOptions {
             participant: Some(self.participant.clone().unwrap_or_else(|| label.to_owned())),

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::act::not_saved;
 use super::facts_chain::StateHash;
+use super::recorder::Recorder;
 use super::simulation::Simulation;
 use crate::database::{Entry, ForecastRow};
 use crate::notation::json_number;
@@ -153,8 +154,8 @@ impl Session {
         let from = self.simulation.world.day;
         let until = self.next_decision_day().min(from.saturating_add(days.max(1)));
         let goes_on = |day: &Simulation| (day.world.day == from || goes_on(day.world.day)) && has_room(day);
-        let state = self.run_days_while(&goes_on, until, progress);
-        Ok(self.close_days(Record::Step, from, state))
+        let last_day = self.run_days_while(&goes_on, until, progress);
+        Ok(self.close_days(Record::Step, from, last_day))
     }
 
     /// Refuses single days where there are none.
@@ -188,10 +189,10 @@ impl Session {
     /// single days do.
     pub(in crate::session) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let (from, until) = (self.simulation.world.day, self.next_decision_day());
-        let state = self.run_days_while(&has_room, until, progress);
+        let last_day = self.run_days_while(&has_room, until, progress);
         let Simulation { world, params, .. } = &self.simulation;
         let is_whole = world.day == until || world.is_over(params);
-        self.close_days(if is_whole { Record::Week } else { Record::Step }, from, state)
+        self.close_days(if is_whole { Record::Week } else { Record::Step }, from, last_day)
     }
 
     /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
@@ -200,16 +201,18 @@ impl Session {
         until: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> StateHash {
-        self.run_days_while(&|_| true, until, progress)
+        let last_day = self.run_days_while(&|_| true, until, progress);
+        self.simulation.end_days(self.projection.entries(), last_day)
     }
 
-    /// As [`Session::run_days`], as long as it is to go on.
+    /// Simulates days as long as it is to go on. Returns the notices of the last day, if there was any: what follows from it
+    /// is left.
     fn run_days_while(
         &mut self,
         goes_on: &dyn Fn(&Simulation) -> bool,
         until: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> StateHash {
+    ) -> Option<Vec<String>> {
         let week_end = self.next_decision_day();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
@@ -232,7 +235,18 @@ impl Session {
         if !Arc::ptr_eq(&params, &self.simulation.params) {
             self.renew_what_follows_from_parameters();
         }
-        self.simulation.end_days(self.projection.entries(), day_before)
+        day_before
+    }
+
+    /// Lets follow what is left of the last day, and hashes the state for the line that closes the days; where no file holds
+    /// that line, the hash stays empty.
+    fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
+        let entries = self.projection.entries();
+        if self.recorder.as_ref().is_some_and(Recorder::is_on_disk) {
+            return self.simulation.end_days(entries, last_day);
+        }
+        self.simulation.follow_last_day(entries, last_day);
+        StateHash::default()
     }
 
     /// Ends the figures of the days that ran, and the week if it is complete.
@@ -244,7 +258,8 @@ impl Session {
     }
 
     /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
-    fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, state: StateHash) -> Week {
+    fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, last_day: Option<Vec<String>>) -> Week {
+        let state = self.end_days(last_day);
         let figures = self.settle_figures();
         let closing = self.closing(from, &figures, &state);
         let record = kind(closing);

@@ -74,6 +74,11 @@ impl Recorder {
         })
     }
 
+    /// Whether a file holds the lines.
+    pub(in crate::session) fn is_on_disk(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// Number and hash of the last line.
     pub(in crate::session) fn position(&self) -> Position {
         self.trajectory.position()

@@ -197,7 +197,17 @@ impl Simulation {
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, Some(notices), settings);
     }
 
-    /// What follows from the last day of some, if there was any, with its notices; meanwhile the state is hashed.
+    /// What follows from the last day of some, if there was any, with its notices.
+    pub(in crate::session) fn follow_last_day(
+        &mut self,
+        entries: Entries<'_>,
+        last_day: Option<Vec<String>>,
+    ) {
+        let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
+        FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, last_day, None);
+    }
+
+    /// The same; meanwhile the state is hashed.
     pub(in crate::session) fn end_days(
         &mut self,
         entries: Entries<'_>,

@@ -51,7 +51,7 @@ fn bytes(folder: &Path) -> Vec<u8> {
 
 /// As it is written in the parameters: other texts, such as the names of news desks, begin with capitals.
 fn contains(bytes: &[u8], text: &str) -> bool {
-    bytes.windows(text.len()).any(|window| window == text.as_bytes())
+    memchr::memmem::find(bytes, text.as_bytes()).is_some()
 }
 
 /// Every text of every table, those inside too, by table and column.

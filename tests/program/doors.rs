@@ -10,9 +10,9 @@ use serde_json::{Value, json};
 use crate::support::home::Home;
 
 /// A server of a new run; it ends with the test.
-struct Server {
+pub struct Server {
     child: Child,
-    port: u16,
+    pub port: u16,
 }
 
 impl Drop for Server {
@@ -26,7 +26,7 @@ impl Drop for Server {
 type Answered = (u16, Value);
 
 impl Server {
-    fn start(home: &Home, options: &[&str]) -> Server {
+    pub fn start(home: &Home, options: &[&str]) -> Server {
         let mut child = home.program().arg("serve").args(options).spawn().expect("the program starts");
         let mut line = String::new();
         BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut line).expect("a line");
@@ -37,7 +37,7 @@ impl Server {
     }
 
     /// Sends bytes and reads until the server closes.
-    fn raw(&self, bytes: &[u8]) -> String {
+    pub fn raw(&self, bytes: &[u8]) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
         stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a socket");
         // A server that has had enough closes before everything is sent.
@@ -47,7 +47,7 @@ impl Server {
         answer
     }
 
-    fn with_head(&self, method: &str, path: &str, head: &str, body: &str) -> Answered {
+    pub fn with_head(&self, method: &str, path: &str, head: &str, body: &str) -> Answered {
         let length = body.len();
         let request = format!(
             "{method} {path} HTTP/1.1\r\n{head}connection: close\r\ncontent-length: {length}\r\n\r\n{body}"
@@ -58,13 +58,13 @@ impl Server {
         (status, serde_json::from_str(body).unwrap_or(Value::Null))
     }
 
-    fn get(&self, path: &str) -> Value {
+    pub fn get(&self, path: &str) -> Value {
         let (status, body) = self.with_head("GET", path, "host: 127.0.0.1\r\n", "");
         assert_eq!(status, 200, "{path}: {body}");
         body
     }
 
-    fn post(&self, path: &str, body: &Value) -> Answered {
+    pub fn post(&self, path: &str, body: &Value) -> Answered {
         self.with_head("POST", path, "host: localhost\r\n", &body.to_string())
     }
 
@@ -73,19 +73,19 @@ impl Server {
     }
 
     #[cfg(unix)]
-    fn stop(mut self) -> i32 {
+    pub fn stop(mut self) -> i32 {
         let pid = self.child.id().to_string();
         assert!(Command::new("kill").args(["-TERM", &pid]).status().expect("kill").success());
         self.child.wait().expect("it ends").code().expect("it ends by itself")
     }
 }
 
-fn predictions() -> Value {
+pub fn predictions() -> Value {
     let forecast = json!({ "point": 1e6, "lower": 0, "upper": 2e6 });
     json!({ "cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast })
 }
 
-const NEW: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
+pub const NEW: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
 
 /// Decisions that every door is told.
 const CALLS: [(&str, &str); 3] = [

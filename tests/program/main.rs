@@ -2,6 +2,8 @@
 
 mod audited;
 mod classes;
+#[cfg(feature = "server")]
+mod conformance;
 mod determinism;
 #[cfg(feature = "server")]
 mod doors;
@@ -10,6 +12,8 @@ mod exports;
 mod forged;
 mod golden;
 mod hardship;
+#[cfg(feature = "server")]
+mod hostile;
 mod laboratory;
 #[cfg(unix)]
 mod large_studies;

@@ -1,0 +1,80 @@
+//! Every tool over HTTP beside the catalogue that is served: fields of results, refusals, and routes.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Value, json};
+
+use crate::doors::{NEW, Server};
+use crate::support::home::Home;
+
+/// Names of what a tool returns; one in angle brackets stands for whatever was asked for.
+fn documented(tool: &Value) -> BTreeSet<&str> {
+    let returns = tool["returns"].as_array().expect("returns");
+    returns.iter().map(|output| output["name"].as_str().expect("a name")).collect()
+}
+
+#[test]
+fn every_tool_answers_and_refuses_as_the_catalogue_says() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let tools = server.get("/tools");
+    let mut answered = 0;
+    for tool in tools.as_array().expect("tools") {
+        let name = tool["name"].as_str().expect("a name");
+        if ["query", "next_week"].contains(&name) {
+            continue;
+        }
+        let call = |args: &Value| {
+            let (status, said) = server.post("/call", &json!({ "tool": name, "args": args }));
+            assert_eq!(status, 200, "{name}: {said}");
+            said
+        };
+        let said = call(&tool["example"]);
+        if said["success"] == true {
+            answered += 1;
+            let returned = said["data"].as_object().unwrap_or_else(|| panic!("{name}: {said}"));
+            let known = documented(tool);
+            let other: Vec<&String> = returned
+                .keys()
+                .filter(|key| !known.contains(key.as_str()) && !known.contains("<tool>"))
+                .collect();
+            assert!(other.is_empty(), "{name} returns {other:?}, which the catalogue does not name: {said}");
+        } else {
+            is_documented(tool, &said);
+        }
+        let another = call(&json!({ "no_such_argument": 1 }));
+        assert_eq!(another["success"], false, "{name}: {another}");
+        is_documented(tool, &another);
+        for argument in tool["arguments"].as_array().expect("arguments") {
+            let mut args = tool["example"].clone();
+            args[argument["name"].as_str().expect("a name")] = json!([[["wrong"]]]);
+            let said = call(&args);
+            assert_eq!(said["success"], false, "{name}, {}: {said}", argument["name"]);
+            is_documented(tool, &said);
+        }
+    }
+    assert!(answered > 20, "{answered}");
+    routes_are_described(&server);
+}
+
+/// A refusal is one of those that the catalogue names, or of those that every tool has.
+fn is_documented(tool: &Value, said: &Value) {
+    let code = said["code"].as_str().unwrap_or_else(|| panic!("{}: {said}", tool["name"]));
+    let own = tool["refusals"].as_array().expect("refusals");
+    let of_all = ["wrong_type", "unknown_argument", "argument_missing"];
+    assert!(own.iter().any(|one| one == code) || of_all.contains(&code), "{}: {code}", tool["name"]);
+}
+
+/// What is described answers, with the methods that are described.
+fn routes_are_described(server: &Server) {
+    let described = server.get("/openapi.json");
+    let paths = described["paths"].as_object().expect("paths");
+    assert!(paths.len() >= 10, "{paths:?}");
+    for (path, methods) in paths {
+        for method in methods.as_object().expect("methods").keys() {
+            let (status, said) = server.with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");
+            assert_ne!(status, 404, "{method} {path}: {said}");
+        }
+        assert_eq!(server.with_head("PATCH", path, "host: 127.0.0.1\r\n", "").0, 404, "{path}");
+    }
+}

@@ -54,6 +54,14 @@ pub fn decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
 }
 
+/// Names of the figures of a part in which students differ, cash first, then the most different.
+pub fn figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
+    let runs = runs_of(ranking, part);
+    let all = by_difference(&runs.iter().map(|(_, run)| &run.evidence.figures).collect::<Vec<_>>());
+    let others = all.into_iter().filter(|name| name != CASH);
+    std::iter::once(CASH.to_owned()).chain(others).collect()
+}
+
 /// The scatter of a part; none where students do not differ in any decision.
 pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u32) -> Option<Scatter<'a>> {
     let decision = view.shown.decision.clone().or_else(|| decisions(ranking, part).into_iter().next())?;
@@ -69,7 +77,7 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
     Some(Scatter { decision, figure, points })
 }
 
-/// Names of the decisions in which students differ: the one with more different values first, then the one whose values lie
+/// Names of the values in which students differ: the one with more different values first, then the one whose values lie
 /// further apart as a share of the largest. Of two that reach equally far, more values tell more.
 fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {

@@ -8,10 +8,9 @@ mod ranking;
 mod table;
 mod words;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
-pub use curves::{Scatter, StudentPoints, curves, decisions, scatter};
+pub use curves::{Scatter, StudentPoints, curves, decisions, figures, scatter};
 pub use guesses::{AskedClass, PitfallMet, asked, pitfalls};
 pub use html::as_html;
 pub use ranking::{RankedStudent, ranked};
@@ -93,13 +92,6 @@ impl ClassView<'_> {
             .runs
             .iter()
             .filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished))
-    }
-
-    /// Names of the figures that a run has, cash first.
-    pub fn figures(&self) -> Vec<String> {
-        let all: BTreeSet<&String> = self.whole().flat_map(|run| run.evidence.figures.keys()).collect();
-        let (cash, others): (Vec<&String>, Vec<&String>) = all.into_iter().partition(|name| *name == CASH);
-        cash.into_iter().chain(others).cloned().collect()
     }
 
     /// How many parts are played.

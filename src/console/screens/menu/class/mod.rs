@@ -5,7 +5,7 @@ mod draw;
 mod tests;
 
 use crate::console::action::Action;
-use crate::report::class::{ClassView, RankedStudent, Shown, asked, decisions, ranked};
+use crate::report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
 use crate::session::CollectedClass;
 
 /// Students of a page, to walk over.
@@ -59,10 +59,11 @@ impl ClassPage {
 
     /// Actions worth showing.
     pub(super) fn hints(&self) -> Vec<Action> {
-        let mut hints = vec![Action::Up, Action::Down, Action::ClassDecision, Action::ClassFigure];
+        // The way out stands in the narrowest window, too.
+        let mut hints = vec![Action::Down, Action::ClassDecision, Action::ClassFigure, Action::HideNames];
+        hints.extend([Action::Close, Action::ClassView]);
         hints.extend((self.questions() > 1).then_some(Action::ClassQuestion));
         hints.extend((self.view().parts() > 1).then_some(Action::ClassPart));
-        hints.extend([Action::HideNames, Action::ClassView, Action::Close]);
         hints
     }
 
@@ -117,7 +118,7 @@ impl ClassPage {
     }
 
     fn turn_figure(&mut self) {
-        let all = self.view().figures();
+        let all = figures(&ranked(&self.view()), self.part);
         let now = self.shown.figure.as_ref().or(all.first());
         self.shown.figure = next_of(&all, now).or(self.shown.figure.take());
     }

@@ -67,7 +67,11 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
             ("price B".to_owned(), 20.0 + (at / 2) as f64),
             ("price C".to_owned(), 55.0),
         ]),
-        figures: BTreeMap::from([("cash".to_owned(), worth), ("subscribers".to_owned(), 100.0 * at as f64)]),
+        figures: BTreeMap::from([
+            ("cash".to_owned(), worth),
+            ("subscribers".to_owned(), 100.0 * at as f64),
+            ("R&D".to_owned(), 0.0),
+        ]),
         ..Evidence::default()
     }
 }
@@ -109,7 +113,10 @@ fn keys_choose_decision_and_figure_among_those_that_differ() {
     assert!(shown(&page, 120, 39).contains("price B across, subscribers up"));
     page.act(Action::ClassDecision);
     page.act(Action::ClassFigure);
-    assert!(shown(&page, 120, 39).contains("price A across, cash up"), "price C is the same for all");
+    assert!(
+        shown(&page, 120, 39).contains("price A across, cash up"),
+        "price C and R&D are the same for all"
+    );
 }
 
 #[test]

@@ -44,6 +44,12 @@ impl Failure {
         Failure { code: 0, message: String::new() }
     }
 
+    /// An exit code of a command's own, with words.
+    #[cfg(feature = "server")]
+    pub fn with_code(code: u8, message: impl Into<String>) -> Failure {
+        Failure { code, message: message.into() }
+    }
+
     /// An exit code without words of its own.
     pub fn code_only(code: u8) -> Failure {
         Failure { code, message: String::new() }

@@ -18,6 +18,11 @@ mod results;
 mod study;
 mod world;
 
+#[cfg(feature = "server")]
+pub use experiments::stopped_by_signals;
+#[cfg(feature = "server")]
+pub use output::OutputOptions;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};

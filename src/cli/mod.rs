@@ -1,5 +1,7 @@
 //! The command line: one file per subcommand.
 
+#[cfg(feature = "server")]
+mod agent;
 mod bench;
 mod class;
 mod completions;
@@ -94,6 +96,9 @@ enum Command {
     Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
+    /// Let a program that has only a shell play a run: begin, call, query, next week; several runs at once with batch.
+    #[cfg(feature = "server")]
+    Agent(agent::Options),
     /// Let a program play a run over HTTP.
     #[cfg(feature = "server")]
     Serve(serve::Options),
@@ -125,6 +130,8 @@ impl Command {
             Command::Class(_) => "class",
             Command::Study(_) => "study",
             Command::Lab(_) => "lab",
+            #[cfg(feature = "server")]
+            Command::Agent(_) => "agent",
             #[cfg(feature = "server")]
             Command::Serve(_) => "serve",
             #[cfg(feature = "server")]
@@ -380,6 +387,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Class(options)) => class::run(options, &context),
         Some(Command::Study(options)) => study::run(options, &context),
         Some(Command::Lab(options)) => lab::run(&options, &context),
+        #[cfg(feature = "server")]
+        Some(Command::Agent(options)) => agent::run(&options, &context),
         #[cfg(feature = "server")]
         Some(Command::Serve(options)) => serve::run(&options, &context),
         #[cfg(feature = "server")]

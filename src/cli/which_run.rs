@@ -35,15 +35,23 @@ impl WhichRun {
             context.check_play(&folder)?;
             return Ok(Session::open(&folder, Access::Write, true)?);
         }
-        // A baseline run says who played it.
-        let label = context.participant.as_deref().unwrap_or("program");
-        let new = self.made_of.played_by(label).new_run(Mode::Baseline, context)?;
-        match Session::create(new, &context.configuration) {
-            Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
-                "this folder of configuration asks participants to agree to a text first, which no program can do: \
-                 add --consent if the person has agreed",
-            )),
-            created => Ok(created?),
-        }
+        begin(&self.made_of, context)
+    }
+}
+
+/// Begins a run that a program plays.
+///
+/// # Errors
+/// The run cannot begin.
+pub fn begin(made_of: &NewRunOptions, context: &Context) -> Result<Session, Failure> {
+    // A baseline run says who played it.
+    let label = context.participant.as_deref().unwrap_or("program");
+    let new = made_of.played_by(label).new_run(Mode::Baseline, context)?;
+    match Session::create(new, &context.configuration) {
+        Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
+            "this folder of configuration asks participants to agree to a text first, which no program can do: \
+             add --consent if the person has agreed",
+        )),
+        created => Ok(created?),
     }
 }

@@ -1,11 +1,16 @@
-//! What is told once a run takes requests.
+//! What is told once a run takes requests, and the file in its folder by which others find the server again.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::session::{RunError, write_whole};
+
+/// Name of the file in the folder of the run; it is there while the run is served, and left behind by a server that was killed.
+const FILE: &str = "server.json";
 
 /// Where a run is served.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
     /// The run.
     pub run: String,
@@ -14,6 +19,28 @@ pub struct Announcement {
     /// Process of the server.
     pub pid: u32,
     /// File with the token that requests must carry, if they must.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub token: Option<PathBuf>,
+}
+
+impl Announcement {
+    /// Puts it into the folder of the run, whole or not at all. Only who holds the run may do so.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn put_up(&self, folder: &Path) -> Result<(), RunError> {
+        let text = serde_json::to_string(self).unwrap_or_default() + "\n";
+        write_whole(&folder.join(FILE), text.as_bytes())
+    }
+
+    /// Takes away what stands in the folder of a run.
+    pub fn take_down(folder: &Path) {
+        // Whoever finds it left behind asks the port first.
+        let _ = std::fs::remove_file(folder.join(FILE));
+    }
+
+    /// What stands in the folder of a run; the server may be gone. None where nothing that can be read is there.
+    pub fn read(folder: &Path) -> Option<Announcement> {
+        serde_json::from_slice(&std::fs::read(folder.join(FILE)).ok()?).ok()
+    }
 }

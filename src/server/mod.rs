@@ -11,6 +11,8 @@ mod http;
 mod mcp;
 mod openapi;
 mod owner;
+mod page;
+mod remote;
 mod request;
 mod schema;
 
@@ -18,3 +20,5 @@ pub use announcement::Announcement;
 pub use client::write_client;
 pub use http::{HttpOptions, serve_http};
 pub use mcp::serve_mcp;
+pub use page::{PageOf, page, write_documents};
+pub use remote::{Remote, Reply};

@@ -25,7 +25,9 @@ fn paths(numbers: &Numbers) -> Value {
         "properties": { "name": { "type": "string" }, "content": { "type": "string" } } });
     let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
     json!({
-        "/health": { "get": read("Whether the server takes requests") },
+        "/health": { "get": read("Whether the server takes requests, and which run it plays") },
+        "/shutdown": { "post": { "summary": "Finish what is in hand and leave the run",
+            "responses": { "200": { "description": "success, run" } } } },
         "/vars": { "get": read("The current day") },
         "/dashboard": { "get": read("The dashboard of the last week, and the day") },
         "/game-status": { "get": read("Day, cash, subscribers, last day, and how the run ended") },

@@ -88,14 +88,14 @@ pub fn predictions() -> Value {
 pub const NEW: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
 
 /// Decisions that every door is told.
-const CALLS: [(&str, &str); 3] = [
+pub const CALLS: [(&str, &str); 3] = [
     ("set_prices", r#"{"A": 10, "B": 20, "C": null}"#),
     ("set_usage_quotas", r#"{"A": 50000, "B": 200000, "C": 900000}"#),
     ("set_targeted_ad_spend", r#"{"content_marketing": {"S1": 500}}"#),
 ];
 
 /// The hash of the last state of a run of two weeks that left nothing else behind.
-fn last_hash(home: &Home) -> String {
+pub fn last_hash(home: &Home) -> String {
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     let verified = home.run(&["replay", &id, "--verify"]);
     assert_eq!(verified.code, 0, "{}", verified.err);
@@ -105,7 +105,7 @@ fn last_hash(home: &Home) -> String {
     last["state_hash"].as_str().expect("a hash").to_owned()
 }
 
-fn of_plain_mode() -> String {
+pub fn of_plain_mode() -> String {
     let home = Home::new();
     let mut lines: String = CALLS.iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
     for _ in 0..2 {
@@ -122,7 +122,8 @@ fn of_plain_mode() -> String {
 fn the_same_decisions_over_http_are_the_same_run() {
     let home = Home::new();
     let server = Server::start(&home, &NEW);
-    assert_eq!(server.get("/health"), json!({ "status": "ok" }));
+    let run = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
+    assert_eq!(server.get("/health"), json!({ "status": "ok", "run": run }));
     assert_eq!(server.get("/vars"), json!({ "current_day": 0 }));
     for (tool, args) in CALLS {
         let args: Value = serde_json::from_str(args).expect("JSON");

@@ -1,5 +1,7 @@
 //! Stories of the built program: pipes, scripts, files, archives, terminals; and its figures beside recorded ones.
 
+#[cfg(all(feature = "server", unix))]
+mod agents;
 mod audited;
 mod classes;
 #[cfg(feature = "server")]

@@ -111,7 +111,7 @@ fn list_worlds(experiment: &Experiment) {
 }
 
 /// What ctrl-c sets; a second one ends the program at once.
-fn stopped_by_signals() -> Arc<AtomicBool> {
+pub fn stopped_by_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
     for (signal, code) in [(signal_hook::consts::SIGINT, 130), (signal_hook::consts::SIGTERM, 143)] {

@@ -2,6 +2,7 @@
 //! published rows (docs/laboratory/results-table.md).
 
 mod exhibit;
+mod tries;
 
 use std::collections::BTreeMap;
 
@@ -13,6 +14,8 @@ use crate::report::measures::{survival_days, tool_use};
 use crate::report::ranking::{Whose, beaten, by_result, published};
 use crate::session::{Configuration, Ended, Line, Session};
 use crate::statistics::Sample;
+
+pub use tries::{Try, tries_exhibit};
 
 /// A run that is over and has a score.
 #[derive(Debug, Clone, PartialEq)]

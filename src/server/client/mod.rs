@@ -2,10 +2,12 @@
 
 mod module;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::session::RunError;
+use crate::session::{RunError, write_whole};
 use crate::tools::{Module, Numbers};
+
+pub use module::name as module_name;
 
 const CONNECTION: &str = include_str!("../../../assets/client/connection.py");
 const PACKAGE: &str = include_str!("../../../assets/client/package.py");
@@ -30,5 +32,8 @@ pub fn write_client(folder: &Path) -> Result<(), RunError> {
     files.extend(Module::ALL.map(|module| {
         (package.join(format!("{}.py", module::name(module))), module::text(module, &numbers))
     }));
-    files.iter().try_for_each(|(path, text)| std::fs::write(path, text).map_err(RunError::io(path)))
+    // A program that reads them at this moment is not disturbed.
+    let is_new =
+        |(path, text): &&(PathBuf, String)| std::fs::read(path).ok().as_deref() != Some(text.as_bytes());
+    files.iter().filter(is_new).try_for_each(|(path, text)| write_whole(path, text.as_bytes()))
 }

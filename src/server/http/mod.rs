@@ -21,6 +21,7 @@ use super::announcement::Announcement;
 use super::owner::{Door, OnDefect, Owner};
 use crate::session::{RunError, Session, Via};
 use guard::Guard;
+use routes::Served;
 use shutdown::Shutdown;
 
 /// Connections that are open at once; further ones are told to come back.
@@ -51,6 +52,7 @@ pub fn serve_http(
 ) -> Result<(), RunError> {
     let token = options.token.as_deref().map(token_of).transpose()?;
     let run = session.manifest().id.clone();
+    let folder = session.folder().map(PathBuf::from);
     let numbers = session.numbers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("the network")))?;
@@ -61,14 +63,24 @@ pub fn serve_http(
         let failed = || RunError::io(Path::new(&shown));
         let listener = TcpListener::bind(address).await.map_err(failed())?;
         let port = listener.local_addr().map_err(failed())?.port();
-        let announcement = Announcement { run, port, pid: std::process::id(), token: options.token.clone() };
+        let file = options.token.as_deref().map(|file| std::path::absolute(file).unwrap_or(file.to_owned()));
+        let announcement = Announcement { run: run.clone(), port, pid: std::process::id(), token: file };
         let shutdown = Shutdown::listen().map_err(failed())?;
+        if let Some(folder) = &folder {
+            announcement.put_up(folder)?;
+        }
         ready(&announcement);
-        take_connections(&listener, routes::router(handle, Guard { token }, numbers), shutdown).await;
+        let router =
+            routes::router(handle, Guard { token }, numbers, Served { run, stop: shutdown.asking() });
+        take_connections(&listener, router, shutdown).await;
         Ok(())
     });
     // Requests that were cut off hold handles of the owner.
     drop(runtime);
+    // While the run is still held: nobody else can have put up another one.
+    if let Some(folder) = &folder {
+        Announcement::take_down(folder);
+    }
     owner.finish()?;
     served
 }

@@ -10,6 +10,7 @@ use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde_json::{Map, Value, json};
+use tokio::sync::Notify;
 
 use super::body::read_object;
 use super::guard::Guard;
@@ -26,11 +27,21 @@ struct Routed {
     handle: Handle,
     guard: Arc<Guard>,
     numbers: Arc<Numbers>,
+    served: Served,
+}
+
+/// What is served, and how to ask the server to stop.
+#[derive(Clone)]
+pub struct Served {
+    /// The run.
+    pub run: String,
+    /// Is notified when a request asks to stop.
+    pub stop: Arc<Notify>,
 }
 
 /// Every route, behind the guard.
-pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
-    let door = Routed { handle, guard: Arc::new(guard), numbers };
+pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>, served: Served) -> Router {
+    let door = Routed { handle, guard: Arc::new(guard), numbers, served };
     Router::new()
         .route("/health", get(health))
         .route("/vars", get(|door: State<Routed>| ask(door, Request::Vars)))
@@ -48,6 +59,7 @@ pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>) -> Router {
         .route("/tools", get(tools))
         .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
         .route("/openapi.json", get(describe))
+        .route("/shutdown", post(shut_down))
         .fallback(unknown)
         .method_not_allowed_fallback(unknown)
         .layer(from_fn_with_state(door.clone(), guarded))
@@ -61,8 +73,13 @@ async fn guarded(State(door): State<Routed>, request: HttpRequest, next: Next) -
     }
 }
 
-async fn health() -> Response {
-    json_response(StatusCode::OK, &json!({ "status": "ok" }))
+async fn health(State(door): State<Routed>) -> Response {
+    json_response(StatusCode::OK, &json!({ "status": "ok", "run": door.served.run }))
+}
+
+async fn shut_down(State(door): State<Routed>) -> Response {
+    door.served.stop.notify_one();
+    json_response(StatusCode::OK, &json!({ "success": true, "run": door.served.run }))
 }
 
 async fn unknown(request: HttpRequest) -> Response {

@@ -1,9 +1,13 @@
 //! Signals that ask a server to stop.
 
 use std::io;
+use std::sync::Arc;
 
-/// Waits for SIGINT, SIGTERM and SIGHUP; where there are none, for ctrl-c.
+use tokio::sync::Notify;
+
+/// Waits for SIGINT, SIGTERM and SIGHUP, where there are none for ctrl-c, and for a request to stop.
 pub struct Shutdown {
+    request: Arc<Notify>,
     #[cfg(unix)]
     signals: [tokio::signal::unix::Signal; 3],
 }
@@ -15,6 +19,7 @@ impl Shutdown {
         use tokio::signal::unix::{SignalKind, signal};
         let one = |kind| signal(kind);
         Ok(Shutdown {
+            request: Arc::default(),
             signals: [
                 one(SignalKind::interrupt())?,
                 one(SignalKind::terminate())?,
@@ -26,7 +31,12 @@ impl Shutdown {
     /// From now on ctrl-c no longer ends the program at once.
     #[cfg(not(unix))]
     pub fn listen() -> io::Result<Shutdown> {
-        Ok(Shutdown {})
+        Ok(Shutdown { request: Arc::default() })
+    }
+
+    /// What a request to stop notifies.
+    pub fn asking(&self) -> Arc<Notify> {
+        self.request.clone()
     }
 
     /// Returns when the server is asked to stop.
@@ -37,12 +47,16 @@ impl Shutdown {
             _ = interrupt.recv() => {}
             _ = terminate.recv() => {}
             _ = hangup.recv() => {}
+            () = self.request.notified() => {}
         }
     }
 
     /// Returns when the server is asked to stop.
     #[cfg(not(unix))]
     pub async fn asked(&mut self) {
-        let _ = tokio::signal::ctrl_c().await;
+        tokio::select! {
+            _ = tokio::signal::ctrl_c() => {}
+            () = self.request.notified() => {}
+        }
     }
 }

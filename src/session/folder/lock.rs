@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::session::error::RunError;
 
 /// Whether a program plays the run at this moment.
-pub(in crate::session) fn is_locked(folder: &Path) -> bool {
+pub fn is_being_played(folder: &Path) -> bool {
     let file = File::open(folder.join("lock"));
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::session::folder::derived::Derived;
-use crate::session::folder::lock::is_locked;
+use crate::session::folder::lock::is_being_played;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::{all_run_folders, last_lines};
 use crate::session::study::definition::Study;
@@ -84,7 +84,7 @@ fn sitting(folder: &Path, manifest: &Manifest) -> Sitting {
         participant: manifest.participant.clone().unwrap_or_default(),
         run: manifest.id.clone(),
         practice: manifest.study.as_ref().is_some_and(|stamp| stamp.practice),
-        state: state(&lines, is_locked(folder)),
+        state: state(&lines, is_being_played(folder)),
         day: lines.iter().rev().find(|line| line.closes_days()).map_or(0, |line| line.day),
         days: manifest.days,
         quiet_seconds: quiet,

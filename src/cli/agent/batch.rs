@@ -1,0 +1,138 @@
+//! `novamind agent batch`: a command plays fresh runs, one after the other, and what came of them is set side by side.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use clap::Args;
+
+use super::documents::of_run;
+use super::python::equip;
+use super::server::{AgentRun, Secrecy};
+use super::{asked, exit};
+use crate::cli::lab::{OutputOptions, stopped_by_signals};
+use crate::cli::new_run::NewRunOptions;
+use crate::cli::{Context, Failure};
+use crate::lab::results::{FinishedRun, Try, tries_exhibit};
+use crate::server::write_client;
+use crate::session::{Access, Session, Trajectory, write_whole};
+
+/// Options of `agent batch`.
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Command of the agent; a shell runs it in the folder of the try.
+    #[arg(long, value_name = "COMMAND")]
+    command: String,
+    /// Fresh runs.
+    #[arg(long = "runs", default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    tries: u32,
+    /// Start the command again at most so often when it ends before the run does.
+    #[arg(long = "continue", default_value_t = 0, value_name = "N")]
+    continued: u32,
+    /// Folder for a folder of each try and the results; it must be new or empty.
+    #[arg(long, default_value = "batch", value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    made_of: NewRunOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let out = std::path::absolute(&options.out).map_err(|error| cannot_write(&options.out, &error))?;
+    std::fs::create_dir_all(&out).map_err(|error| cannot_write(&out, &error))?;
+    if std::fs::read_dir(&out).map_err(|error| cannot_write(&out, &error))?.next().is_some() {
+        return Err(Failure::usage(format!("{} is not empty: name a new folder with --out", out.display())));
+    }
+    let stop = stopped_by_signals();
+    let mut tries = Vec::new();
+    for number in 1..=options.tries {
+        let work = out.join(format!("try-{number}"));
+        let own = AgentRun::begin(&options.made_of, context)?;
+        of_run(&own, Some(&work))?;
+        write_client(&work.join("client"))?;
+        eprintln!("try {number} of {}: run {} in {}", options.tries, own.id, work.display());
+        let played = play(options, number, &own, &work, &stop);
+        // However it went, no server is left behind.
+        own.stop()?;
+        let (attempts, exit_code) = played?;
+        tries.push(outcome(number, &own, attempts, exit_code)?);
+        let exhibit = tries_exhibit(format!("{} runs of: {}", options.tries, options.command), &tries);
+        write_whole(&out.join("results.json"), format!("{:#}\n", exhibit.as_json()).as_bytes())?;
+        if number == options.tries {
+            return options.output.show(&exhibit);
+        }
+    }
+    Ok(())
+}
+
+fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::failed(format!("{}: {error}", path.display()))
+}
+
+/// Starts the command until the run is over or it was started often enough; how often, and its last exit code.
+fn play(
+    options: &Options,
+    number: u32,
+    own: &AgentRun,
+    work: &Path,
+    stop: &AtomicBool,
+) -> Result<(u32, Option<i32>), Failure> {
+    let mut attempts = 0;
+    loop {
+        let remote = own.serve(Secrecy::Open)?;
+        attempts += 1;
+        let mut command = shell(&options.command);
+        equip(&mut command, own, &remote, &work.join("client"))?;
+        command.env("NOVAMIND_TRY", number.to_string()).env("NOVAMIND_ATTEMPT", attempts.to_string());
+        command.current_dir(work).stdin(Stdio::null());
+        let log = work.join("output.txt");
+        let file = File::options()
+            .create(true)
+            .append(true)
+            .open(&log)
+            .map_err(|error| cannot_write(&log, &error))?;
+        command.stderr(file.try_clone().map_err(|error| cannot_write(&log, &error))?).stdout(file);
+        let child =
+            command.spawn().map_err(|error| Failure::failed(format!("no shell can be started: {error}")))?;
+        let status = wait(child, stop)?;
+        // Whatever the program did to the server, another one goes on with the run.
+        let reply = asked(&own.serve(Secrecy::Open)?, "/game-status", None)?;
+        exit::check(&reply)?;
+        if !reply.body["ended"].is_null() || attempts > options.continued {
+            return Ok((attempts, status.code()));
+        }
+        eprintln!("try {number}: the command ended on day {} and is started again", reply.body["day"]);
+    }
+}
+
+fn wait(mut child: Child, stop: &AtomicBool) -> Result<ExitStatus, Failure> {
+    let failed = |error: std::io::Error| Failure::failed(format!("the command: {error}"));
+    loop {
+        if let Some(status) = child.try_wait().map_err(failed)? {
+            return if stop.load(Ordering::Relaxed) { Err(Failure::signal(2)) } else { Ok(status) };
+        }
+        if stop.load(Ordering::Relaxed) {
+            child.kill().and_then(|()| child.wait()).map_err(failed)?;
+            return Err(Failure::signal(2));
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn shell(command: &str) -> Command {
+    let (program, option) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
+    let mut shell = Command::new(program);
+    shell.arg(option).arg(command);
+    shell
+}
+
+fn outcome(number: u32, own: &AgentRun, attempts: u32, exit_code: Option<i32>) -> Result<Try, Failure> {
+    let session = Session::open(&own.folder, Access::Read, false)?;
+    let trajectory = Trajectory::read(&own.folder.join("trajectory.jsonl"))?;
+    let result = session.ended().and_then(|_| FinishedRun::of(&session, &trajectory.lines));
+    Ok(Try { number, run: own.id.clone(), attempts, exit_code, day: session.day(), result })
+}

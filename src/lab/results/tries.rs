@@ -1,0 +1,114 @@
+//! Several tries of one program beside each other, and the one that counts by the rule of the published table.
+
+use super::{FinishedRun, best_of};
+use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use crate::statistics::Sample;
+
+/// A fresh run that a program was given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Try {
+    /// Its number, from 1.
+    pub number: u32,
+    /// The run.
+    pub run: String,
+    /// How often the program was started.
+    pub attempts: u32,
+    /// Exit code of the last start; none if a signal ended it.
+    pub exit_code: Option<i32>,
+    /// Last simulated day.
+    pub day: u32,
+    /// What came of the run; none if it is not over.
+    pub result: Option<FinishedRun>,
+}
+
+/// The tries as an exhibit. The title says whose they are.
+pub fn tries_exhibit(title: String, tries: &[Try]) -> Exhibit {
+    let columns = vec![
+        Column::numbers("try", "try", Measure::Count),
+        Column::words("run", "run"),
+        Column::words("end", "end"),
+        Column::numbers("day", "day", Measure::Days),
+        Column::numbers("cash", "cash", Measure::Dollars),
+        Column::numbers("calls_per_week", "calls a week", Measure::Number(2)),
+        Column::numbers("attempts", "starts", Measure::Count),
+        Column::numbers("exit_code", "exit code", Measure::Count),
+        Column::words("selected", "selected"),
+    ];
+    let finished: Vec<&FinishedRun> = tries.iter().filter_map(|own| own.result.as_ref()).collect();
+    let best = best_of(&finished).map(|run| run.run.clone());
+    let rows = tries.iter().map(|own| cells(own, best.as_deref())).collect();
+    let mut exhibit = Exhibit::of(title, Tabulation { rows, ..Tabulation::new("tries", "", columns) });
+    exhibit.notes.push(
+        "Selected is the run with the most cash at the end; where every run is bankrupt, the one with the longest life.".to_owned(),
+    );
+    let unfinished = tries.len() - finished.len();
+    if unfinished > 0 {
+        exhibit.notes.push(format!("Not over, and left out of the selection: {unfinished}."));
+    }
+    if !finished.is_empty() {
+        let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
+        let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
+        exhibit.notes.push(format!(
+            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` sets runs of the published length and start \
+             beside the published results.",
+            finished.len(),
+            Sample::of(&lives).mean
+        ));
+    }
+    exhibit
+}
+
+fn cells(own: &Try, best: Option<&str>) -> Vec<Datum> {
+    let end = match &own.result {
+        None => "not over",
+        Some(run) if run.is_bankrupt => "bankrupt",
+        Some(_) => "last day",
+    };
+    vec![
+        Datum::Number(f64::from(own.number)),
+        Datum::words(&*own.run),
+        Datum::words(end),
+        Datum::Number(f64::from(own.day)),
+        Datum::number(own.result.as_ref().map(|run| run.score)),
+        Datum::number(own.result.as_ref().map(|run| run.calls_per_week)),
+        Datum::Number(f64::from(own.attempts)),
+        Datum::number(own.exit_code.map(f64::from)),
+        Datum::words(if best == Some(own.run.as_str()) { "yes" } else { "" }),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn own(number: u32, result: Option<(f64, u32)>) -> Try {
+        let run = format!("r{number}");
+        let result = result.map(|(score, days)| FinishedRun {
+            run: run.clone(),
+            participant: None,
+            policy: None,
+            seed: 42,
+            score,
+            is_bankrupt: score == 0.0,
+            survival_days: days,
+            calls_per_week: 1.0,
+        });
+        let day = result.as_ref().map_or(14, |run| run.survival_days);
+        Try { number, run, attempts: 1, exit_code: Some(0), day, result }
+    }
+
+    fn selected(tries: &[Try]) -> Vec<String> {
+        let exhibit = tries_exhibit("x".to_owned(), tries);
+        let rows = &exhibit.tables[0].rows;
+        let is_selected = |row: &&Vec<Datum>| row.last() == Some(&Datum::words("yes"));
+        rows.iter().filter(is_selected).map(|row| format!("{:?}", row[1])).collect()
+    }
+
+    #[test]
+    fn the_most_cash_counts_and_else_the_longest_life() {
+        let name = |run: &str| vec![format!("{:?}", Datum::words(run))];
+        assert_eq!(selected(&[own(1, Some((0.0, 400))), own(2, Some((5.0, 500))), own(3, None)]), name("r2"));
+        assert_eq!(selected(&[own(1, Some((0.0, 120))), own(2, Some((0.0, 131)))]), name("r2"));
+        assert!(selected(&[own(1, None)]).is_empty());
+    }
+}

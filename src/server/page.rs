@@ -1,0 +1,150 @@
+//! What an agent is handed: one page with goal, rules and calls, and the documentation of tools and tables.
+//!
+//! Everything follows from the catalogue and the parameters in force. It tells what agents in the benchmark are told, and no more:
+//! nothing hidden, and nothing about how to play well.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::client::module_name;
+use super::schema::specs;
+use crate::database::tables;
+use crate::notation::dollars;
+use crate::session::RunError;
+use crate::tools::describe::{ToolDocument, document, manual};
+use crate::tools::{Module, Numbers};
+
+const PAGE: &str = include_str!("../../assets/agent/page.md");
+const SHELL: &str = include_str!("../../assets/agent/shell.md");
+const ERRORS: &str = include_str!("../../assets/agent/errors.md");
+
+/// Name of the page.
+const PAGE_FILE: &str = "AGENT.md";
+
+/// The run that a page is about.
+#[derive(Debug, Clone)]
+pub struct PageOf<'a> {
+    /// Last day.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub cash: f64,
+    /// The parameters in force.
+    pub numbers: &'a Numbers,
+}
+
+/// The page, as Markdown.
+pub fn page(of: &PageOf<'_>) -> String {
+    let filled = of.numbers.fill(PAGE);
+    let parts = [
+        ("{days}", of.days.to_string()),
+        ("{cash}", dollars(of.cash)),
+        ("{how}", SHELL.trim_end().to_owned()),
+        ("{tools_document}", "tools.md".to_owned()),
+        ("{tables_document}", "tables.md".to_owned()),
+        ("{tools}", tool_list(of.numbers)),
+        ("{tables}", table_list()),
+        ("{errors}", ERRORS.trim_end().to_owned()),
+    ];
+    parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
+}
+
+/// Writes page and documentation into a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn write_documents(folder: &Path, of: &PageOf<'_>) -> Result<(), RunError> {
+    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    let documents: Vec<ToolDocument> = specs().map(|spec| document(spec, of.numbers)).collect();
+    let files = [
+        (PAGE_FILE, page(of)),
+        ("tools.md", tool_manual(of.numbers)),
+        ("tools.json", format!("{:#}\n", json!(documents))),
+        ("tables.md", table_manual()),
+        ("tables.json", format!("{:#}\n", json!(tables()))),
+    ];
+    files.iter().try_for_each(|(name, text)| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(RunError::io(&path))
+    })
+}
+
+fn tool_list(numbers: &Numbers) -> String {
+    let mut text = String::new();
+    for module in Module::ALL {
+        text += &format!("### {}\n\n", module_name(module));
+        for spec in specs().filter(|spec| spec.module == module) {
+            text += &format!("- `{}`: {}\n", spec.name(), numbers.fill(spec.summary));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn table_list() -> String {
+    tables().iter().map(|table| format!("- `{}`: {}\n", table.name, table.description)).collect::<String>()
+        + "\n"
+}
+
+fn tool_manual(numbers: &Numbers) -> String {
+    let one = |spec| {
+        let text = manual(spec, numbers);
+        let (_, rest) = text.split_once('\n').unwrap_or_default();
+        format!("## {}\n\n{}.\n\n```text\n{rest}```\n\n", spec.name(), numbers.fill(spec.summary))
+    };
+    "# Tools\n\n".to_owned() + specs().map(one).collect::<String>().trim_end() + "\n"
+}
+
+fn table_manual() -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    let mut text = "# Tables\n\n".to_owned();
+    for table in tables() {
+        text += &format!("## {}\n\n{}. Written {}.\n\n", table.name, table.description, table.written);
+        text += "| Column | Type | Holds |\n|---|---|---|\n";
+        for column in &table.columns {
+            let values = match column.values.as_slice() {
+                [] => String::new(),
+                values => format!(" [{}]", values.join(", ")),
+            };
+            text += &format!(
+                "| `{}` | {} | {} |\n",
+                column.name,
+                column.kind,
+                cell(&(column.description.clone() + &values))
+            );
+        }
+        text.push('\n');
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_tells_every_tool_and_the_figures_in_force() {
+        let numbers = Numbers::shipped();
+        let text = page(&PageOf { days: 77, cash: 250_000.0, numbers: &numbers });
+        for spec in specs() {
+            assert!(text.contains(&format!("`{}`", spec.name())), "{}", spec.name());
+        }
+        for table in tables() {
+            assert!(text.contains(&format!("`{}`", table.name)), "{}", table.name);
+        }
+        assert!(text.contains("for 77 days") && text.contains("$250,000"), "{text}");
+        for name in
+            ["{run.", "{limits.", "{billing.", "{how}", "{tools", "{tables", "{errors}", "{days}", "{cash}"]
+        {
+            assert!(!text.contains(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn documents_hold_every_tool_and_column() {
+        let manual = tool_manual(&Numbers::shipped());
+        assert_eq!(manual.matches("\n## ").count(), specs().count());
+        let columns: usize = tables().iter().map(|table| table.columns.len()).sum();
+        assert_eq!(table_manual().lines().filter(|line| line.starts_with("| `")).count(), columns);
+    }
+}

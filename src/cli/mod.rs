@@ -96,7 +96,7 @@ enum Command {
     Study(study::Options),
     /// Compare policies with reference figures, and runs with each other.
     Lab(lab::Options),
-    /// Let a program that has only a shell play a run: begin, call, query, next week; several runs at once with batch.
+    /// Let a program that has only a shell play a run: begin, call, query, next week. `batch` lets a command play several.
     #[cfg(feature = "server")]
     Agent(agent::Options),
     /// Let a program play a run over HTTP.

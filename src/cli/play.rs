@@ -30,6 +30,9 @@ pub struct Options {
     /// Follow a run read-only while somebody else plays it.
     #[arg(long, requires = "run")]
     watch: bool,
+    /// Draw it to be read from far away: four figures, the curve of cash, what was decided.
+    #[arg(long, requires = "watch")]
+    big: bool,
     /// Start a new run.
     #[arg(long)]
     new: bool,
@@ -176,7 +179,11 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     let start = match &options.run {
         Some(id) if options.watch => {
             let recorded = Recorded::Run(id.clone());
-            Some(Effect::Request(Request::Replay { recorded, goal: Goal::Last, follow: true }))
+            Some(if options.big {
+                Effect::Project(recorded)
+            } else {
+                Effect::Request(Request::Replay { recorded, goal: Goal::Last, follow: true })
+            })
         }
         Some(id) => Some(Effect::Request(Request::Open(id.clone(), Access::Write))),
         None if options.asks_for_new_run() => {

@@ -245,6 +245,8 @@ pub struct App {
     closing: Option<Closing>,
     /// The screen on which the run that is being opened begins, where that is not the usual one.
     opens_on: Option<ScreenId>,
+    /// The run that is watched is drawn to be read from far away.
+    pub is_projected: bool,
     /// The run that is being started shows the tour.
     tour_planned: bool,
     /// The study whose participants are led.
@@ -316,6 +318,7 @@ impl App {
             look_question: 0,
             closing: None,
             opens_on: None,
+            is_projected: false,
             tour_planned: false,
             visit: None,
             limit: limits::LimitTold::default(),

@@ -42,6 +42,8 @@ pub enum Effect {
     Request(Request),
     /// Play a recorded run again from a moment on, and show its hidden state.
     ReplayInside(Recorded, Goal),
+    /// Follow a run that somebody else plays, drawn to be read from far away.
+    Project(Recorded),
     /// Go somewhere in the replay.
     Go(Goal),
     /// What a call would do; only the newest answer counts.

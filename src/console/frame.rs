@@ -94,6 +94,12 @@ fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
 }
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
+    if let (true, Some(viewer)) = (app.is_projected, &run.viewer) {
+        let look = Look { company: &run.company, keys: &app.keys, page: app.page };
+        let body = Rect { height: area.height - 1, ..area };
+        super::projector::draw(canvas, body, viewer, &look);
+        return draw_layers(app, run, canvas, body, &look);
+    }
     draw_top(app, canvas, Rect { height: 1, ..area }, &run.company);
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
     let banner = u16::from(run.behind.is_some());
@@ -131,17 +137,21 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         canvas.page = page;
         viewer.draw_strip(canvas, Rect { y: body.bottom(), height: 1, ..area });
     }
+    draw_layers(app, run, canvas, body, &look);
+    if let Some((tour, height)) = tour {
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
+    }
+}
+
+fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: &Look<'_>) {
     for layer in app.layers.iter() {
         // What lies below a dialog can be seen but not clicked.
         canvas.clicks.clear();
         canvas.cursor = None;
         match layer {
-            Layer::Filing => super::dialogs::Dialog::draw(&run.filing, canvas, body, &look),
-            Layer::Dialog(dialog) => dialog.draw(canvas, body, &look),
+            Layer::Filing => super::dialogs::Dialog::draw(&run.filing, canvas, body, look),
+            Layer::Dialog(dialog) => dialog.draw(canvas, body, look),
         }
-    }
-    if let Some((tour, height)) = tour {
-        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
     }
 }
 

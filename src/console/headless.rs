@@ -117,6 +117,14 @@ impl Headless {
         self.open_with(Effect::ReplayInside(recorded, goal))
     }
 
+    /// Follows a run that somebody else plays, drawn to be read from far away.
+    ///
+    /// # Errors
+    /// It does not open.
+    pub fn project(&mut self, recorded: Recorded) -> io::Result<()> {
+        self.open_with(Effect::Project(recorded))
+    }
+
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
         self.app.start_with(effect);
         self.settle()?;

@@ -26,6 +26,7 @@ pub mod message;
 pub(crate) mod photograph;
 mod posts;
 pub(crate) mod preferences;
+mod projector;
 mod readings;
 pub mod request;
 mod resimulation;

@@ -4,10 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::{RunError, write_whole};
-
-/// Name of the file in the folder of the run; it is there while the run is served, and left behind by a server that was killed.
-const FILE: &str = "server.json";
+use crate::session::{RunError, SERVER_FILE, write_whole};
 
 /// Where a run is served.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,17 +27,17 @@ impl Announcement {
     /// The folder cannot be written.
     pub fn put_up(&self, folder: &Path) -> Result<(), RunError> {
         let text = serde_json::to_string(self).unwrap_or_default() + "\n";
-        write_whole(&folder.join(FILE), text.as_bytes())
+        write_whole(&folder.join(SERVER_FILE), text.as_bytes())
     }
 
     /// Takes away what stands in the folder of a run.
     pub fn take_down(folder: &Path) {
         // Whoever finds it left behind asks the port first.
-        let _ = std::fs::remove_file(folder.join(FILE));
+        let _ = std::fs::remove_file(folder.join(SERVER_FILE));
     }
 
     /// What stands in the folder of a run; the server may be gone. None where nothing that can be read is there.
     pub fn read(folder: &Path) -> Option<Announcement> {
-        serde_json::from_slice(&std::fs::read(folder.join(FILE)).ok()?).ok()
+        serde_json::from_slice(&std::fs::read(folder.join(SERVER_FILE)).ok()?).ok()
     }
 }

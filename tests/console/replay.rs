@@ -58,6 +58,21 @@ fn day(console: &Console) -> u32 {
 }
 
 #[test]
+fn a_run_that_is_watched_from_far_away_fills_every_window() {
+    let runs = tempfile::tempdir().expect("a folder");
+    left(runs.path(), Mode::Sandbox, 4);
+    for size in [(60, 16), (80, 24), (120, 40), (200, 60)] {
+        let mut console = Console::start(runs.path(), size);
+        console.project(Recorded::Run("latest".to_owned())).expect("it opens");
+        let screen = console.screen();
+        for part in ["day", "cash, last week", "subscribers", "█", "Cash", "Decided before week"] {
+            assert!(screen.contains(part), "{part} is missing at {size:?}:\n{screen}");
+        }
+        println!("{screen}");
+    }
+}
+
+#[test]
 fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     let runs = tempfile::tempdir().expect("a folder");
     let folder = left(runs.path(), Mode::Sandbox, 5);

@@ -97,7 +97,10 @@ fn the_same_decisions_from_a_shell_are_the_same_run() {
     let status = shell.does(&["status"]);
     let rows = shell.does(&["query", "SELECT SUM(amount) AS cash FROM ledger"]);
     assert_eq!((&status["day"], &rows["rows"][0]["cash"]), (&json!(14), &status["cash"]));
+    let is_marked = || shell.home.run(&["runs", "list"]).out.contains("played by a program");
+    assert!(is_marked());
     assert_eq!(shell.does(&["stop"])["stopped"], true);
+    assert!(!is_marked());
     assert_eq!(shell.does(&["stop"])["stopped"], false);
     assert_eq!(shell.served(), None);
     assert_eq!(last_hash(&shell.home), of_plain_mode());

@@ -13,7 +13,7 @@ use crate::cli::new_run::NewRunOptions;
 use crate::cli::which_run::begin;
 use crate::cli::{Context, Failure};
 use crate::server::{Remote, write_client};
-use crate::session::{find_run_to_read, is_being_played, write_whole};
+use crate::session::{find_run_to_read, is_being_played, run_folder, write_whole};
 
 /// File in the folder of runs that names the run which `agent new` began last.
 const LATEST: &str = "agent-run.txt";
@@ -60,7 +60,13 @@ impl AgentRun {
         let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
             Failure::usage("`novamind agent new` has begun no run here; name one with --run or NOVAMIND_RUN")
         })?;
-        let folder = find_run_to_read(&runs, &id)?;
+        // The usual case is answered without reading every run.
+        let own = run_folder(&runs, &id);
+        let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
+        let folder = match is_name && own.join("run.toml").is_file() {
+            true => own,
+            false => find_run_to_read(&runs, &id)?,
+        };
         context.check_play(&folder)?;
         AgentRun::of(&folder)
     }

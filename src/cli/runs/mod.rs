@@ -197,10 +197,11 @@ fn line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
     let who = run.participant.as_deref().map(|who| format!("  {}", printable(who))).unwrap_or_default();
     let origin =
         origin.map(|origin| format!("  {}", printable(&origin_in_words(origin)))).unwrap_or_default();
+    let served = if run.is_served { "  played by a program" } else { "" };
     let copy = run.copy_of.as_ref();
     let copy = copy.map(|own| format!("  a copy of run {}", printable(own))).unwrap_or_default();
     format!(
-        "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}{origin}{copy}\n",
+        "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}{served}{origin}{copy}\n",
         run.id,
         run.played.get(..16).unwrap_or(&run.played).replace('T', " "),
         run.mode.map_or("", |mode| mode.id()),

@@ -10,8 +10,8 @@ use crate::console::effect::Effect;
 use crate::console::request::Request;
 use crate::console::screens::ScreenId;
 use crate::console::worker::{Job, Question};
-use crate::session::QuerySource;
 use crate::session::record::DraftOutcome;
+use crate::session::{Goal, QuerySource};
 
 /// The last day that a request simulates, unless something stops it before.
 fn last_day_of(request: &Request, company: &Company) -> u32 {
@@ -34,7 +34,14 @@ impl App {
             return self.complain_of_replay();
         }
         match effect {
-            Effect::Request(request) => self.request(request),
+            Effect::Request(request) => {
+                self.is_projected &= !matches!(request, Request::Replay { .. });
+                self.request(request);
+            }
+            Effect::Project(recorded) => {
+                self.is_projected = true;
+                self.request(Request::Replay { recorded, goal: Goal::Last, follow: true });
+            }
             Effect::ReplayInside(recorded, goal) => {
                 self.opens_on = Some(ScreenId::Xray);
                 self.request(Request::Replay { recorded, goal, follow: false });

@@ -12,6 +12,14 @@ pub fn is_being_played(folder: &Path) -> bool {
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
+/// File in the folder of a run that says where programs reach it.
+pub const SERVER_FILE: &str = "server.json";
+
+/// Whether a server plays the run for a program at this moment; one that was killed leaves only its file.
+pub(in crate::session) fn is_served(folder: &Path) -> bool {
+    folder.join(SERVER_FILE).exists() && is_being_played(folder)
+}
+
 /// Claims a run for writing; the claim ends with the program, however it ends.
 pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     let path = folder.join("lock");

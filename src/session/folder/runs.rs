@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::derived::Derived;
-use super::lock::lock_run;
+use super::lock::{is_served, lock_run};
 use super::manifest::Manifest;
 use super::mode::Mode;
 use crate::session::error::RunError;
@@ -46,6 +46,8 @@ pub struct RunSummary {
     pub cash: f64,
     /// How it ended, if it did.
     pub ended: Option<Ended>,
+    /// A program plays it at this moment, through a server.
+    pub is_served: bool,
     /// The run of which this folder is a copy under another name, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub copy_of: Option<String>,
@@ -170,6 +172,7 @@ fn summarise(folder: &Path) -> RunSummary {
             None => manifest.cash,
         },
         ended,
+        is_served: is_served(folder),
         problem,
     }
 }
@@ -201,6 +204,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         starting_cash: 0.0,
         cash: 0.0,
         ended: None,
+        is_served: false,
         copy_of: None,
         problem: Some(problem),
     }

@@ -29,6 +29,9 @@ pub(super) enum Asked {
     Agree(Box<NewRun>, Agreement),
 }
 
+/// State of a run that a server plays at this moment; who opens it is asked whether to watch.
+const BY_PROGRAM: &str = "played by a program";
+
 /// Most runs that are compared.
 pub(super) const MOST_COMPARED: usize = 6;
 
@@ -61,7 +64,7 @@ fn row(run: &RunSummary, marked: bool) -> Vec<Cell> {
     };
     vec![
         name,
-        Cell::words(state(run)).role(role),
+        Cell::words(if run.is_served { BY_PROGRAM.to_owned() } else { state(run) }).role(role),
         Cell::number(run.cash, dollars(run.cash)),
         Cell::words(run.mode.map_or("", Mode::id)),
         Cell::number(run.seed as f64, run.seed.to_string()),
@@ -345,6 +348,9 @@ pub(super) fn facts(
             ),
         );
         facts.insert(2, ("revenue", format!("{} a month", dollars(preview.recurring_revenue))));
+    }
+    if run.is_served {
+        facts.push(("now", BY_PROGRAM.to_owned()));
     }
     if let Some(participant) = &run.participant {
         facts.push(("participant", participant.clone()));

@@ -24,9 +24,20 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         starting_cash: 1_000_000.0,
         cash: 1_234_567.0,
         ended: None,
+        is_served: false,
         copy_of: None,
         problem: None,
     }
+}
+
+#[test]
+fn a_run_that_a_program_plays_says_so() {
+    let mut menu = menu(vec![RunSummary { is_served: true, ..summary("aaaa0001") }, summary("bbbb0002")]);
+    menu.page = MenuPage::Runs;
+    let rows = shown(&menu, 120, 30);
+    let row = |id: &str| rows.lines().find(|line| line.contains(id)).expect(id).to_owned();
+    assert!(row("aaaa0001").contains("played by a program"), "{rows}");
+    assert!(!row("bbbb0002").contains("played by"), "{rows}");
 }
 
 fn menu(runs: Vec<RunSummary>) -> Menu {

@@ -166,7 +166,7 @@ mod tests {
         }
         assert_eq!(
             drawn("17", PointSize::Small),
-            ["▄█  ▀▀█", " █  ▄▀", "▀▀▀  ▀"].map(|row| row.to_owned()).to_vec()
+            ["▄█  ▀▀█", " █   █", "▀▀▀  ▀"].map(|row| row.to_owned()).to_vec()
         );
         assert_eq!(drawn("1", PointSize::Large)[4], "██████");
         assert_eq!(drawn("$12,345,678,901", PointSize::Small)[1], "$12,345,678,901");

@@ -65,10 +65,9 @@ fn a_run_that_is_watched_from_far_away_fills_every_window() {
         let mut console = Console::start(runs.path(), size);
         console.project(Recorded::Run("latest".to_owned())).expect("it opens");
         let screen = console.screen();
-        for part in ["day", "cash, last week", "subscribers", "█", "Cash", "Decided before week"] {
+        for part in ["day", "cash, last week", "subscribers", "█", "Cash", "Decided before w"] {
             assert!(screen.contains(part), "{part} is missing at {size:?}:\n{screen}");
         }
-        println!("{screen}");
     }
 }
 

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use clap::{Args, Subcommand};
 
 use super::{Context, Failure, print};
-use crate::lab::{LessonCheck, PlayResult, SEEDS, check_lesson};
+use crate::lab::{LessonCheck, PlayResult, check_lesson};
 use crate::notation::compact;
 use crate::report::debrief::in_words;
 use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::rules::answers_to_companies;
-use crate::session::{Access, Configuration, Lesson, Session, find_run_to_read};
+use crate::session::{Access, Configuration, Lesson, MEASURED_SEEDS, Session, find_run_to_read};
 
 /// Options of `lesson`.
 #[derive(Debug, Args)]
@@ -157,7 +157,12 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
 
 fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String {
     let verdict = if problems.is_empty() { "holds" } else { "DOES NOT HOLD" };
-    let mut text = format!("{}: {verdict} on seeds {} to {}\n", lesson.name, SEEDS.start(), SEEDS.end());
+    let mut text = format!(
+        "{}: {verdict} on seeds {} to {}\n",
+        lesson.name,
+        MEASURED_SEEDS.start(),
+        MEASURED_SEEDS.end()
+    );
     for (name, plays) in [("good", &check.good), ("bad", &check.bad)] {
         for (at, goal) in plays.iter().take(1).flat_map(|play| play.goals.iter().enumerate()) {
             text += &format!("  {name:<4}  {:<44}  {}\n", goal.text, values(plays, at));

@@ -10,8 +10,7 @@ use super::screens::{Look, ScreenId};
 use super::text::wrapped;
 use super::theme::Role;
 use super::widgets::spark::bar;
-use crate::notation::compact;
-use crate::report::lesson::guess_in_words;
+use crate::report::lesson::{goal_at, guess_and_outcome};
 use crate::session::{GoalPage, LessonPage, LessonQuestion, ToolId};
 
 /// Columns of the task beside the screen.
@@ -91,7 +90,7 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, width: usize) -> Vec<(String
     }
     if let Some(before) = &page.before {
         lines.gap();
-        lines.say(&format!("{}, which is over", before.title), Role::Header);
+        lines.say(&format!("Step {} is over: {}", page.step, before.title), Role::Header);
         say_outcome(&mut lines, before.question.as_ref(), &before.goals);
     }
     lines.gap();
@@ -146,10 +145,10 @@ fn unwrapped(text: &str) -> String {
 fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
     lines.say(&format!("Your guess: {}", question.text), Role::Strong);
     match question.guess {
-        Some(guess) => lines.say(&format!("You guessed {}.", guess_in_words(question, guess)), Role::Text),
+        Some(_) => guess_and_outcome(question).iter().for_each(|line| lines.say(line, Role::Text)),
         None => {
             for (at, choice) in question.choices.iter().enumerate() {
-                lines.say(&format!("{} {choice}", at + 1), Role::Text);
+                lines.say(&format!("{}) {choice}", at + 1), Role::Text);
             }
             lines.say(&format!("{} asks for it", look.hint(Action::NextWeek)), Role::Key);
         }
@@ -159,11 +158,8 @@ fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
 /// The guess beside the outcome, and the goals that were reached or missed.
 fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
     if let Some(question) = question {
-        let said =
-            |value: Option<f64>| value.map_or("nothing".to_owned(), |value| guess_in_words(question, value));
         lines.say(&question.text, Role::Dim);
-        lines.say(&format!("You guessed {}.", said(question.guess)), Role::Text);
-        lines.say(&format!("It was {}.", said(question.outcome)), Role::Strong);
+        guess_and_outcome(question).iter().for_each(|line| lines.say(line, Role::Strong));
     }
     for goal in goals {
         say_goal(lines, goal);
@@ -178,17 +174,10 @@ fn say_goal(lines: &mut Lines, goal: &GoalPage) {
         None => ("Goal: ", Role::Strong),
     };
     lines.say(&format!("{mark}{}", goal.text), role);
-    let Some(value) = goal.value else { return };
-    let Some(bound) = goal.bound else {
-        return lines.say(&format!("now {}; the good play decides", compact(value)), Role::Text);
-    };
-    let of = if goal.wants_least { "at most" } else { "of" };
-    let numbers = format!("{} {of} {}", compact(value), compact(bound));
-    let room = lines.width.saturating_sub(numbers.len() + 1).min(16);
-    if bound > 0.0 && room > 3 {
-        lines.say(&format!("{} {numbers}", bar(value / bound, room)), Role::Text);
-    } else {
-        lines.say(&numbers, Role::Text);
+    let Some(at) = goal_at(goal) else { return };
+    lines.say(&at, Role::Text);
+    if let Some((value, bound)) = goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0) {
+        lines.say(&bar(value / bound, lines.width.min(24)), Role::Text);
     }
 }
 

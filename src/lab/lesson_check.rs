@@ -7,11 +7,9 @@ use rayon::prelude::*;
 
 use crate::rules::answers_to_companies;
 use crate::session::{
-    Lesson, MeasuredFigure, PartPlay, ReferencePlay, RunError, Session, play_part, play_part_telling,
+    Lesson, MEASURED_SEEDS, MeasuredFigure, PartPlay, ReferencePlay, RunError, Session, play_part,
+    play_part_telling,
 };
-
-/// Seeds of the check.
-pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 
 /// How far a measured figure may be from the one that a lesson states, as a share of it.
 pub const TOLERANCE: f64 = 0.15;
@@ -94,7 +92,10 @@ impl LessonCheck {
 /// # Errors
 /// A part cannot begin, or a play is refused.
 pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
-    Ok(LessonCheck { figures: measured(lesson)?, ..check_plays(lesson, &SEEDS.collect::<Vec<u64>>())? })
+    Ok(LessonCheck {
+        figures: measured(lesson)?,
+        ..check_plays(lesson, &MEASURED_SEEDS.collect::<Vec<u64>>())?
+    })
 }
 
 /// Checks the reference plays of a lesson on some seeds, and no measured figure.
@@ -163,7 +164,7 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
         }
     }
     let runs: Vec<(usize, u64)> =
-        (0..plays.len()).flat_map(|play| SEEDS.map(move |seed| (play, seed))).collect();
+        (0..plays.len()).flat_map(|play| MEASURED_SEEDS.map(move |seed| (play, seed))).collect();
     let of_runs: Result<Vec<Vec<Option<f64>>>, RunError> =
         runs.par_iter().map(|(play, seed)| values_of(lesson, &plays[*play], *seed)).collect();
     let of_runs = of_runs?;

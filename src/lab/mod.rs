@@ -38,7 +38,7 @@ pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
 pub use lesson_check::{
-    FigureResult, GoalResult, LessonCheck, PlayResult, SEEDS, TOLERANCE, check_lesson, check_plays,
+    FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,
 };
 pub use metrics::{Collector, Figure};
 pub use policy::{Policy, PolicyError};

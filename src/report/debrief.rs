@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-use super::lesson::{goal_in_words, guess_in_words, question_in_words};
+use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_words};
 use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
 use super::words::{count, money};
 use crate::glossary::{Term, terms};
-use crate::notation::{compact, grouped, signed_dollars};
+use crate::notation::{grouped, signed_dollars};
 use crate::session::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FirstDifference, PartedDecision,
-    ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FirstDifference, MEASURED_SEEDS,
+    PartedDecision, ReferenceCurve,
 };
 
 /// Most settings of a tool that are named one by one.
@@ -49,6 +49,7 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
     }
     if let Some(text) = &own.text {
         lines.extend(paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
+        lines.extend([String::new(), figures_in_text(own)]);
         lines.push(String::new());
         lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
     }
@@ -59,6 +60,7 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
 pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
     match &own.comparison {
         DecisionComparison::Same => vec!["You decided as the good play does, week by week.".to_owned()],
+        DecisionComparison::Nothing => vec!["There was nothing to decide in this part.".to_owned()],
         DecisionComparison::Unknown => {
             vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
         }
@@ -113,15 +115,21 @@ fn written(value: &Value) -> String {
 
 fn effect_in_words(parting: &FirstDifference) -> String {
     match parting.effect {
-        Some(effect) => format!(
-            "Simulated again with what the good play decided in week {}, and everything else as you decided it: {} on \
-             day {} instead of {} ({}).",
-            parting.week,
-            money(effect.with),
-            effect.day,
-            money(effect.own),
-            signed_dollars(effect.with - effect.own)
-        ),
+        Some(effect) => {
+            let told = format!(
+                "Simulated again with what the good play decided in week {}, and everything else as you decided it: {} \
+                 on day {} instead of {} ({}).",
+                parting.week,
+                money(effect.with),
+                effect.day,
+                money(effect.own),
+                signed_dollars(effect.with - effect.own)
+            );
+            match effect.with < effect.own {
+                true => told + " In your company that decision does not pay by itself.",
+                false => told,
+            }
+        }
         None => "The calls of the good play are refused in your run, so their effect was not simulated."
             .to_owned(),
     }
@@ -139,6 +147,12 @@ fn effort(step: &DebriefStep) -> String {
     let (used, all) = step.hints;
     let tries = if step.tries == 1 { "1 try".to_owned() } else { format!("{} tries", step.tries) };
     format!("{tries}, {used} of {}", count(all as u32, "hint"))
+}
+
+/// Whose figures the text of a debrief tells.
+fn figures_in_text(own: &Debrief) -> String {
+    let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
+    format!("Amounts in this text are means over seeds {from} to {to}; your company had seed {}.", own.seed)
 }
 
 /// The paragraphs of a text in Markdown, without its marks.
@@ -188,6 +202,7 @@ pub(super) fn page_of(own: &Debrief) -> Page {
     if let Some(text) = &own.text {
         blocks.push(Block::Heading("The mechanism"));
         blocks.extend(paragraphs(text).into_iter().map(Block::Text));
+        blocks.push(Block::Text(figures_in_text(own)));
         let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
         let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
         if !rows.is_empty() {
@@ -266,8 +281,9 @@ fn goals(own: &Debrief) -> Vec<Block> {
             Some(false) => "missed",
             None => "not judged",
         };
-        let number = |value: Option<f64>| value.map_or("–".to_owned(), compact);
         let one = |goal: &crate::session::GoalPage| {
+            let number =
+                |value: Option<f64>| value.map_or("–".to_owned(), |value| goal_amount(goal, value));
             vec![
                 step.title.clone(),
                 goal.text.clone(),

@@ -1,6 +1,7 @@
 //! What happened in a lesson, in words.
 
-use crate::notation::{compact, percent, short_dollars};
+use super::words::money;
+use crate::notation::{cents, compact, percent, short_dollars};
 use crate::session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
 
 /// The word of an event, as lines write it.
@@ -74,16 +75,28 @@ pub fn heading(page: &LessonPage) -> String {
 /// The question of a step, what was guessed, and what came of it.
 pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
     let mut lines = vec![format!("Your guess: {}", question.text)];
-    lines.extend(question.choices.iter().enumerate().map(|(at, choice)| format!("  {} {choice}", at + 1)));
-    let written = |value: f64| guess_in_words(question, value);
-    match (question.guess, question.outcome) {
-        (Some(guess), Some(outcome)) => {
-            lines.push(format!("You guessed {}; it was {}.", written(guess), written(outcome)));
-        }
-        (Some(guess), None) => lines.push(format!("You guessed {}.", written(guess))),
-        (None, _) => {}
-    }
+    lines.extend(question.choices.iter().enumerate().map(|(at, choice)| format!("  {}) {choice}", at + 1)));
+    lines.extend(guess_and_outcome(question));
     lines
+}
+
+/// What was guessed, and what came of it as far as it is known.
+pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
+    let written = |value: f64| guess_in_words(question, value);
+    let is_choice = !question.choices.is_empty();
+    let said = |choice: &str, number: &str, value: f64| match is_choice {
+        true => format!("{choice}: {}.", written(value)),
+        false => format!("{number} {}.", written(value)),
+    };
+    let guess = question.guess.map(|guess| said("You chose", "You guessed", guess));
+    let outcome = match question.outcome {
+        Some(outcome) => Some(said("The answer", "It was", outcome)),
+        None if question.guess.is_some() && question.told_at_end => {
+            Some("What comes of it is told at the end of this part.".to_owned())
+        }
+        None => None,
+    };
+    guess.into_iter().chain(outcome).collect()
 }
 
 /// Whether a number is asked for that is a part of a whole, from 0 to 1.
@@ -110,11 +123,35 @@ pub fn goal_in_words(goal: &GoalPage) -> String {
         Some(false) => "missed",
         None => "goal",
     };
-    let at = match goal.value {
-        Some(value) => format!(", now {}", compact(value)),
-        None => String::new(),
-    };
+    let at = goal_at(goal).map(|at| format!(": {at}")).unwrap_or_default();
     format!("{mark:<8} {}{at}", goal.text)
+}
+
+/// What a goal stands at, beside what is to be reached as far as that is known.
+pub fn goal_at(goal: &GoalPage) -> Option<String> {
+    let value = goal_amount(goal, goal.value?);
+    Some(match (goal.bound, goal.of_good_play) {
+        (None, _) => format!("{value} so far; the good play's is told at the end of the step"),
+        (Some(bound), Some(share)) => {
+            let good = goal_amount(goal, bound / share);
+            format!(
+                "{value} of {}, {} of the good play's {good}",
+                goal_amount(goal, bound),
+                percent(share, 1)
+            )
+        }
+        (Some(bound), None) if goal.wants_least => format!("{value}, at most {}", goal_amount(goal, bound)),
+        (Some(bound), None) => format!("{value} of {}", goal_amount(goal, bound)),
+    })
+}
+
+/// An amount of what a goal counts.
+pub fn goal_amount(goal: &GoalPage, value: f64) -> String {
+    match goal.in_dollars {
+        true if value.abs() < 1000.0 => cents(value),
+        true => money(value),
+        false => compact(value),
+    }
 }
 
 /// What can be done next.

@@ -89,8 +89,8 @@ pub use lesson::debrief::{
 pub use lesson::decisions::{DecisionContrast, PartedDecision};
 pub use lesson::definition::{
     CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
-    LessonPlan, LessonStep, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked, ReferencePlay,
-    ScheduledCalls,
+    LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked,
+    ReferencePlay, ScheduledCalls,
 };
 pub use lesson::lesson_call::LessonCall;
 pub use lesson::lesson_file::Lesson;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{App, Layer, Run, Stage};
 use crate::console::action::Action;
 use crate::console::company::Company;
+use crate::console::dialogs::again::TryAgain;
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::debrief::DebriefPage;
 use crate::console::dialogs::lesson::LessonDialog;
@@ -129,14 +130,9 @@ impl App {
         }
     }
 
-    /// Asks once before a step is tried again.
+    /// Asks once before a step is tried again, which may be one before it.
     pub(super) fn ask_to_try_again(&mut self, step: usize) {
-        let text = format!(
-            "Step {} begins again, in a run of its own; the tries are counted. This run stays as it is. Try again?",
-            step + 1
-        );
-        let again = Effect::Request(Request::Lesson(LessonRequest::TryAgain(step)));
-        self.open(Confirm::new("Try again", text, vec![Effect::CloseDialogs, again]));
+        self.open(TryAgain::new(step));
     }
 
     /// Opens what came of the lesson; it is found once.

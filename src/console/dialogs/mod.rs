@@ -1,5 +1,6 @@
 //! What lies over a screen for a while.
 
+pub mod again;
 pub mod branches;
 pub mod confirm;
 pub mod curve;

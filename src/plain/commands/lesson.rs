@@ -163,7 +163,7 @@ fn debrief_as_data(own: &Debrief) -> Value {
             let decisions: Vec<Value> = parting.decisions.iter().map(decision_as_data).collect();
             json!({ "week": parting.week, "day": parting.day, "decisions": decisions, "effect": effect })
         }
-        DecisionComparison::Same | DecisionComparison::Unknown => Value::Null,
+        DecisionComparison::Same | DecisionComparison::Nothing | DecisionComparison::Unknown => Value::Null,
     };
     json!({
         "title": own.title,

@@ -8,6 +8,7 @@ use crate::session::folder::mode::Mode;
 use crate::session::resume::branch::branch_of_lesson;
 use crate::session::state::Session;
 use crate::session::trajectory::Trajectory;
+use crate::session::trajectory::record::{LessonEvent, LessonNote};
 use crate::tools::Refusal;
 
 impl Session {
@@ -31,6 +32,11 @@ impl Session {
         let begun = standing.own_part().weeks_of(step).0 * self.simulation.params.run.days_per_week;
         let mut again = branch_of_lesson(folder, &self.manifest, &trajectory, begun)?;
         again.company_answers = self.company_answers;
+        // Whoever has seen what came of it is not asked again: the first guess stands.
+        if let Some(value) = standing.guess(step) {
+            let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
+            again.note_lesson(LessonNote { value: Some(value), ..about }).map_err(refused)?;
+        }
         Ok(again)
     }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::definition::{
-    CapacityMover, ForecastsAsked, GoalBound, GuessForm, LessonAccess, Pitfall, PitfallBound, RationaleAsked,
+    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, GuessTold, LessonAccess, Pitfall,
+    PitfallBound, RationaleAsked,
 };
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
@@ -145,6 +146,7 @@ impl Session {
                 // It is judged when somebody says how rules answer companies.
                 return;
             }
+            self.judge_guesses(&standing, step, is_over);
             self.judge(&standing, step, begin);
         }
         if is_over {
@@ -181,24 +183,40 @@ impl Session {
         }
     }
 
-    /// Measures what was guessed and what was to be reached.
+    /// Measures what was guessed in the step that is over; where the part is over, also what waited for its end.
+    fn judge_guesses(&mut self, standing: &LessonStanding, step: usize, is_over: bool) {
+        let part = standing.own_part();
+        let is_last = is_over || step + 1 == part.steps.len();
+        for (at, own) in part.steps.iter().enumerate().take(step + 1) {
+            let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else { continue };
+            let is_due = if guess.told == GuessTold::Part { is_last } else { at == step };
+            if is_due {
+                let from = part.weeks_of(at).0 * self.simulation.params.run.days_per_week;
+                let outcome = self.outcome_of(standing, guess, at, from);
+                let _ = self.note_lesson(outcome);
+            }
+        }
+    }
+
+    /// What came of a guess, from a day on.
+    fn outcome_of(&mut self, standing: &LessonStanding, guess: &Guess, step: usize, from: u32) -> LessonNote {
+        let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
+        match &guess.form {
+            GuessForm::Number { outcome, .. } => {
+                LessonNote { value: outcome.of(self, from).ok().flatten(), ..about }
+            }
+            GuessForm::Choice { answer, .. } => {
+                let right = *answer as f64 + 1.0;
+                let met = standing.guess(step).map(|guessed| guessed == right);
+                LessonNote { value: Some(right), met, ..about }
+            }
+        }
+    }
+
+    /// Measures what was to be reached.
     fn judge(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
         let from = begin * self.simulation.params.run.days_per_week;
-        if let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(step).is_none()) {
-            let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
-            let note = match &guess.form {
-                GuessForm::Number { outcome, .. } => {
-                    LessonNote { value: outcome.of(self, from).ok().flatten(), ..about }
-                }
-                GuessForm::Choice { answer, .. } => {
-                    let right = *answer as f64 + 1.0;
-                    let met = standing.guess(step).map(|guessed| guessed == right);
-                    LessonNote { value: Some(right), met, ..about }
-                }
-            };
-            let _ = self.note_lesson(note);
-        }
         let judged = standing.goals(step).len();
         let good = self.good_play_values(standing, step);
         for (number, goal) in own.goals.iter().enumerate().skip(judged) {

@@ -6,7 +6,7 @@
 use std::thread;
 
 use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::definition::{CapacityMover, LessonGoal, ScheduledCalls};
+use super::definition::{CapacityMover, LessonGoal, ReferencePlay, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
@@ -80,6 +80,8 @@ pub enum DecisionComparison {
     Parted(FirstDifference),
     /// They are the same all the way.
     Same,
+    /// There is nothing to be decided in this part.
+    Nothing,
     /// That cannot be told: one of the two cannot be played again, or comes to something else then.
     Unknown,
 }
@@ -191,12 +193,17 @@ impl PlayedPart {
             let begun = plays.map(|calls| scope.spawn(move || self.play(calls, answers)));
             begun.map(|play| play.join().ok().flatten())
         });
+        let (part, decides) = (self.standing.part, plan.good.plays_in(self.standing.part));
         let both = good.as_ref().zip(own.as_ref());
-        let comparison =
-            both.map_or(DecisionComparison::Unknown, |(good, own)| self.compared(good, own, answers));
+        let comparison = match both {
+            _ if !decides => DecisionComparison::Nothing,
+            Some((good, own)) => self.compared(good, own, answers),
+            None => DecisionComparison::Unknown,
+        };
         let is_last = self.standing.part + 1 == plan.parts.len();
-        let curve = |played: Option<Played>, text: &str| {
-            let text = is_last.then(|| text.to_owned());
+        let curve = |played: Option<Played>, play: &ReferencePlay| {
+            let text = is_last.then(|| play.text_of(part).to_owned());
+            let played = played.filter(|_| decides);
             played.map(|own| ReferenceCurve { text, cash_by_day: own.cash_by_day })
         };
         let part = self.standing.own_part();
@@ -210,8 +217,8 @@ impl PlayedPart {
             ended: self.ended,
             first_day: part.start_weeks * self.days_per_week,
             own: self.cash_by_day.clone(),
-            good: curve(good, &plan.good.text),
-            bad: curve(bad, &plan.bad.text),
+            good: curve(good, &plan.good),
+            bad: curve(bad, &plan.bad),
             comparison,
             steps: self.steps(),
             pitfalls: pitfalls(&self.standing),

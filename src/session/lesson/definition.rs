@@ -156,6 +156,19 @@ pub struct Guess {
     pub question: String,
     /// What kind of answer it takes.
     pub form: GuessForm,
+    /// When the outcome is told.
+    pub told: GuessTold,
+}
+
+/// When what came of a question is measured and told.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GuessTold {
+    /// At the end of its step.
+    #[default]
+    Step,
+    /// At the end of the part.
+    Part,
 }
 
 /// What kind of answer a question takes.
@@ -187,13 +200,15 @@ struct GuessFile {
     unit: Option<String>,
     choices: Option<Vec<String>>,
     answer: Option<usize>,
+    #[serde(default)]
+    told: GuessTold,
 }
 
 impl TryFrom<GuessFile> for Guess {
     type Error = String;
 
     fn try_from(file: GuessFile) -> Result<Guess, String> {
-        let GuessFile { question, figure, sql, over, unit, choices, answer } = file;
+        let GuessFile { question, figure, sql, over, unit, choices, answer, told } = file;
         let form = match (choices, answer) {
             (None, None) => GuessForm::Number {
                 outcome: Measurement::try_from(MeasurementFile { figure, sql, over })?,
@@ -207,7 +222,7 @@ impl TryFrom<GuessFile> for Guess {
             }
             _ => return Err("a guess has a figure or sql, or choices with an answer".to_owned()),
         };
-        Ok(Guess { question, form })
+        Ok(Guess { question, form, told })
     }
 }
 
@@ -221,6 +236,8 @@ pub struct LessonGoal {
     pub measurement: Measurement,
     /// How far it has to go.
     pub bound: GoalBound,
+    /// Whether it counts dollars.
+    pub in_dollars: bool,
 }
 
 /// How far a figure has to go.
@@ -244,13 +261,14 @@ struct GoalFile {
     at_least: Option<f64>,
     at_most: Option<f64>,
     relative: Option<f64>,
+    unit: Option<String>,
 }
 
 impl TryFrom<GoalFile> for LessonGoal {
     type Error = String;
 
     fn try_from(file: GoalFile) -> Result<LessonGoal, String> {
-        let GoalFile { text, figure, sql, over, at_least, at_most, relative } = file;
+        let GoalFile { text, figure, sql, over, at_least, at_most, relative, unit } = file;
         let bounds = [
             at_least.map(GoalBound::AtLeast),
             at_most.map(GoalBound::AtMost),
@@ -261,7 +279,12 @@ impl TryFrom<GoalFile> for LessonGoal {
             return Err("a goal has one of at_least, at_most and relative".to_owned());
         };
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
-        Ok(LessonGoal { text, measurement, bound })
+        let in_dollars = match unit.as_deref() {
+            None => measurement.counts_dollars(),
+            Some("$") if measurement.needs_database() => true,
+            Some(_) => return Err("the unit of a goal is $, beside sql".to_owned()),
+        };
+        Ok(LessonGoal { text, measurement, bound, in_dollars })
     }
 }
 
@@ -323,12 +346,30 @@ impl TryFrom<PitfallFile> for Pitfall {
 pub struct ReferencePlay {
     /// What it does, in words.
     pub text: String,
+    /// What it does in each part, in words, where the parts have little in common.
+    #[serde(default)]
+    pub texts: Vec<String>,
     /// The pitfall that it meets; the bad play names one.
     pub pitfall: Option<String>,
     /// Its calls.
     #[serde(rename = "play", default)]
     pub plays: Vec<ScheduledCalls>,
 }
+
+impl ReferencePlay {
+    /// What it does in a part, in words.
+    pub fn text_of(&self, part: usize) -> &str {
+        self.texts.get(part).unwrap_or(&self.text)
+    }
+
+    /// Whether it does anything in a part.
+    pub fn plays_in(&self, part: usize) -> bool {
+        self.plays.iter().any(|own| own.part == part)
+    }
+}
+
+/// Seeds over which measured figures are means.
+pub const MEASURED_SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 
 /// A figure that texts name as `{name}`: its mean over the seeds of the check.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -346,7 +387,7 @@ pub struct MeasuredFigure {
     pub week: Option<u32>,
     /// Its value.
     pub value: f64,
-    /// What a statement counts: `$`, `%` of a share, or nothing.
+    /// What a statement counts: `$`, `%` of a share, the number of a `day`, or nothing.
     pub unit: String,
     /// What is played after the start of the part.
     pub plays: Vec<ScheduledCalls>,
@@ -383,8 +424,8 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
         let MeasuredFile { figure, sql, over, .. } = file;
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
         let (part, unit) = (from_one(part)?, unit.unwrap_or_default());
-        if !matches!(unit.as_str(), "" | "$" | "%") {
-            return Err(format!("a unit is $ or %, not {unit}"));
+        if !matches!(unit.as_str(), "" | "$" | "%" | "day") {
+            return Err(format!("a unit is $, % or day, not {unit}"));
         }
         let plays = play;
         Ok(MeasuredFigure { name, part, text, measurement, week, value, unit, plays, scenario, parameters })

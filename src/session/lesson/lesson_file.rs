@@ -169,6 +169,7 @@ impl MeasuredFigure {
             NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => cents(value),
             NumberSource::Sql(_) if self.unit == "$" => short_dollars(value),
             NumberSource::Sql(_) if self.unit == "%" => percent(value, 0),
+            NumberSource::Sql(_) if self.unit == "day" => grouped(value, 0),
             NumberSource::Sql(_) => grouped(value, if value.fract() == 0.0 { 0 } else { 2 }),
         }
     }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::session::figures::week::WeekFigures;
-use crate::session::why::WeekFigure;
+use crate::session::why::{FigureUnit, WeekFigure};
 
 /// What is measured over some weeks.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +76,15 @@ impl TryFrom<MeasurementFile> for Measurement {
 }
 
 impl Measurement {
+    /// Whether it is a figure that counts dollars.
+    pub fn counts_dollars(&self) -> bool {
+        match &self.source {
+            NumberSource::Cash => true,
+            NumberSource::Figure(figure) => figure.unit() == FigureUnit::Dollars,
+            NumberSource::Sql(_) => false,
+        }
+    }
+
     /// Whether it asks the database.
     pub fn needs_database(&self) -> bool {
         matches!(self.source, NumberSource::Sql(_))

@@ -1,7 +1,7 @@
 //! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
 
 use super::debrief::DebriefStep;
-use super::definition::{ForecastsAsked, GoalBound, GuessForm, LessonGoal, RationaleAsked};
+use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
 use crate::session::state::Session;
 use crate::session::trajectory::record::LessonNote;
@@ -63,6 +63,8 @@ pub struct LessonQuestion {
     pub guess: Option<f64>,
     /// What came of it, once that is known.
     pub outcome: Option<f64>,
+    /// Whether that is told at the end of the part, and not of the step.
+    pub told_at_end: bool,
 }
 
 /// A goal and what it stands at.
@@ -76,6 +78,10 @@ pub struct GoalPage {
     pub bound: Option<f64>,
     /// Whether the least is wanted.
     pub wants_least: bool,
+    /// What share of the good play's value is to be reached, where it is relative to that.
+    pub of_good_play: Option<f64>,
+    /// Whether it counts dollars.
+    pub in_dollars: bool,
     /// Whether it was reached, once it is judged.
     pub met: Option<bool>,
 }
@@ -146,11 +152,17 @@ impl LessonStanding {
             GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
             GoalBound::OfGoodPlay(_) => None,
         };
+        let of_good_play = match goal.bound {
+            GoalBound::OfGoodPlay(share) => Some(share),
+            GoalBound::AtLeast(_) | GoalBound::AtMost(_) => None,
+        };
         GoalPage {
             text: self.lesson.filled(&goal.text),
             value: judged.and_then(|note| note.value),
             bound: stated.or(judged.and_then(|note| note.bound)),
             wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
+            of_good_play,
+            in_dollars: goal.in_dollars,
             met: judged.and_then(|note| note.met),
         }
     }
@@ -163,7 +175,14 @@ pub(super) fn question(standing: &LessonStanding, step: usize) -> Option<LessonQ
         GuessForm::Choice { choices, .. } => (choices.clone(), String::new()),
     };
     let outcome = standing.outcome(step).and_then(|note| note.value);
-    Some(LessonQuestion { text: guess.question.clone(), choices, unit, guess: standing.guess(step), outcome })
+    Some(LessonQuestion {
+        text: guess.question.clone(),
+        choices,
+        unit,
+        guess: standing.guess(step),
+        outcome,
+        told_at_end: guess.told == GuessTold::Part,
+    })
 }
 
 pub(super) fn pitfalls(standing: &LessonStanding) -> Vec<(u32, String)> {

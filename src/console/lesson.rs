@@ -175,9 +175,10 @@ fn say_goal(lines: &mut Lines, goal: &GoalPage) {
     };
     lines.say(&format!("{mark}{}", goal.text), role);
     let Some(at) = goal_at(goal) else { return };
-    lines.say(&at, Role::Text);
-    if let Some((value, bound)) = goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0) {
-        lines.say(&bar(value / bound, lines.width.min(24)), Role::Text);
+    let room = lines.width.saturating_sub(at.chars().count() + 1).min(16);
+    match goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0 && room > 3) {
+        Some((value, bound)) => lines.say(&format!("{} {at}", bar(value / bound, room)), Role::Text),
+        None => lines.say(&at, Role::Text),
     }
 }
 

@@ -61,7 +61,7 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     console.shows("Hint 1: Look at the leads.");
     console.press("esc n");
     // One key was the week; what it came to stands beside the screen, with the pitfall and the next task.
-    console.shows("Open the shop, which is over");
+    console.shows("Step 1 is over: Open the shop");
     console.shows("reached: One subscriber");
     console.shows("! Day 7: Somebody bought.");
     console.shows("Step 2 of 2: Go on");
@@ -82,7 +82,7 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     }
     // Another try of the last step asks first, and is a run of its own.
     console.press("a");
-    console.shows("Try again?");
+    console.shows("begins again");
     console.press("y");
     console.shows("Step 2 of 2: Go on, try 2");
     assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
@@ -101,7 +101,7 @@ fn in_a_small_window_the_task_is_a_page() {
     console.press("enter '0.4' enter");
     console.shows("You guessed 40%");
     console.press("n");
-    console.shows("Open the shop, which is over");
+    console.shows("Step 1 is over: Open the shop");
     console.press("esc n 2 enter n");
     console.shows("Debrief");
     console.press("esc n");

@@ -109,11 +109,13 @@ fn another_try_begins_where_the_first_one_did() {
     let mut again = first.try_step_again(0).expect("another try");
     let begun = student(&folder.path().join("other"));
     assert_eq!(again.settings(), begun.settings());
-    assert_eq!(again.lesson().map(|own| (own.tries(0), own.guess(0))), Some((2, None)));
+    assert_eq!(again.lesson().map(|own| (own.tries(0), own.guess(0))), Some((2, Some(1.0))));
+    assert_eq!(again.guess_in_lesson(2.0).err().map(|refusal| refusal.code), Some("no_question"));
     for _ in 0..2 {
-        again.guess_in_lesson(1.0).expect("a guess");
         if again.day() == 0 {
             call(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
+        } else {
+            again.guess_in_lesson(1.0).expect("the step after it asks");
         }
         week(&mut again);
     }

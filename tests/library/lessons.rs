@@ -281,7 +281,7 @@ fn another_try_begins_where_the_step_began_and_is_counted() {
     assert_eq!(again.state_hash(), begun);
     let standing = again.lesson().expect("a lesson");
     assert_eq!((standing.tries(0), standing.tries(1)), (1, 2));
-    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), None));
+    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess stands");
     assert!(standing.goals(0).len() == 1 && standing.goals(1).is_empty());
     let third = again.try_step_again(1).expect("a third try");
     assert_eq!(third.lesson().expect("a lesson").tries(1), 3);

@@ -71,7 +71,9 @@ fn routes_are_described(server: &Server) {
     let paths = described["paths"].as_object().expect("paths");
     assert!(paths.len() >= 10, "{paths:?}");
     for (path, methods) in paths {
-        for method in methods.as_object().expect("methods").keys() {
+        // Whoever posts that ends the server: `agent stop`.
+        let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
+        for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
             let (status, said) = server.with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");
             assert_ne!(status, 404, "{method} {path}: {said}");
         }

@@ -45,6 +45,7 @@ pub(crate) mod tables;
 pub mod term_picture;
 #[cfg(test)]
 pub(crate) mod test_kit;
+pub mod transcript;
 mod turn;
 pub(crate) mod week;
 pub(crate) mod whatif;

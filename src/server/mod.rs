@@ -22,3 +22,4 @@ pub use http::{HttpOptions, serve_http};
 pub use mcp::serve_mcp;
 pub use page::{PageOf, page, write_documents};
 pub use remote::{Remote, Reply};
+pub use schema::functions;

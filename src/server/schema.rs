@@ -32,6 +32,18 @@ pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
     schema
 }
 
+/// The tools as functions, with the schema of their arguments.
+pub fn functions(numbers: &Numbers) -> Vec<Value> {
+    let function = |spec: &'static Spec| {
+        let parameters = arguments(spec, numbers);
+        json!({
+            "type": "function",
+            "function": { "name": spec.name(), "description": numbers.fill(spec.summary), "parameters": parameters },
+        })
+    };
+    specs().map(function).collect()
+}
+
 fn description(argument: &Argument) -> String {
     let unit = if argument.unit.is_empty() { String::new() } else { format!(" ({})", argument.unit) };
     match &argument.kind {

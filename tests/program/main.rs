@@ -29,3 +29,4 @@ mod studies;
 mod support;
 #[cfg(unix)]
 mod terminal;
+mod transcripts;

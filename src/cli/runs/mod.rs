@@ -1,5 +1,6 @@
 //! `novamind runs`: list, show, end, delete, export, import.
 
+mod formats;
 mod transfer;
 
 pub use transfer::{as_csv, tidy_up_on_signals, write_tables};

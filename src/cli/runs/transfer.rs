@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::formats::{self, ExportFormat};
 use super::{find_in, list_all};
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
@@ -29,9 +30,12 @@ pub struct Export {
     /// With --all: only runs of this participant.
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
-    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all a folder.
+    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all or --format script a folder.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
+    /// What is written: the sealed archive, or the run in a format of programs that study or train agents.
+    #[arg(long, value_enum, default_value = "archive", conflicts_with_all = ["all", "lab_key"])]
+    format: ExportFormat,
     /// Sign the archives with this key of a lab [default: lab.key in the folder of the study, where it is there].
     #[arg(long, value_name = "FILE")]
     lab_key: Option<PathBuf>,
@@ -54,6 +58,9 @@ type Keys = (Option<LabKey>, SealKey);
 impl Export {
     /// Runs the command.
     pub fn run(&self, folders: &[PathBuf], json: bool, context: &Context) -> Result<(), Failure> {
+        if let (Some(run), true) = (&self.run, self.format != ExportFormat::Archive) {
+            return formats::write(&find_in(folders, run)?, self.format, &self.out, context);
+        }
         tidy_up_on_signals();
         // Before anything is simulated again.
         let keys = (context.lab_key(self.lab_key.as_deref())?, context.seal_key()?);

@@ -75,6 +75,11 @@ impl Playback {
         Ok(playback)
     }
 
+    /// The lines that can be played, the first of the run included.
+    pub fn lines(&self) -> &[Line] {
+        &self.trajectory.lines[..self.good]
+    }
+
     /// From now on new lines are awaited.
     pub fn follow(&mut self) {
         self.follows = !self.is_recorded_to_the_end();

@@ -109,7 +109,7 @@ impl Line {
     }
 
     /// Every field of what it says, those that this version does not know included.
-    pub(super) fn own_fields(&self) -> Map<String, Value> {
+    pub fn own_fields(&self) -> Map<String, Value> {
         let mut fields: Map<String, Value> = serde_json::from_slice(&self.text).unwrap_or_default();
         fields.retain(|name, _| !FRAME.contains(&name.as_str()));
         fields

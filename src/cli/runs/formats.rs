@@ -1,0 +1,84 @@
+//! `novamind runs export --format`: a run as scripts, as an agent's trajectory, as an evaluation log.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use serde_json::Value;
+
+use crate::cli::run::progress_bar;
+use crate::cli::{Context, Failure, print};
+use crate::report::transcript::{Surroundings, Transcript, atif, inspect, plain_script, python_script};
+use crate::session::{manifest_of, write_whole};
+
+/// What a run is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// A sealed archive: everything, to be checked and imported again.
+    Archive,
+    /// The decisions as a script of plain mode and as a Python program over the client: play.txt and play.py in a folder.
+    Script,
+    /// The Agent Trajectory Interchange Format, version 1.8.
+    Atif,
+    /// An evaluation log that Inspect reads.
+    Inspect,
+}
+
+/// Writes the run of a folder in a format. A file that is there stays.
+pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context) -> Result<(), Failure> {
+    let files = match format {
+        ExportFormat::Script => vec![out.join("play.txt"), out.join("play.py")],
+        _ => vec![out.to_owned()],
+    };
+    if let Some(there) = files.iter().find(|file| file.exists()) {
+        let message = format!("{} already exists: choose another name, or remove it", there.display());
+        return Err(Failure::failed(message));
+    }
+    let manifest = manifest_of(folder)?;
+    if let (Some(lesson), ExportFormat::Script) = (&manifest.lesson, format) {
+        return Err(Failure::usage(format!(
+            "run {} belongs to lesson {}, whose start no script makes; atif and inspect tell it",
+            manifest.id, lesson.name
+        )));
+    }
+    context.look(folder, "runs export", &format!("{format:?}").to_lowercase())?;
+    let progress = progress_bar(u64::from(manifest.days), "days");
+    let run = Transcript::of(folder, &mut |day| progress.set_position(day.into()));
+    progress.finish_and_clear();
+    let run = run?;
+    let json = |value: Value| serde_json::to_string_pretty(&value).unwrap_or_default() + "\n";
+    let texts = match format {
+        ExportFormat::Archive => return Ok(()),
+        ExportFormat::Script => {
+            std::fs::create_dir_all(out)
+                .map_err(|error| Failure::failed(format!("{}: {error}", out.display())))?;
+            vec![plain_script(&run), python_script(&run).unwrap_or_default()]
+        }
+        ExportFormat::Atif => vec![json(atif(&run, &surroundings(&run)))],
+        ExportFormat::Inspect => vec![json(inspect(&run, &surroundings(&run)))],
+    };
+    let mut written: Vec<&PathBuf> = Vec::new();
+    for (file, text) in files.iter().zip(&texts).filter(|(_, text)| !text.is_empty()) {
+        write_whole(file, text.as_bytes())?;
+        written.push(file);
+    }
+    let names: Vec<String> = written.iter().map(|file| file.display().to_string()).collect();
+    print(&format!("run {} to day {}: {}\n", run.manifest.id, run.last.0, names.join(", ")))?;
+    match (format, python_script(&run)) {
+        (ExportFormat::Script, Err(error)) => Err(Failure::failed(format!("{error}; play.txt is written"))),
+        _ => Ok(()),
+    }
+}
+
+/// What whoever plays is told.
+#[cfg(feature = "server")]
+fn surroundings(run: &Transcript) -> Surroundings {
+    let of =
+        crate::server::PageOf { days: run.manifest.days, cash: run.manifest.cash, numbers: &run.numbers };
+    Surroundings { page: crate::server::page(&of), tools: crate::server::functions(&run.numbers) }
+}
+
+/// Without the server's page, the list of tools.
+#[cfg(not(feature = "server"))]
+fn surroundings(_: &Transcript) -> Surroundings {
+    Surroundings { page: crate::tools::describe::overview(), tools: Vec::new() }
+}

@@ -1,0 +1,106 @@
+//! The Agent Trajectory Interchange Format, version 1.8: one step for each action.
+
+use serde_json::{Map, Value, json};
+
+use super::{Deed, PassedWeek, Surroundings, Transcript, TranscriptAct, predictions};
+
+const VERSION: &str = "ATIF-v1.8";
+
+/// The run in this format.
+pub fn atif(run: &Transcript, told: &Surroundings) -> Value {
+    let mut steps = vec![
+        json!({ "source": "system", "message": told.page }),
+        json!({ "source": "user", "message": run.opening }),
+    ];
+    steps.extend(run.acts.iter().filter_map(step));
+    for (at, step) in steps.iter_mut().enumerate() {
+        step["step_id"] = json!(at + 1);
+    }
+    let total = steps.len();
+    let version = run.manifest.version.clone();
+    let mut agent = json!({ "name": run.player(), "version": version });
+    if !told.tools.is_empty() {
+        agent["tool_definitions"] = json!(told.tools);
+    }
+    json!({
+        "schema_version": VERSION,
+        "session_id": run.manifest.id,
+        "agent": agent,
+        "steps": steps,
+        "final_metrics": { "total_steps": total, "extra": run.facts() },
+        "extra": { "asides": run.asides },
+    })
+}
+
+/// The step of an action; none of what no door has.
+fn step(act: &TranscriptAct) -> Option<Value> {
+    let id = format!("line-{}", act.seq);
+    let called = |name: &str, args: &Value, content: String, extra: &Map<String, Value>| {
+        json!({
+            "source": "agent",
+            "message": "",
+            "tool_calls": [{ "tool_call_id": id, "function_name": name, "arguments": object(args), "extra": extra }],
+            "observation": { "results": [{ "source_call_id": id, "content": content }] },
+        })
+    };
+    let mut step = match &act.deed {
+        Deed::Call { tool, args, answer, extra } => {
+            let said = match answer {
+                Ok(data) => json!({ "success": true, "data": data }),
+                Err(refusal) => json!({
+                    "success": false,
+                    "error": refusal.message,
+                    "code": refusal.code,
+                    "field": refusal.field,
+                }),
+            };
+            called(tool.name(), args, said.to_string(), extra)
+        }
+        Deed::Query { sql, answer, extra } => {
+            let said = match answer {
+                Ok(rows) => rows.clone(),
+                Err((code, message)) => json!({ "success": false, "error": message, "code": code }),
+            };
+            called("query", &json!({ "sql": sql }), said.to_string(), extra)
+        }
+        Deed::Note(text) => json!({
+            "source": "agent",
+            "message": text.clone().unwrap_or_default(),
+            "extra": { "kind": "note", "text_is_recorded": text.is_some() },
+        }),
+        Deed::Week { rationale, forecasts, passed } => {
+            let args = json!({ "rationale": rationale, "predictions": predictions(forecasts) });
+            let filled: Vec<u32> =
+                forecasts.iter().filter(|own| own.filled_naively).map(|own| own.horizon_days).collect();
+            let extra = Map::from_iter([("naive_horizons_days".to_owned(), json!(filled))]);
+            let mut step = called("next_week", &args, week(passed.as_ref()), &extra);
+            step["message"] = rationale.clone().into();
+            step
+        }
+        Deed::Debugging(_) => return None,
+    };
+    step["timestamp"] = act.at.clone().into();
+    let day = json!(act.day);
+    match step.get_mut("extra").and_then(Value::as_object_mut) {
+        Some(extra) => {
+            extra.insert("day".to_owned(), day);
+        }
+        None => step["extra"] = json!({ "day": day }),
+    }
+    Some(step)
+}
+
+fn week(passed: Option<&PassedWeek>) -> String {
+    match passed {
+        Some(week) => json!({ "day": week.day, "cash": week.cash, "dashboard": week.dashboard }).to_string(),
+        None => "the week did not end".to_owned(),
+    }
+}
+
+/// Arguments are an object in this format, also where something else was sent and refused.
+fn object(args: &Value) -> Value {
+    match args {
+        Value::Object(_) => args.clone(),
+        other => json!({ "sent": other }),
+    }
+}

@@ -1,0 +1,79 @@
+//! A run as a Python program over the client: the same decisions, played on a run that is served.
+
+use serde_json::{Value, json};
+
+use super::plain_script::new_run;
+use super::{Deed, Transcript, predictions};
+use crate::session::RunError;
+
+/// The program.
+///
+/// # Errors
+/// Single days and parameters that were set, which no server offers.
+pub fn python_script(run: &Transcript) -> Result<String, RunError> {
+    let own = &run.manifest;
+    let mut text = format!(
+        "\"\"\"Run {} of NovaMind console {}: {} days of which {} passed; last state {}.\n\n    \
+         novamind serve --client client\n    \
+         novamind serve --new {} --port 8001\n    \
+         NOVAMIND_API_PORT=8001 PYTHONPATH=client python3 THIS_FILE\n\"\"\"\n\
+         from novamind import call, next_week\n\n",
+        own.id,
+        own.version,
+        own.days,
+        run.last.0,
+        run.state_hash,
+        new_run(run),
+    );
+    for act in &run.acts {
+        match &act.deed {
+            Deed::Call { tool, args, answer: Ok(_), .. } => {
+                text += &format!("call({}, {})\n", python(&json!(tool.name())), python(args));
+            }
+            Deed::Week { rationale, forecasts, .. } => {
+                let (why, filed) = (python(&json!(rationale)), python(&predictions(forecasts)));
+                text += &format!("next_week({why}, {filed})\n");
+            }
+            Deed::Debugging(command) => {
+                return Err(RunError::NotPossible(format!(
+                    "day {}: `{command}` is no tool, so no program over the client repeats this run; its plain script \
+                     does",
+                    act.day
+                )));
+            }
+            Deed::Call { answer: Err(_), .. } | Deed::Query { .. } | Deed::Note(_) => {}
+        }
+    }
+    Ok(text)
+}
+
+/// A value as Python writes it.
+fn python(value: &Value) -> String {
+    let in_order = |parts: Vec<String>| parts.join(", ");
+    match value {
+        Value::Null => "None".to_owned(),
+        Value::Bool(true) => "True".to_owned(),
+        Value::Bool(false) => "False".to_owned(),
+        // JSON's escapes are Python's, but for halves of surrogates: text is escaped as it is, and `/` is not.
+        Value::String(_) | Value::Number(_) => value.to_string(),
+        Value::Array(all) => format!("[{}]", in_order(all.iter().map(python).collect())),
+        Value::Object(all) => {
+            let fields = all.iter().map(|(key, value)| format!("{}: {}", json!(key), python(value)));
+            format!("{{{}}}", in_order(fields.collect()))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_written_as_python_reads_them() {
+        let value = json!({ "a": [1, 2.5, null, true], "b\"": "two\nlines \\ and “quotes”" });
+        assert_eq!(
+            python(&value),
+            "{\"a\": [1, 2.5, None, True], \"b\\\"\": \"two\\nlines \\\\ and “quotes”\"}"
+        );
+    }
+}

@@ -1,0 +1,45 @@
+//! What stands beside an action: through which door it came, how long it took, what it took back.
+
+use serde_json::{Map, Value, json};
+
+use crate::session::{Line, QuerySource, Reversal, Via};
+
+/// What whoever plays is told before the first action.
+#[derive(Debug, Clone, Default)]
+pub struct Surroundings {
+    /// Goal, rules and calls, as text.
+    pub page: String,
+    /// The tools as functions with the schema of their arguments.
+    pub tools: Vec<Value>,
+}
+
+pub(super) fn door(via: Via, took_ms: f64) -> Map<String, Value> {
+    Map::from_iter([("via".to_owned(), json!(via)), ("took_ms".to_owned(), json!(took_ms))])
+}
+
+pub(super) fn source(via: Option<QuerySource>, took_ms: f64, stopped: bool) -> Map<String, Value> {
+    let mut extra = Map::from_iter([("via".to_owned(), json!(via)), ("took_ms".to_owned(), json!(took_ms))]);
+    if stopped {
+        extra.insert("stopped".to_owned(), true.into());
+    }
+    extra
+}
+
+pub(super) fn reversal(reversal: Option<Reversal>) -> Option<(String, Value)> {
+    reversal.map(|own| match own {
+        Reversal::Undoes(seq) => ("undoes".to_owned(), seq.into()),
+        Reversal::Redoes(seq) => ("redoes".to_owned(), seq.into()),
+    })
+}
+
+/// A line that changed nothing.
+pub(super) fn aside(line: &Line) -> Value {
+    let mut fields = Map::from_iter([
+        ("seq".to_owned(), line.seq.into()),
+        ("kind".to_owned(), line.record.kind().into()),
+        ("day".to_owned(), line.day.into()),
+        ("at".to_owned(), line.at.clone().into()),
+    ]);
+    fields.extend(line.own_fields());
+    fields.into()
+}

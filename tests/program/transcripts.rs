@@ -1,0 +1,110 @@
+//! Runs in the formats of programs that study or train agents.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::support::home::{Home, id};
+
+const PLAY: &str = r#"set_prices A=12 B=25 C=55
+set_prices A=-1
+set_usage_quotas {"A": 60000, "B": 250000, "C": 1200000}
+set_targeted_ad_spend {"content_marketing": {"S1": 750}}
+query SELECT SUM(amount) AS cash FROM ledger
+memo Rivals come later. If prices fall, wait.
+next "a first price; “quotes” and \\ too" naive
+register_script name=cash code="SELECT cash FROM ledger"
+post_social_media content="We doubled every quota!"
+query SELECT nothing FROM ledger
+next "as planned" naive
+undo
+set_daily_spend operations=120
+next "help" naive
+"#;
+
+/// A run that was played in plain mode, with its last hash.
+fn played(home: &Home) -> (String, String) {
+    let said = home.play(&["--seed", "11", "--days", "28", "--participant", "P01"], PLAY);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let folder = home.only_run();
+    (id(&folder), last_hash(&folder))
+}
+
+fn last_hash(folder: &Path) -> String {
+    let text = fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
+    let mut lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let last = lines.rfind(|line| line["kind"] == "week").expect("a week");
+    last["state_hash"].as_str().expect("a hash").to_owned()
+}
+
+fn export(home: &Home, run: &str, format: &str) -> Value {
+    let out = home.0.path().join(format);
+    let said = home.run(&["runs", "export", run, "--format", format, "--out", &out.to_string_lossy()]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    serde_json::from_str(&fs::read_to_string(out).expect("a file")).expect("JSON")
+}
+
+#[test]
+fn a_script_of_a_run_leads_to_its_state() {
+    let home = Home::new();
+    let (run, hash) = played(&home);
+    let out = home.0.path().join("script");
+    let said = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let script = fs::read_to_string(out.join("play.txt")).expect("a script");
+    let command = script.lines().nth(1).expect("a command");
+    let options = command.strip_prefix("# novamind play --plain --strict ").expect(command);
+    let options: Vec<&str> = options.trim_end_matches(" < THIS FILE").split(' ').collect();
+    let other = Home::new();
+    let said = other.play(&[&["--strict"], &*options].concat(), &script);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert_eq!(last_hash(&other.only_run()), hash);
+    let again = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
+    again.fails(1, &["play.txt already exists"]);
+}
+
+#[test]
+fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told() {
+    let home = Home::new();
+    let (run, hash) = played(&home);
+    let told = export(&home, &run, "atif");
+    assert_eq!(told["schema_version"], "ATIF-v1.8");
+    assert_eq!((&told["agent"]["name"], &told["final_metrics"]["extra"]["state_hash"]), (&json!("P01"), &json!(hash)));
+    let steps = told["steps"].as_array().expect("steps");
+    assert!((1..).zip(steps).all(|(number, step)| step["step_id"] == number), "{steps:?}");
+    let calls: Vec<(&str, Value)> = steps
+        .iter()
+        .filter_map(|step| {
+            let call = &step["tool_calls"][0];
+            let answer = step["observation"]["results"][0]["content"].as_str()?;
+            Some((call["function_name"].as_str()?, serde_json::from_str(answer).ok()?))
+        })
+        .collect();
+    let named = |name: &str| calls.iter().filter(|(own, _)| *own == name).map(|(_, answer)| answer).collect::<Vec<_>>();
+    let prices: Vec<bool> = named("set_prices").iter().map(|answer| answer["success"] == true).collect();
+    assert_eq!(prices, [true, false]);
+    // Rows are not in the record: they are those of the moment at which they were asked for.
+    assert_eq!(named("query")[0]["rows"][0]["cash"], 1_000_000);
+    assert_eq!(named("query")[1]["code"], "sql_error");
+    let weeks = named("next_week");
+    assert_eq!(weeks.iter().map(|week| week["day"].as_u64()).collect::<Vec<_>>(), [Some(7), Some(14), Some(21)]);
+    assert!(weeks.iter().all(|week| week["dashboard"].as_str().is_some_and(|text| text.contains("Cash"))));
+    let text = told.to_string();
+    assert!(text.contains("If prices fall, wait.") && !text.contains("hidden."), "{text}");
+}
+
+#[test]
+fn an_evaluation_log_has_a_sample_with_every_message_and_the_cash_as_its_score() {
+    let home = Home::new();
+    let (run, _) = played(&home);
+    let log = export(&home, &run, "inspect");
+    let sample = &log["samples"][0];
+    assert_eq!((&log["version"], &sample["id"]), (&json!(2), &json!(run)));
+    assert_eq!(sample["scores"]["cash"]["value"], log["results"]["scores"][0]["metrics"]["value"]["value"]);
+    let messages = sample["messages"].as_array().expect("messages");
+    let roles = |role: &str| messages.iter().filter(|message| message["role"] == role).count();
+    assert_eq!((roles("system"), roles("user")), (1, 1));
+    let called = messages.iter().filter(|message| message["tool_calls"].is_array()).count();
+    assert!(called > 8 && roles("tool") == called, "{called}");
+}

@@ -182,7 +182,7 @@ pub use xray::writes::target::WriteTarget;
 pub use xray::writes::{WhoWrites, Write, WrittenBy};
 
 pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
-pub use crate::tools::{Numbers, PublicPost, Refusal, ToolId};
+pub use crate::tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
 pub use crate::world::enterprise::Answer as CompanyAnswer;

@@ -70,7 +70,10 @@ fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told
     let (run, hash) = played(&home);
     let told = export(&home, &run, "atif");
     assert_eq!(told["schema_version"], "ATIF-v1.8");
-    assert_eq!((&told["agent"]["name"], &told["final_metrics"]["extra"]["state_hash"]), (&json!("P01"), &json!(hash)));
+    assert_eq!(
+        (&told["agent"]["name"], &told["final_metrics"]["extra"]["state_hash"]),
+        (&json!("P01"), &json!(hash))
+    );
     let steps = told["steps"].as_array().expect("steps");
     assert!((1..).zip(steps).all(|(number, step)| step["step_id"] == number), "{steps:?}");
     let calls: Vec<(&str, Value)> = steps
@@ -81,14 +84,19 @@ fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told
             Some((call["function_name"].as_str()?, serde_json::from_str(answer).ok()?))
         })
         .collect();
-    let named = |name: &str| calls.iter().filter(|(own, _)| *own == name).map(|(_, answer)| answer).collect::<Vec<_>>();
+    let named = |name: &str| {
+        calls.iter().filter(|(own, _)| *own == name).map(|(_, answer)| answer).collect::<Vec<_>>()
+    };
     let prices: Vec<bool> = named("set_prices").iter().map(|answer| answer["success"] == true).collect();
     assert_eq!(prices, [true, false]);
     // Rows are not in the record: they are those of the moment at which they were asked for.
-    assert_eq!(named("query")[0]["rows"][0]["cash"], 1_000_000);
+    assert_eq!(named("query")[0]["rows"][0]["cash"].as_f64(), Some(1e6));
     assert_eq!(named("query")[1]["code"], "sql_error");
     let weeks = named("next_week");
-    assert_eq!(weeks.iter().map(|week| week["day"].as_u64()).collect::<Vec<_>>(), [Some(7), Some(14), Some(21)]);
+    assert_eq!(
+        weeks.iter().map(|week| week["day"].as_u64()).collect::<Vec<_>>(),
+        [Some(7), Some(14), Some(21)]
+    );
     assert!(weeks.iter().all(|week| week["dashboard"].as_str().is_some_and(|text| text.contains("Cash"))));
     let text = told.to_string();
     assert!(text.contains("If prices fall, wait.") && !text.contains("hidden."), "{text}");

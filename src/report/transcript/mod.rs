@@ -21,8 +21,9 @@ pub use python_script::python_script;
 pub use told::Surroundings;
 
 use crate::session::record::{End, FiledForecast, Outcome, RefusalRecord};
-use crate::session::{Goal, Line, Manifest, Playback, Record, RunError, Session, rows_as_json};
-use crate::tools::{FORECAST_KEYS, Numbers, ToolId};
+use crate::session::{
+    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, Record, RunError, Session, ToolId, rows_as_json,
+};
 
 /// A run, action by action.
 #[derive(Debug)]

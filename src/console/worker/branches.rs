@@ -17,11 +17,20 @@ impl SessionThread {
     pub(super) fn find_branches(&mut self, asked: BranchesAsked) {
         let Some(open) = &mut self.open else { return };
         let folder = folder_of(open);
+        let is_recorded = match &asked.question {
+            BranchesQuestion::Compare { week, .. } => {
+                let week = *week;
+                self.session_to_look_into(false).is_ok_and(|session| session.look_at_what_if(week))
+            }
+            BranchesQuestion::Decisions => false,
+        };
         let (news, kept) = (self.news.clone(), self.branches.clone());
         std::thread::spawn(move || {
             let found = folder.and_then(|folder| {
                 let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-                answer(&asked, kept.of(folder)?, &news)
+                let own = kept.of(folder)?;
+                own.tell_hidden(is_recorded);
+                answer(&asked, own, &news)
             });
             // Nobody waits for what was stopped.
             if let Some(found) = found.transpose() {

@@ -116,7 +116,9 @@ impl Interpreter {
         let stop = self.watch.enter_stoppable();
         let go_on = |_, _| unless_stopped(&stop);
         let Question { from, until, futures, alternatives } = question;
+        let is_recorded = self.session.look_at_what_if(*from);
         let answer = self.what_if_of_run().and_then(|own| {
+            own.tell_hidden(is_recorded);
             let found = own.answer((*from, *until), alternatives, *futures, &go_on)?;
             Ok(found.map(|(comparison, drawn)| (comparison, drawn, own.days_per_week())))
         });

@@ -36,6 +36,7 @@ use super::counterfactual::script::{Move, PastCall};
 use super::why::{Sight, not_readable, sight};
 use crate::session::folder::mode::Mode;
 use crate::session::lesson::standing::LessonStanding;
+use crate::session::state::Session;
 use crate::tools::Refusal;
 use crate::world::events::DayFigures;
 
@@ -54,6 +55,8 @@ pub struct WhatIf {
     folder: PathBuf,
     past: Past,
     sight: Sight,
+    /// The look is recorded: what is hidden from a player of an unfinished run is told.
+    tells_hidden: bool,
     /// The unfinished lesson that the run belongs to.
     lesson: Option<LessonStanding>,
 }
@@ -74,7 +77,7 @@ impl OfRecord for WhatIf {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
         let lesson = lesson_of(folder, &past)?;
-        Ok(WhatIf { folder: folder.to_owned(), past, sight, lesson })
+        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson })
     }
 
     fn renew(&mut self) -> Result<(), Refusal> {
@@ -85,7 +88,21 @@ impl OfRecord for WhatIf {
     }
 }
 
+impl Session {
+    /// Records that a what-if from a week shows true satisfaction, where the run may be looked into. False where it may not, or
+    /// where nothing writes the line: then the what-if is told without.
+    pub fn look_at_what_if(&mut self, week: u32) -> bool {
+        let day = self.day();
+        self.may_look_inside() && self.record_look_inside("whatif", &format!("from {week}"), day).is_ok()
+    }
+}
+
 impl WhatIf {
+    /// Tells from now on what is hidden from a player of an unfinished run, or leaves it out: whether the look is a line.
+    pub fn tell_hidden(&mut self, is_recorded: bool) {
+        self.tells_hidden = is_recorded;
+    }
+
     /// Waits for the question of a lesson, as weeks do.
     fn refuse_before_guess(&self) -> Result<(), Refusal> {
         let weeks = self.past.last_day() / self.past.days_per_week();
@@ -175,7 +192,8 @@ impl WhatIf {
             };
             branches.push(BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on));
         }
-        let shown = |figure: &BranchFigure| self.sight == Sight::All || !figure.is_hidden();
+        let tells_all = self.sight == Sight::All && self.tells_hidden;
+        let shown = |figure: &BranchFigure| tells_all || !figure.is_hidden();
         Ok(Some(BranchComparison {
             from,
             until: *until,

@@ -9,6 +9,7 @@ use super::*;
 use crate::session::counterfactual::last_read::LastRead;
 use crate::session::counterfactual::test_kit::played;
 use crate::session::folder::mode::Mode;
+use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
 use crate::session::trajectory::{Record, Trajectory};
@@ -195,9 +196,25 @@ fn an_unfinished_baseline_has_no_what_if_and_a_sandbox_shows_no_satisfaction() {
     let kept = baseline.branch_with_decisions(2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     assert_eq!(kept.err().map(|refusal| refusal.code), Some("not_in_this_mode"));
     for (mode, shown) in [(Mode::Sandbox, false), (Mode::Debug, true)] {
-        let session = played(runs.path(), mode, 3, None);
-        let figures = compared(&session, 4, &[]).figures;
-        assert_eq!(figures.contains(&BranchFigure::Satisfaction), shown, "{mode}");
+        let mut session = played(runs.path(), mode, 3, None);
+        let folder = session.folder().expect("a folder").to_owned();
+        let mut own = WhatIf::read(&folder).expect("it is read");
+        let mut tells = |is_recorded| {
+            own.tell_hidden(is_recorded);
+            let all = own.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no refusal");
+            all.expect("it was not stopped").figures.contains(&BranchFigure::Satisfaction)
+        };
+        assert!(!tells(false), "{mode}: not without a line");
+        let is_recorded = session.look_at_what_if(4);
+        assert_eq!((is_recorded, tells(is_recorded)), (shown, shown), "{mode}");
+        drop(session);
+        let text = std::fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
+        assert_eq!(
+            text.lines().filter(|line| line.contains(r#""what":"whatif""#)).count(),
+            usize::from(shown)
+        );
+        let mut read = Session::open(&folder, Access::Read, false).expect("it opens");
+        assert!(!read.look_at_what_if(4), "{mode}: nothing writes a line");
     }
 }
 

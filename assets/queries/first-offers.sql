@@ -1,7 +1,9 @@
 -- title: Outcome by first offer and week
--- what: What became of new companies by their first offer: the plan it names first, the price a seat, the week after it.
+-- what: What became of new companies by their first offer: the plans it names, the price a seat of the first one, the week after it.
 WITH offers AS MATERIALIZED (
-    SELECT thread_id, customer_id, day / 7 + 1 AS week, json_extract(offer_json, '$[0].plan') AS plan,
+    SELECT thread_id, customer_id, day / 7 + 1 AS week, json_extract(offer_json, '$[0].plan')
+        || coalesce('+' || json_extract(offer_json, '$[1].plan'), '')
+        || coalesce('+' || json_extract(offer_json, '$[2].plan'), '') AS plan,
         CAST(json_extract(offer_json, '$[0].price_per_seat') AS INTEGER) AS dollars
     FROM enterprise_turns
     WHERE thread_type = 'new_lead' AND turn_number = 1 AND sender = 'agent' AND offer_json <> '{}'

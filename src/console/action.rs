@@ -259,8 +259,8 @@ actions! {
     }
     Form {
         Apply "apply" "apply" "Send the call."
-        EditCell "edit" "edit" "Type a value."
-        SameDown "same-down" "same down" "Copy the value to the cells below."
+        EditCell "edit" "edit" "Type a value; in a cell for a number, a digit begins it."
+        SameDown "same-down" "same down" "Copy the value to the cells below; right after a value was accepted, that one."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; again to bring the draft back."
         CopyCall "copy-call" "copy call" "Copy the equivalent call."
@@ -414,6 +414,7 @@ actions! {
         NextPart "next-part" "next part" "Begin the next part of the lesson, once this one is over."
         Debrief "debrief" "debrief" "Show what came of a part that is over, beside the good and the bad play."
         LessonWeek "lesson-week" "next week" "Close the page and let the next week come."
+        WeekUnanswered "week-unanswered" "week only" "Where the next week asks whether to answer first: leave waiting letters without an answer."
     }
     Viewer {
         WeekBack "week-back" "week back" "Go to the end of the week before."

@@ -390,6 +390,9 @@ impl App {
     /// Actions worth showing in the last line.
     pub fn hints(&self) -> Vec<Action> {
         match (self.layers.last(), &self.stage) {
+            (Some(Layer::Dialog(dialog)), Stage::Run(run)) => {
+                dialog.hints_here(&Look { company: &run.company, keys: &self.keys, page: self.page })
+            }
             (Some(Layer::Dialog(dialog)), _) => dialog.hints(),
             (Some(Layer::Filing), Stage::Run(run)) => run.filing.hints(),
             (_, Stage::Menu(menu)) => menu.hints(),

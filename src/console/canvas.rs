@@ -166,7 +166,7 @@ impl<'a> Canvas<'a> {
             return;
         }
         let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
-        let shown = format!(" {} ", fit(text, row.width.saturating_sub(2) as usize));
+        let shown = format!(" {} ", whole_keys(text, row.width.saturating_sub(2) as usize));
         let width = shown.width() as u16;
         self.text(Rect { width: width.min(row.width), ..row }, &shown, Role::Dim);
     }
@@ -188,6 +188,19 @@ fn path_before(path: &[String], title: &str, room: usize) -> String {
     };
     let fits = |text: &String| text.width() + title.width() <= room;
     (0..path.len()).map(words).find(fits).unwrap_or_default()
+}
+
+/// As many keys of a list as fit, each with all of its words; the first one in any case.
+fn whole_keys(text: &str, width: usize) -> String {
+    let mut shown = String::new();
+    for key in text.split(" · ") {
+        let longer = if shown.is_empty() { key.to_owned() } else { format!("{shown} · {key}") };
+        if !shown.is_empty() && longer.width() > width {
+            break;
+        }
+        shown = longer;
+    }
+    fit(&shown, width)
 }
 
 /// The rows of an area, each one cell high.
@@ -238,6 +251,13 @@ mod tests {
         assert_eq!(path_before(&path, "Fit of S2", 60), "Overview › Customers › ");
         assert_eq!(path_before(&path, "Fit of S2", 12), "");
         assert_eq!(path_before(&[], "Fit of S2", 60), "");
+    }
+
+    #[test]
+    fn keys_are_shown_whole_or_not_at_all() {
+        assert_eq!(whole_keys("y yes · esc close · ? help", 17), "y yes · esc close");
+        assert_eq!(whole_keys("y yes · esc close · ? help", 16), "y yes");
+        assert_eq!(whole_keys("enter begins it", 8), "enter b…");
     }
 
     #[test]

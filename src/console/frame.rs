@@ -359,10 +359,15 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// What an action is called where it can be done: at the end of a run the key of the next week shows the final page.
+/// What an action is called where it can be done: at the end of a run the key of the next week shows the final page,
+/// at that of a lesson the page that leads on, or the debrief.
 fn title_of(app: &App, action: Action) -> &'static str {
     match app.run() {
-        Some(run) if action == Action::NextWeek && !run.company.is_running() => "final page",
+        Some(run) if action == Action::NextWeek && !run.company.is_running() => match &run.company.lesson {
+            Some(page) if page.next_part.is_some() => "lead on",
+            Some(_) => "debrief",
+            None => "final page",
+        },
         _ => action.entry().title,
     }
 }

@@ -45,7 +45,7 @@ pub fn draw_beside(canvas: &mut Canvas<'_>, area: Rect, page: &LessonPage, look:
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
     let inside = canvas.pane(area, "Lesson", &note, false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let lines = lines_of(page, look, inside.width as usize);
+    let lines = lines_of(page, look, (inside.width as usize, Where::Beside));
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
@@ -81,8 +81,17 @@ impl Lines {
     }
 }
 
+/// Where the task stands: keys of its page do other things beside a screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Where {
+    /// Beside the screen.
+    Beside,
+    /// On a page of its own.
+    OnPage,
+}
+
 /// The task in lines of a width.
-pub fn lines_of(page: &LessonPage, look: &Look<'_>, width: usize) -> Vec<(String, Role)> {
+pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Where)) -> Vec<(String, Role)> {
     let mut lines = Lines { width, all: Vec::new() };
     lines.say(&page.title, Role::Title);
     if let Some(part) = &page.part {
@@ -102,17 +111,20 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, width: usize) -> Vec<(String
         say_outcome(&mut lines, page.question.as_ref(), &page.goals);
         say_pitfalls(&mut lines, page);
         lines.gap();
-        lines.say(&what_follows(page, look), Role::Key);
+        lines.say(&what_follows(page, look, place), Role::Key);
         return lines.all;
+    }
+    // What is to be reached stands above what a small window cuts off.
+    for goal in &page.goals {
+        say_goal(&mut lines, goal);
+    }
+    if !page.goals.is_empty() {
+        lines.gap();
     }
     lines.say(&unwrapped(&page.text), Role::Text);
     if let Some(question) = &page.question {
         lines.gap();
         say_question(&mut lines, question, look);
-    }
-    for goal in &page.goals {
-        lines.gap();
-        say_goal(&mut lines, goal);
     }
     say_pitfalls(&mut lines, page);
     say_hints(&mut lines, page, look);
@@ -121,7 +133,14 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, width: usize) -> Vec<(String
 }
 
 /// What can be done once a part is over.
-pub fn what_follows(page: &LessonPage, look: &Look<'_>) -> String {
+fn what_follows(page: &LessonPage, look: &Look<'_>, place: Where) -> String {
+    if place == Where::Beside {
+        let key = look.keys.label(Action::NextWeek).unwrap_or_default();
+        return match page.next_part {
+            Some(_) => format!("This part is over: {key} opens the page that leads on."),
+            None => format!("The lesson is over: {key} opens the debrief."),
+        };
+    }
     let again = look.hint(Action::TryAgain);
     let debrief = look.hint(Action::Debrief);
     match page.next_part {

@@ -6,10 +6,10 @@ use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_word
 use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
 use super::words::{count, money};
 use crate::glossary::{Term, terms};
-use crate::notation::{grouped, signed_dollars};
+use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FirstDifference, MEASURED_SEEDS,
-    PartedDecision, ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FigureUnit, FirstDifference,
+    JudgedFigure, MEASURED_SEEDS, PartedDecision, ReferenceCurve, WeekFigure,
 };
 
 /// Most settings of a tool that are named one by one.
@@ -28,10 +28,40 @@ pub fn headline(own: &Debrief) -> String {
     };
     let others: Vec<String> =
         [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect();
-    match others.is_empty() {
+    let cash = match others.is_empty() {
         true => format!("{end}."),
         false => format!("{end}; {}.", others.join(", ")),
+    };
+    own.judged_by.as_ref().and_then(judged_in_words).map_or(cash.clone(), |judged| format!("{judged} {cash}"))
+}
+
+/// What the figure came to that the part is judged by.
+fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
+    let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| of_figure(judged.figure, *value));
+    let (day, _) = judged.own.last()?;
+    let mut said =
+        format!("{} on day {day}: yours {}", capitalised(judged.figure.name()), last(&judged.own)?);
+    for (name, curve) in [("good", &judged.good), ("bad", &judged.bad)] {
+        if let Some(value) = curve.as_deref().and_then(last) {
+            said += &format!(", the {name} play's {value}");
+        }
     }
+    Some(said + ".")
+}
+
+/// A value of a figure of weeks.
+fn of_figure(figure: WeekFigure, value: f64) -> String {
+    match figure.unit() {
+        FigureUnit::Dollars => money(value),
+        FigureUnit::Count => grouped(value, 0),
+        FigureUnit::Share | FigureUnit::FineShare => percent(value, 1),
+        FigureUnit::Level => grouped(value, 3),
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The debrief as paragraphs.
@@ -75,7 +105,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
             lines.extend(
                 parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))),
             );
-            lines.push(effect_in_words(parting));
+            lines.push(effect_in_words(parting, own.judged_by.as_ref().map(|judged| judged.figure)));
             lines
         }
     }
@@ -113,19 +143,25 @@ fn written(value: &Value) -> String {
     }
 }
 
-fn effect_in_words(parting: &FirstDifference) -> String {
+fn effect_in_words(parting: &FirstDifference, judged_by: Option<WeekFigure>) -> String {
     match parting.effect {
         Some(effect) => {
+            let figure = judged_by.zip(effect.judged).map(|(figure, (own, with))| {
+                let (own, with) = (of_figure(figure, own), of_figure(figure, with));
+                format!("{} of {with} instead of {own}, and ", figure.name())
+            });
             let told = format!(
-                "Simulated again with what the good play decided in week {}, and everything else as you decided it: {} \
-                 on day {} instead of {} ({}).",
+                "Simulated again with what the good play decided in week {}, and everything else as you decided it: {}\
+                 cash of {} on day {} instead of {} ({}).",
                 parting.week,
+                figure.unwrap_or_default(),
                 money(effect.with),
                 effect.day,
                 money(effect.own),
                 signed_dollars(effect.with - effect.own)
             );
-            match effect.with < effect.own {
+            let (own, with) = effect.judged.unwrap_or((effect.own, effect.with));
+            match with < own {
                 true => told + " In your company that decision does not pay by itself.",
                 false => told,
             }
@@ -185,6 +221,10 @@ pub fn named_terms(text: &str) -> Vec<&'static Term> {
 /// The page of a debrief.
 pub(super) fn page_of(own: &Debrief) -> Page {
     let mut blocks = vec![Block::Facts(facts(own))];
+    if let Some(judged) = &own.judged_by {
+        blocks.push(Block::Heading("What was to be reached"));
+        blocks.push(Block::Chart(judged_chart(judged, &headline(own))));
+    }
     blocks.push(Block::Heading("Cash"));
     blocks.push(Block::Chart(cash(own)));
     blocks.push(Block::Heading("Beside the good play"));
@@ -253,6 +293,27 @@ fn cash(own: &Debrief) -> Chart {
         within: None,
         plot: Plot::Lines {
             curves: std::iter::once(curve("you", &own.own)).chain(others).collect(),
+            band: None,
+        },
+    }
+}
+
+/// The figure that the part is judged by, week by week.
+fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
+    let curve = |name: &str, values: &[(u32, f64)]| Curve {
+        name: name.to_owned(),
+        points: values.iter().map(|(day, value)| (f64::from(*day), *value)).collect(),
+    };
+    let references = [("good play", &judged.good), ("bad play", &judged.bad)];
+    let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, own.as_ref()?)));
+    Chart {
+        title: format!("{} by week", capitalised(judged.figure.name())),
+        summary: summary.to_owned(),
+        across: "day",
+        dollars: judged.figure.unit() == FigureUnit::Dollars,
+        within: None,
+        plot: Plot::Lines {
+            curves: std::iter::once(curve("you", &judged.own)).chain(others).collect(),
             band: None,
         },
     }

@@ -321,10 +321,10 @@ fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> 
     })
 }
 
-/// A margin; how far below nothing it lies matters no more at ten times the price.
+/// A margin; how far below nothing it lies matters no more once the use of a plan costs ten times its price.
 fn in_words(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
-        true => "<-999%".to_owned(),
+        true => "loss".to_owned(),
         false => percent(margin, 0),
     })
 }

@@ -84,7 +84,8 @@ pub use folder::world_log::{
 };
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, FirstDifference, PartingEffect, PlayedPart, ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, FirstDifference, JudgedFigure, PartingEffect, PlayedPart,
+    ReferenceCurve,
 };
 pub use lesson::decisions::{DecisionContrast, PartedDecision};
 pub use lesson::definition::{

@@ -22,9 +22,30 @@ fn configuration(folder: &Path) -> Configuration {
     Configuration { folder: Some(folder.to_owned()) }
 }
 
+/// A person who has a lesson of that plan.
+fn configuration_with(folder: &Path, plan: &str) -> Configuration {
+    let configuration = configuration(folder);
+    std::fs::write(folder.join("lessons/two-weeks.toml"), plan).expect("a plan");
+    configuration
+}
+
+/// The lesson of two weeks, with something of it replaced.
+fn two_weeks(changes: &[(&str, &str)]) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
+    let plan = std::fs::read_to_string(path).expect("a plan");
+    changes.iter().fold(plan, |plan, (old, new)| {
+        assert!(plan.contains(old), "{old}");
+        plan.replacen(old, new, 1)
+    })
+}
+
 /// A console in the lesson, which the start menu began.
 fn in_lesson(folder: &Path, size: (u16, u16)) -> Console {
-    let mut console = Console::start_with(configuration(&folder.join("own")), &folder.join("runs"), size);
+    in_lesson_of(configuration(&folder.join("own")), folder, size)
+}
+
+fn in_lesson_of(configuration: Configuration, folder: &Path, size: (u16, u16)) -> Console {
+    let mut console = Console::start_with(configuration, &folder.join("runs"), size);
     open_lessons(&mut console);
     console.press("end");
     console.shows("Two weeks");
@@ -202,6 +223,82 @@ fn a_price_that_was_typed_and_not_sent_is_asked_about() {
     assert_eq!(console.app.run().expect("a run").company.seen.day, 0);
     console.press("n y");
     assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
+}
+
+#[test]
+fn a_step_without_a_question_asks_before_its_first_week() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let guess = "[part.step.guess]\nquestion = \"What will there be more of?\"\nchoices = [\"Cash\", \"Subscribers\"]\nanswer = 2\n";
+    let plan =
+        two_weeks(&[(guess, ""), ("weeks = 1\nhints = [\"Wait.\"]", "weeks = 2\nhints = [\"Wait.\"]")]);
+    let own = configuration_with(&folder.path().join("own"), &plan);
+    let mut console = in_lesson_of(own, folder.path(), WIDE);
+    console.press("n '0.4' enter n n");
+    console.shows("Step 2 begins: Go on, 2 weeks. Run its first week?");
+    // The key that was pressed once too often does nothing, and says so.
+    console.press("n");
+    console.shows("Step 2: not done; y would have done it");
+    let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
+    assert_eq!(day(&console), 7);
+    console.press("n y");
+    assert_eq!(day(&console), 14);
+    console.press("n");
+    console.shows("Debrief");
+    assert_eq!(day(&console), 21);
+}
+
+#[test]
+fn rules_that_were_sent_answer_again_with_the_week() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = two_weeks(&[
+        (
+            "tools = [\"set_prices\", \"query\"]",
+            "tools = [\"send_enterprise_deal\", \"reject_enterprise_deal\", \"query\"]",
+        ),
+        ("\"market\"]", "\"inbox\"]"),
+        ("seed = 1\n", "seed = 1\ncash = 20_000_000\nstart_weeks = 4\n"),
+        (
+            "{\"targeted_spend\": {\"content_marketing\": {\"S1\": 2000}}}',",
+            "{\"targeted_spend\": {\"content_marketing\": {\"E1\": 4000}, \"social_media\": {\"E2\": 4000}}}',
+    'set_targeted_dev_spend {\"targeted_spend\": {\"E1\": 5000, \"E2\": 6000}}',",
+        ),
+        ("weeks = 1\nhints = [\"Look", "weeks = 3\nhints = [\"Look"),
+        (
+            "week = 0\ncalls = ['set_prices {\"A\": 12, \"B\": 12, \"C\": 12}']",
+            "week = 4\ncalls = ['rules: offer rest: C 12']",
+        ),
+        (
+            "week = 0\ncalls = ['set_prices {\"A\": 200, \"B\": 200, \"C\": 200}']",
+            "week = 4\ncalls = ['rules: offer rest: C 200']",
+        ),
+    ]);
+    let own = configuration_with(&folder.path().join("own"), &plan);
+    let mut console = in_lesson_of(own, folder.path(), WIDE);
+    let waiting = |console: &Console| console.app.run().expect("a run").company.seen.waiting.len();
+    let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
+    assert!(waiting(&console) > 0, "letters");
+    console.press("n '0.4' enter 6 R ctrl-n 'offer_rest:_C_19'");
+    console.shows("ctrl-n empty the line");
+    console.press("ctrl-s n");
+    console.shows("send by rules: not done");
+    console.press("ctrl-s y");
+    assert_eq!(waiting(&console), 0);
+    console.press("n");
+    assert_eq!(day(&console), 35, "nobody waits: the week runs at once");
+    assert!(waiting(&console) > 0, "more letters");
+    console.press("n");
+    console.shows("The rules that you sent last answer");
+    console.press("y");
+    assert_eq!(day(&console), 42);
+    let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
+    let record = std::fs::read_to_string(run.join("trajectory.jsonl")).expect("a record");
+    let sent = record.lines().filter(|line| line.contains("\"tool\":\"send_enterprise_deal\"")).count();
+    assert_eq!(sent, 2, "once by the person, once with the week");
+    // The week alone is another answer.
+    let before = waiting(&console);
+    assert!(before > 0, "letters");
+    console.press("n w");
+    assert_eq!(day(&console), 49);
 }
 
 #[test]

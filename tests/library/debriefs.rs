@@ -8,7 +8,7 @@ use novamind::report::{debrief_as_html, debrief_as_markdown};
 use novamind::rules::answers_to_companies;
 use novamind::session::{
     Access, Configuration, Debrief, DecisionComparison, Lesson, LessonEntry, Mode, NewRun, PartPlay,
-    ReferencePlay, Session, Storage, play_part,
+    ReferencePlay, Session, Storage, WeekFigure, play_part,
 };
 use serde_json::json;
 
@@ -19,9 +19,24 @@ fn lesson() -> Arc<Lesson> {
     Arc::new(Lesson::of_file(&path).expect("a lesson"))
 }
 
+/// The same lesson, judged by recurring revenue.
+fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons");
+    let plan = std::fs::read_to_string(from.join("two-weeks.toml")).expect("a plan");
+    let (old, new) = ("bank\"\nfigure = \"cash\"", "bank\"\nfigure = \"recurring revenue\"");
+    assert!(plan.contains(old), "{plan}");
+    std::fs::write(folder.join("two-weeks.toml"), plan.replace(old, new)).expect("a plan");
+    std::fs::copy(from.join("two-weeks.md"), folder.join("two-weeks.md")).expect("texts");
+    Arc::new(Lesson::of_file(&folder.join("two-weeks.toml")).expect("a lesson"))
+}
+
 /// A student at the beginning of the lesson, at another seed than its own.
 fn student(folder: &Path) -> Session {
-    let entry = LessonEntry { lesson: lesson(), part: 0, is_judged: true };
+    student_of(lesson(), folder)
+}
+
+fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
+    let entry = LessonEntry { lesson, part: 0, is_judged: true };
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { mode: Mode::Lesson, seed: Some(3), lesson: Some(entry), storage, ..NewRun::default() };
     Session::create(new, &Configuration::shipped()).expect("the lesson begins")
@@ -29,7 +44,10 @@ fn student(folder: &Path) -> Session {
 
 /// Plays the lesson to its end, with a price from some week on.
 fn played(folder: &Path, price: u32, from: u32) -> Session {
-    let mut session = student(folder);
+    finished(student(folder), price, from)
+}
+
+fn finished(mut session: Session, price: u32, from: u32) -> Session {
     for at in 0..2 {
         session.guess_in_lesson(1.0).expect("a guess");
         if at == from {
@@ -100,6 +118,28 @@ fn whoever_plays_the_good_play_is_told_so() {
     let found = debrief(&played(folder.path(), 12, 0));
     assert_eq!(found.comparison, DecisionComparison::Same);
     assert_eq!(Some(&found.own), found.good.as_ref().map(|good| &good.cash_by_day));
+}
+
+#[test]
+fn a_part_that_is_judged_by_another_figure_than_cash_is_told_in_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = finished(student_of(judged_by_revenue(folder.path()), &folder.path().join("runs")), 30, 0);
+    let found = debrief(&session);
+    let judged = found.judged_by.as_ref().expect("a figure");
+    let own: Vec<(u32, f64)> =
+        session.weeks().iter().map(|week| (week.day, week.recurring_revenue)).collect();
+    assert_eq!((judged.figure, &judged.own), (WeekFigure::RecurringRevenue, &own));
+    let good = judged.good.as_ref().expect("the good play");
+    assert!(good.len() == 2 && good != &own, "{good:?}");
+    let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
+    let (before, with) = parting.effect.and_then(|effect| effect.judged).expect("an effect");
+    assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
+    let markdown = debrief_as_markdown(&found);
+    for said in ["Recurring revenue on day 14: yours $", "the good play's $", "Recurring revenue by week"] {
+        assert!(markdown.contains(said), "{said}:\n{markdown}");
+    }
+    let of_cash = debrief(&played(&folder.path().join("other"), 30, 0));
+    assert_eq!(of_cash.judged_by, None);
 }
 
 #[test]

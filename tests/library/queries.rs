@@ -153,7 +153,7 @@ fn first_offers_are_those_of_the_turns() {
     for row in &offers.rows {
         let price = [column(&offers, "price_from"), column(&offers, "price_below")].map(|at| row[at].clone());
         assert!(price == [15, 20].map(Cell::Integer) || price == [100, 150].map(Cell::Integer), "{price:?}");
-        assert_eq!(text_at(row, column(&offers, "plan")), "C", "the plan that is named first");
+        assert_eq!(text_at(row, column(&offers, "plan")), "C+B", "all plans, the first one first");
     }
     let deals = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE thread_type = 'new_lead'
                  AND close_reason = 'accepted'";

@@ -54,6 +54,9 @@ impl App {
         if !self.pending.is_empty() {
             return self.go_on(chord);
         }
+        if chord.begins_number() && self.takes_numbers() {
+            return self.typed(&key);
+        }
         let action = if typing && chord.is_text() {
             // What the text wants comes before what the places around it would do with the key.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
@@ -72,6 +75,12 @@ impl App {
             }
             None => self.typed(&key),
         }
+    }
+
+    /// Whether a digit begins a number where the focus is; a replay has no cells to fill.
+    fn takes_numbers(&self) -> bool {
+        let run = self.run().filter(|run| self.layers.is_empty() && run.viewer.is_none());
+        run.is_some_and(|run| run.screens.get(run.here).takes_numbers())
     }
 
     /// A chord after others that began something.

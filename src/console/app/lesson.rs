@@ -13,6 +13,7 @@ use crate::console::effect::Effect;
 use crate::console::lesson::{WIDE, why_closed};
 use crate::console::request::{LessonRequest, Request};
 use crate::console::screens::ScreenId;
+use crate::report::count;
 use crate::session::{Debrief, LessonPage, Refusal};
 
 /// The rationale of a week for which the lesson asks for none.
@@ -92,7 +93,7 @@ impl App {
         let unsent: Vec<&str> = run.screens.tools.unsent().iter().map(|tool| tool.name()).collect();
         let week = Effect::Request(Request::Advance { rationale: NO_RATIONALE.to_owned(), forecasts });
         if unsent.is_empty() {
-            self.follow(vec![week]);
+            self.ask_or_run(week);
             return true;
         }
         let apply = self.keys.label(Action::Apply).unwrap_or_default();
@@ -102,6 +103,29 @@ impl App {
         );
         self.open(Confirm::new("Next week", text, vec![week]));
         true
+    }
+
+    /// Runs a week of a lesson, after a question where one key too many would do harm: at the beginning of a step that asks
+    /// for no guess, and where the rules that were sent last have letters to answer.
+    fn ask_or_run(&mut self, week: Effect) {
+        let Some(run) = self.run() else { return };
+        let Some(page) = run.company.running_lesson() else { return };
+        if page.step > 0 && page.weeks.0 == 0 && page.question.is_none() {
+            let title = format!("Step {}", page.step + 1);
+            let weeks = count(page.weeks.1, "week");
+            let text = format!("{title} begins: {}, {weeks}. Run its first week?", page.step_title);
+            return self.open(Confirm::new(title, text, vec![week]));
+        }
+        let answers = match run.here {
+            ScreenId::Inbox => run.screens.inbox.answers_of_before(&run.company),
+            _ => None,
+        };
+        let Some((calls, text)) = answers else { return self.follow(vec![week]) };
+        let both = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
+        let both = both.chain([week.clone()]).collect();
+        let text = format!("The rules that you sent last answer, and the week runs:\n{text}");
+        let asked = Confirm::new("Answer and next week", text, both);
+        self.open(asked.or(Action::WeekUnanswered, vec![week]));
     }
 
     /// After a week of a lesson that runs at once: what is new of it. True if that takes the place of the report.

@@ -13,6 +13,17 @@ use crate::console::worker::{Job, Question};
 use crate::session::record::DraftOutcome;
 use crate::session::{Goal, QuerySource};
 
+/// Days of a week, of which starts of lessons are made.
+const DAYS_PER_WEEK: u32 = 7;
+
+/// The days that a lesson plays before it begins.
+fn days_of_start(request: &Request) -> Option<DaysRun> {
+    let Request::Create(new) = request else { return None };
+    let entry = new.lesson.as_ref()?;
+    let weeks = entry.lesson.plan.parts.get(entry.part)?.start_weeks;
+    (weeks > 0).then(|| DaysRun::between(0, weeks * DAYS_PER_WEEK))
+}
+
 /// The last day that a request simulates, unless something stops it before.
 fn last_day_of(request: &Request, company: &Company) -> u32 {
     match request {
@@ -220,7 +231,8 @@ impl App {
             let days = self
                 .run()
                 .filter(|_| is_advance)
-                .map(|run| DaysRun::between(run.company.seen.day, last_day_of(&request, &run.company)));
+                .map(|run| DaysRun::between(run.company.seen.day, last_day_of(&request, &run.company)))
+                .or_else(|| days_of_start(&request));
             self.busy = Some(Busy { what, days, since: Instant::now() });
         }
         self.send_texts(&request);

@@ -16,12 +16,24 @@ pub struct Confirm {
     title: String,
     text: String,
     effects: Vec<Effect>,
+    /// Another answer than yes or no, and what follows from it.
+    other: Option<(Action, Vec<Effect>)>,
 }
 
 impl Confirm {
     /// Asks whether to let effects follow.
     pub fn new(title: impl Into<String>, text: impl Into<String>, effects: Vec<Effect>) -> Confirm {
-        Confirm { title: title.into(), text: text.into(), effects }
+        Confirm { title: title.into(), text: text.into(), effects, other: None }
+    }
+
+    /// With another answer of its own, an action of lessons.
+    pub fn or(self, action: Action, effects: Vec<Effect>) -> Confirm {
+        Confirm { other: Some((action, effects)), ..self }
+    }
+
+    fn answers(&self) -> Vec<Action> {
+        let other = self.other.iter().map(|(action, _)| *action);
+        std::iter::once(Action::Confirm).chain(other).chain([Action::Cancel]).collect()
     }
 }
 
@@ -31,17 +43,28 @@ impl Dialog for Confirm {
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Dialog]
+        match self.other {
+            Some(_) => vec![Scope::Dialog, Scope::Lesson],
+            None => vec![Scope::Dialog],
+        }
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::Confirm, Action::Cancel]
+        self.answers()
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
-        match action {
-            Action::Confirm => Outcome::close_with(std::mem::take(&mut self.effects)),
-            Action::Cancel => Outcome::close(),
+    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+        match (action, &mut self.other) {
+            (Action::Confirm, _) => Outcome::close_with(std::mem::take(&mut self.effects)),
+            // Whoever takes the key for another one learns that nothing has happened.
+            (Action::Cancel, _) => {
+                let yes = look.keys.label(Action::Confirm).unwrap_or_default();
+                let said = format!("{}: not done; {yes} would have done it", self.title);
+                Outcome::leave_with(vec![Effect::Say(said)])
+            }
+            (action, Some((other, effects))) if action == *other => {
+                Outcome::close_with(std::mem::take(effects))
+            }
             _ => Outcome::stay(),
         }
     }
@@ -60,7 +83,7 @@ impl Dialog for Confirm {
             x: inside.x + 1,
             width: inside.width.saturating_sub(2),
         };
-        for (at, action) in [Action::Confirm, Action::Cancel].into_iter().enumerate() {
+        for (at, action) in self.answers().into_iter().enumerate() {
             let place = Rect { x: row.x + at as u16 * 14, width: 12.min(row.width), ..row };
             canvas.text(place.intersection(row), &look.hint(action), Role::Key);
             canvas.click(place, Click::Do(action));

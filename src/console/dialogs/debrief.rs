@@ -7,16 +7,17 @@ use ratatui::layout::Rect;
 use super::lesson::begin_part;
 use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
+use crate::console::canvas::{Align, Canvas, centered};
 use crate::console::effect::Effect;
 use crate::console::lesson::{draw_lines, step_to_try};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::{Axis, Line, Scroll, Side, Unit, chart};
+use crate::report::count;
 use crate::report::debrief::{headline, in_words};
 use crate::report::{debrief_as_html, debrief_as_markdown};
-use crate::session::{Debrief, Refusal};
+use crate::session::{Debrief, FigureUnit, Refusal};
 
 /// Widest page that reads well.
 const WIDEST: u16 = 160;
@@ -65,7 +66,12 @@ impl Dialog for DebriefPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::ToMenu, Action::TryAgain, Action::ReportOfRun, Action::StayInRun, Action::Down]
+        KEYS.to_vec()
+    }
+
+    fn hints_here(&self, look: &Look<'_>) -> Vec<Action> {
+        let has_next = look.company.lesson.as_ref().is_some_and(|page| page.next_part.is_some());
+        KEYS.into_iter().filter(|action| has_next || *action != Action::NextPart).collect()
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
@@ -102,10 +108,7 @@ impl Dialog for DebriefPage {
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, "Debrief", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let has_next = look.company.lesson.as_ref().is_some_and(|page| page.next_part.is_some());
-        let keys: Vec<Action> =
-            KEYS.into_iter().filter(|action| has_next || *action != Action::NextPart).collect();
-        canvas.pane_keys(own, &look.hints(&keys));
+        canvas.pane_keys(own, &look.hints(&self.hints_here(look)));
         let debrief = match self.found.as_ref().map(|found| found.as_ref().as_ref()) {
             None => return canvas.text(inside, "simulating the good and the bad play …", Role::Warning),
             Some(Err(refusal)) => return canvas.text(inside, &refusal.message, Role::Bad),
@@ -123,9 +126,16 @@ impl Dialog for DebriefPage {
         };
         draw_curves(canvas, curves, debrief);
         let lines = lines_of(debrief, words.width as usize);
-        let from = self.scroll.within(lines.len().saturating_sub(words.height as usize));
+        let last = lines.len().saturating_sub(words.height as usize);
+        let from = self.scroll.within(last);
         canvas.page = words.height.max(1);
         draw_lines(canvas, words, &lines, from);
+        if from < last {
+            let key = look.keys.label(Action::Down).unwrap_or_default();
+            let more = format!(" {key}: {} more ", count((last - from) as u32, "line"));
+            let above = Rect { x: own.x + 2, width: own.width.saturating_sub(4), height: 1, ..own };
+            canvas.aligned(above, &more, Role::Key, Align::Right);
+        }
     }
 }
 
@@ -144,7 +154,30 @@ fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     paragraphs.collect()
 }
 
+/// The curves of what the part is judged by.
 fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
+    let Some(judged) = &debrief.judged_by else { return draw_cash(canvas, area, debrief) };
+    let curve = |values: &[(u32, f64)], role, name| {
+        let decided = values.iter().filter(|(day, _)| *day >= debrief.first_day);
+        Line::through(decided.map(|(day, value)| (f64::from(*day), *value)).collect(), role).named(name)
+    };
+    let mut lines = Vec::new();
+    lines.extend(judged.bad.as_ref().map(|own| curve(own, Role::Series(1), "bad play")));
+    lines.extend(judged.good.as_ref().map(|own| curve(own, Role::Series(2), "good play")));
+    lines.push(curve(&judged.own, Role::Series(0), "you"));
+    let unit = match judged.figure.unit() {
+        FigureUnit::Dollars => Unit::Dollars,
+        _ => Unit::Number,
+    };
+    draw_days(canvas, area, &lines, unit);
+}
+
+fn draw_days(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], unit: Unit) {
+    let write = |day: f64| format!("day {day:.0}");
+    chart(canvas, area, lines, &Axis { write: &write, holds: &[] }, &Side { unit, holds: &[] });
+}
+
+fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     let from = debrief.first_day as usize;
     let curve = |cash: &[f64], role, name| {
         let points = cash.iter().enumerate().skip(from).map(|(day, cash)| (day as f64, *cash)).collect();
@@ -154,12 +187,5 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     lines.extend(debrief.bad.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(1), "bad play")));
     lines.extend(debrief.good.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
     lines.push(curve(&debrief.own, Role::Series(0), "you"));
-    let write = |day: f64| format!("day {day:.0}");
-    chart(
-        canvas,
-        area,
-        &lines,
-        &Axis { write: &write, holds: &[] },
-        &Side { unit: Unit::Dollars, holds: &[] },
-    );
+    draw_days(canvas, area, &lines, Unit::Dollars);
 }

@@ -7,7 +7,7 @@ use super::{Dialog, Outcome};
 use crate::console::action::{Action, Scope};
 use crate::console::canvas::{Canvas, Click, centered, rows_of};
 use crate::console::effect::Effect;
-use crate::console::lesson::{draw_lines, lines_of, step_to_try};
+use crate::console::lesson::{Where, draw_lines, lines_of, step_to_try};
 use crate::console::request::{LessonRequest, Request};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
@@ -191,6 +191,10 @@ impl Dialog for LessonDialog {
         }
     }
 
+    fn hints_here(&self, look: &Look<'_>) -> Vec<Action> {
+        look.company.lesson.as_ref().map_or_else(|| self.hints(), |page| self.keys(page))
+    }
+
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         let Some(page) = &look.company.lesson else { return Outcome::close() };
         if let Some(question) = self.asked(look) {
@@ -279,7 +283,7 @@ impl Dialog for LessonDialog {
             return self.draw_answer(canvas, area, question, look);
         }
         let own = centered(area, WIDEST.min(area.width), area.height);
-        let lines = lines_of(page, look, own.width.saturating_sub(4) as usize);
+        let lines = lines_of(page, look, (own.width.saturating_sub(4) as usize, Where::OnPage));
         let own = centered(area, own.width, (lines.len() as u16).saturating_add(2));
         canvas.clear(own, Role::Text);
         let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);

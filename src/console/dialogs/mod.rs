@@ -99,6 +99,11 @@ pub trait Dialog {
     /// Actions worth showing in the footer.
     fn hints(&self) -> Vec<Action>;
 
+    /// The same, where they depend on the company.
+    fn hints_here(&self, _: &Look<'_>) -> Vec<Action> {
+        self.hints()
+    }
+
     /// Whether an action from everywhere goes before what its key means in dialogs.
     fn goes_before(&self, _: Action) -> bool {
         false

@@ -215,6 +215,9 @@ pub trait Screen: ScreenState {
     /// means that characters are typed.
     fn scopes(&self) -> Vec<Scope>;
 
+    /// Whether a digit begins a number where the focus is, instead of showing a screen.
+    fn takes_numbers(&self) -> bool;
+
     /// Actions worth showing in the footer.
     fn hints(&self) -> Vec<Action>;
 

@@ -55,6 +55,11 @@ pub trait Pane<S> {
         }
     }
 
+    /// Whether a digit begins a number here instead of showing a screen.
+    fn takes_numbers(&self, _: &S) -> bool {
+        false
+    }
+
     /// Actions worth showing in the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
@@ -189,6 +194,10 @@ fn focused<S: Paned>(screen: &S) -> &'static dyn Pane<S> {
 impl<S: Paned> Screen for S {
     fn scopes(&self) -> Vec<Scope> {
         focused(self).scopes(self)
+    }
+
+    fn takes_numbers(&self) -> bool {
+        focused(self).takes_numbers(self)
     }
 
     fn hints(&self) -> Vec<Action> {

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::run::tell_days;
 use super::{Open, SessionThread};
 use crate::console::company::Company;
 use crate::console::message::{Instead, News};
@@ -60,7 +61,10 @@ impl SessionThread {
         let storage = Storage::Runs(self.runs.clone());
         let new = NewRun { storage, projection: true, sync_calls: true, ..new };
         let created = new.check_baseline(&self.configuration);
-        match created.and_then(|()| Session::create(new.clone(), &self.configuration)) {
+        let mut tell = tell_days(&self.news);
+        let made =
+            created.and_then(|()| Session::create_telling(new.clone(), &self.configuration, &mut tell));
+        match made {
             Err(RunError::ConsentNeeded(text)) => {
                 self.say(News::NotOpened(text.text, Some(Instead::Agree(Box::new(new)))));
             }

@@ -80,8 +80,8 @@ impl OpenRun<'_> {
 }
 
 /// Tells the days that are simulated, not too often.
-fn tell_days(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) {
-    let mut told = Instant::now();
+pub(super) fn tell_days(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
+    let (news, mut told) = (news.clone(), Instant::now());
     move |report| {
         if told.elapsed() >= BETWEEN_DAYS {
             told = Instant::now();

@@ -203,6 +203,9 @@ pub fn needs(session: &Session) -> Vec<Need> {
     found.extend(people::churn(&situation));
     let moved = situation.revenue_ahead() + situation.commitments_ahead();
     found.retain(|need| need.at_risk >= SMALL * moved);
+    // Nobody is sent to a form that the lesson keeps shut.
+    let is_locked = |tool: ToolId| session.lesson().is_some_and(|own| !own.has_tool(tool));
+    found.retain(|need| !matches!(need.place, Place::Call(tool, _) if is_locked(tool)));
     if !session.rules().advice {
         found.iter_mut().for_each(Need::keep_to_facts);
     }

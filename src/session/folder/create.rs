@@ -14,6 +14,7 @@ use crate::database::{Location, Position, Projector};
 use crate::session::class::stamp::HandoutEntry;
 use crate::session::error::RunError;
 use crate::session::lesson::conduct::LessonEntry;
+use crate::session::play::advance::DayReport;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -119,18 +120,30 @@ impl Session {
     /// The scenario, the parameters or the values do not allow it, or the folder cannot be written. Then there
     /// is no run.
     pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
+        Session::create_telling(new, configuration, &mut |_| {})
+    }
+
+    /// The same, and tells each day of the weeks that a lesson plays before the student sees the company.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn create_telling(
+        new: NewRun,
+        configuration: &Configuration,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Session, RunError> {
         let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.terms_of(new.clone()));
         let shipped = Configuration::shipped();
         // A lesson is the same on every machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
         let (manifest, params) = plan_run(&new, configuration)?;
         match &new.storage {
-            Storage::Memory => Session::begin(manifest, params, None, &new),
+            Storage::Memory => Session::begin(manifest, params, None, &new, tell),
             Storage::Runs(runs) => {
                 remove_leftovers(runs);
                 let folder = runs.join(&manifest.id);
                 std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
-                let begun = Session::begin(manifest, params, Some(folder.clone()), &new);
+                let begun = Session::begin(manifest, params, Some(folder.clone()), &new, tell);
                 if let Ok(session) = &begun {
                     session.list_as("play");
                 }
@@ -148,6 +161,7 @@ impl Session {
         params: Params,
         folder: Option<PathBuf>,
         new: &NewRun,
+        tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
         if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
@@ -162,7 +176,7 @@ impl Session {
         let mut session = Session { position, seal_key, recorder: Some(recorder), ..begun };
         session.project_opening();
         if let Some(entry) = &new.lesson {
-            session.begin_lesson(entry)?;
+            session.begin_lesson(entry, tell)?;
         }
         Ok(session)
     }

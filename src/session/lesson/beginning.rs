@@ -10,17 +10,22 @@ use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
 use crate::session::error::RunError;
 use crate::session::play::act::not_saved;
+use crate::session::play::advance::DayReport;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
 use crate::session::trajectory::{Line, Record, Trajectory};
 use crate::tools::Refusal;
 
 impl Session {
-    /// Plays the start of a lesson, up to the moment at which the student sees the company.
+    /// Plays the start of a lesson, up to the moment at which the student sees the company; tells each day of it.
     ///
     /// # Errors
     /// A call of the start is refused.
-    pub(in crate::session) fn begin_lesson(&mut self, entry: &LessonEntry) -> Result<(), RunError> {
+    pub(in crate::session) fn begin_lesson(
+        &mut self,
+        entry: &LessonEntry,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
         let LessonEntry { lesson, part, is_judged } = entry;
         self.lesson = Some(Box::new(LessonStanding {
             lesson: lesson.clone(),
@@ -28,11 +33,15 @@ impl Session {
             is_judged: *is_judged,
             notes: Vec::new(),
         }));
-        self.go_on_with_start(0)
+        self.go_on_with_start(0, tell)
     }
 
     /// Plays the start of a lesson from the present week on, of which so many calls are made; then the first step begins.
-    fn go_on_with_start(&mut self, made: usize) -> Result<(), RunError> {
+    fn go_on_with_start(
+        &mut self,
+        made: usize,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
         let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
         let (lesson, part) = (standing.lesson.clone(), standing.part);
         let start = &lesson.plan.parts[part];
@@ -50,8 +59,7 @@ impl Session {
             if week < start.start_weeks {
                 let forecasts = self.naive_forecasts();
                 let refused = |refusal: Refusal| RunError::NotPossible(refusal.to_string());
-                self.advance("the start of the lesson", &forecasts, Via::Lesson, &mut |_| {})
-                    .map_err(refused)?;
+                self.advance("the start of the lesson", &forecasts, Via::Lesson, tell).map_err(refused)?;
             }
         }
         self.begin_step(0, 1).map_err(|refusal| RunError::NotPossible(refusal.to_string()))
@@ -130,7 +138,7 @@ impl Session {
                 .begin_step(step, number)
                 .map_err(|refusal| RunError::NotPossible(refusal.to_string()));
         }
-        if step == 0 { self.go_on_with_start(self.calls_of_week(lines)) } else { Ok(()) }
+        if step == 0 { self.go_on_with_start(self.calls_of_week(lines), &mut |_| {}) } else { Ok(()) }
     }
 
     /// How many calls of the start were made since the last week.

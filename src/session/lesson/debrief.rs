@@ -8,12 +8,15 @@ use std::thread;
 use super::decisions::{PartedDecision, WeekDecisions, parted};
 use super::definition::{CapacityMover, LessonGoal, ReferencePlay, ScheduledCalls};
 use super::lesson_call::LessonCall;
+use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
 use crate::session::figures::journal::JournalEntry;
+use crate::session::figures::week::WeekFigures;
 use crate::session::state::{AnswersCompanies, Session};
 use crate::session::trajectory::record::Ended;
+use crate::session::why::WeekFigure;
 use crate::tools::{Refusal, ToolId};
 
 /// A part of a lesson that was played: what its debrief is found from.
@@ -24,6 +27,7 @@ pub struct PlayedPart {
     participant: Option<String>,
     seed: u64,
     cash_by_day: Vec<f64>,
+    weeks: Vec<WeekFigures>,
     days_per_week: u32,
     ended: Option<Ended>,
     own: Vec<ScheduledCalls>,
@@ -54,6 +58,8 @@ pub struct Debrief {
     pub good: Option<ReferenceCurve>,
     /// The same of the bad play.
     pub bad: Option<ReferenceCurve>,
+    /// The figure that the part is judged by, where that is not cash.
+    pub judged_by: Option<JudgedFigure>,
     /// Where the own decisions parted from those of the good play.
     pub comparison: DecisionComparison,
     /// What was asked and what was to be reached, by step.
@@ -71,6 +77,19 @@ pub struct ReferenceCurve {
     pub text: Option<String>,
     /// Cash at the end of each day, day 0 first, dollars.
     pub cash_by_day: Vec<f64>,
+}
+
+/// A figure of weeks that a part is judged by, as the first goal of its last step says; by day, at the end of each week.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedFigure {
+    /// The figure.
+    pub figure: WeekFigure,
+    /// What was played.
+    pub own: Vec<(u32, f64)>,
+    /// The good play; none where it cannot be played.
+    pub good: Option<Vec<(u32, f64)>>,
+    /// The bad play.
+    pub bad: Option<Vec<(u32, f64)>>,
 }
 
 /// The own decisions beside those of the good play.
@@ -108,6 +127,8 @@ pub struct PartingEffect {
     pub own: f64,
     /// Cash with the decisions of the good play, dollars.
     pub with: f64,
+    /// The same two of the figure that the part is judged by, where that is not cash.
+    pub judged: Option<(f64, f64)>,
 }
 
 /// What was asked in a step, and what came of it.
@@ -145,6 +166,7 @@ impl Session {
             participant: self.manifest.participant.clone(),
             seed: self.manifest.seed,
             cash_by_day: self.cash_by_day().to_vec(),
+            weeks: self.weeks().to_vec(),
             days_per_week: self.params().run.days_per_week,
             ended: self.ended(),
             own: self.own_calls(standing),
@@ -177,9 +199,15 @@ impl Session {
     }
 }
 
-/// A play of the part: cash by day, and what was decided in each week.
+/// A figure at the end of each week that has it.
+fn by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
+    weeks.iter().filter_map(|week| Some((week.day, figure.of_week(week)?))).collect()
+}
+
+/// A play of the part: cash by day, figures of its weeks, and what was decided in each.
 struct Played {
     cash_by_day: Vec<f64>,
+    figures: Vec<WeekFigures>,
     weeks: Vec<WeekDecisions>,
 }
 
@@ -200,6 +228,12 @@ impl PlayedPart {
             Some((good, own)) => self.compared(good, own, answers),
             None => DecisionComparison::Unknown,
         };
+        let judged_by = self.judged_by().map(|figure| {
+            let of = |played: &Option<Played>| {
+                played.as_ref().filter(|_| decides).map(|own| by_day(figure, &own.figures))
+            };
+            JudgedFigure { figure, own: by_day(figure, &self.weeks), good: of(&good), bad: of(&bad) }
+        });
         let is_last = self.standing.part + 1 == plan.parts.len();
         let curve = |played: Option<Played>, play: &ReferencePlay| {
             let text = is_last.then(|| play.text_of(part).to_owned());
@@ -219,10 +253,21 @@ impl PlayedPart {
             own: self.cash_by_day.clone(),
             good: curve(good, &plan.good),
             bad: curve(bad, &plan.bad),
+            judged_by,
             comparison,
             steps: self.steps(),
             pitfalls: pitfalls(&self.standing),
             text: is_last.then(|| self.standing.lesson.filled(&self.standing.lesson.debrief)),
+        }
+    }
+
+    /// The figure at the end of the last week that the first goal of the last step with goals asks for, unless it is cash.
+    fn judged_by(&self) -> Option<WeekFigure> {
+        let steps = &self.standing.own_part().steps;
+        let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
+        match (&goal.measurement.source, goal.measurement.over) {
+            (NumberSource::Figure(figure), Over::End) => Some(*figure),
+            _ => None,
         }
     }
 
@@ -239,7 +284,8 @@ impl PlayedPart {
         let mut weeks = Vec::new();
         let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
         let played = play_part_watched(&play, answers, &mut watch).ok()?;
-        Some(Played { cash_by_day: played.cash_by_day().to_vec(), weeks })
+        let (cash_by_day, figures) = (played.cash_by_day().to_vec(), played.weeks().to_vec());
+        Some(Played { cash_by_day, figures, weeks })
     }
 
     /// The own decisions beside those of the good play.
@@ -256,7 +302,11 @@ impl PlayedPart {
         let with = self.with_decisions(before, &decisions, &good.weeks[at]);
         let effect = self.play(&with, answers).and_then(|played| {
             let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
-            Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with })
+            let judged = self.judged_by().and_then(|figure| {
+                let last = |weeks: &[WeekFigures]| figure.of_week(weeks.last()?);
+                last(&self.weeks).zip(last(&played.figures))
+            });
+            Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
         });
         let day = before * self.days_per_week;
         DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })

@@ -64,6 +64,11 @@ impl LessonStanding {
         self.own_part().steps.get(step)
     }
 
+    /// Whether the student has a tool.
+    pub fn has_tool(&self, tool: ToolId) -> bool {
+        self.refuse_tool(tool).is_ok()
+    }
+
     /// Refuses a tool that the lesson does not have.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ pub const READINGS: [Reading; 5] = [
     Reading::FirstOffers,
 ];
 
-/// A row of the query: first offers of a week to a group, of one plan at prices of one band.
+/// A row of the query: first offers of a week to a group, of the same plans, the first of them at prices of one band.
 #[derive(Debug, Clone, PartialEq)]
 struct FirstOffers {
     group: String,
@@ -112,7 +112,8 @@ fn statement(own: &FirstOffers) -> String {
          JOIN customers c ON c.customer_id = t.customer_id\n\
          WHERE t.thread_type = 'new_lead' AND t.turn_number = 1 AND t.sender = 'agent'\n    \
          AND c.group_id = '{group}' AND t.day / 7 + 1 = {week}\n    \
-         AND json_extract(t.offer_json, '$[0].plan') = '{plan}'\n    \
+         AND json_extract(t.offer_json, '$[0].plan') || coalesce('+' || json_extract(t.offer_json, '$[1].plan'), '')\n        \
+         || coalesce('+' || json_extract(t.offer_json, '$[2].plan'), '') = '{plan}'\n    \
          AND json_extract(t.offer_json, '$[0].price_per_seat') >= {price_from}\n    \
          AND json_extract(t.offer_json, '$[0].price_per_seat') < {price_below}\nORDER BY t.message_id"
     )

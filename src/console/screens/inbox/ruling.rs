@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
+use serde_json::Value;
 
 use super::{Inbox, InboxPane};
 use super::estimate::market_of;
@@ -42,7 +43,7 @@ impl Ruling {
     /// Starts with the rules of before, or with those that follow from the list prices.
     pub fn new(before: Option<&str>, threads: &[AskingThread], company: &Company, inbox: &Inbox) -> Ruling {
         let mut ruling = Ruling {
-            field: Field::to_replace(before.map_or_else(|| first_rules(company), str::to_owned)),
+            field: Field::of(before.map_or_else(|| first_rules(company), str::to_owned)),
             typing: true,
             outcome: Err(Problem { text: String::new(), column: 1 }),
         };
@@ -124,10 +125,19 @@ impl Inbox {
         vec![Effect::ConfirmCalls { calls, text }]
     }
 
+    /// What the rules that were sent last answer to those who wait now, call by call, and the same in words; none where they
+    /// send nothing.
+    pub fn answers_of_before(&self, company: &Company) -> Option<(Vec<(ToolId, Value)>, String)> {
+        let rules = rules::parse(self.last_rules.as_deref()?).ok()?;
+        let batch = Batch::of(rules, self.asking(company), &market_of(company, &self.usage));
+        let calls = batch.calls();
+        (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
+    }
+
     /// The border of the rules.
     pub(super) fn rules_border(&self, look: &Look<'_>) -> Border {
         use crate::console::action::Action::{Discard, SendOffer};
-        let keys = look.hints(&[SendOffer, Discard]);
+        let keys = format!("{} · ctrl-n empty the line · {}", look.hint(SendOffer), look.hint(Discard));
         Border { title: "Rules".to_owned(), note: "first match answers".to_owned(), keys, ..Border::default() }
     }
 

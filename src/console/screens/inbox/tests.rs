@@ -158,7 +158,7 @@ fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
 fn rules_answer_every_thread_after_one_confirmation() {
     let (mut screen, company) = crowded_screen();
     let rules = "'accept\u{a0}asked>=20;\u{a0}offer\u{a0}where\u{a0}group=E1:\u{a0}B\u{a0}85,C\u{a0}list*0.9;\u{a0}reject\u{a0}seats<60'";
-    press(&mut screen, &company, &format!("R {rules}"));
+    press(&mut screen, &company, &format!("R ctrl-n {rules}"));
     let text = drawn(&screen, &company, 120, 37);
     for words in ["Rules", "accept asked>=20: 66 companies", "What 72 would get", "$20.00 → B $20.00"] {
         assert!(text.replace('\u{a0}', " ").contains(words), "{words} in\n{text}");
@@ -170,6 +170,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     // Leads of E1 are those whose number is a multiple of three: all of them have asked.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 left as they are"), "{text}");
+    assert_eq!(screen.answers_of_before(&company).as_ref(), Some(&(calls.clone(), text.clone())), "they are kept");
     press(&mut screen, &company, "esc R");
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
@@ -180,7 +181,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Thread, false), "tab leads to the preview");
     press(&mut screen, &company, "R");
     assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R leads back to the rules");
-    let (effects, _) = press(&mut screen, &company, "'ofer' ctrl-s");
+    let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
     sweep(&mut screen, &company);
 }
@@ -374,7 +375,8 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
         let (low, high) = row[3].split_once('–').expect("a band");
         let of_row = format!(
             "FROM customers JOIN subscriptions USING (customer_id) JOIN (
-                 SELECT thread_id, customer_id, offer_json ->> '$[0].plan' AS offered, min(day) AS day,
+                 SELECT thread_id, customer_id, offer_json ->> '$[0].plan' || coalesce('+' || (offer_json ->> '$[1].plan'), '')
+                     || coalesce('+' || (offer_json ->> '$[2].plan'), '') AS offered, min(day) AS day,
                      offer_json ->> '$[0].price_per_seat' AS price
                  FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead' AND turn_number = 1
                  GROUP BY thread_id
@@ -450,7 +452,7 @@ fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
     // The first half is sent while its first thread is selected: the list goes on with the second half.
-    let (effects, _) = press(&mut screen, &company, "R 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
+    let (effects, _) = press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
     let sent = calls[0].1["deals"].as_array().expect("deals").clone();
     assert_eq!(sent.len(), 1_749);

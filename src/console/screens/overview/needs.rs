@@ -53,6 +53,10 @@ impl Pane<Overview> for NeedsPane {
         if look.company.needs.is_empty() {
             let text = match look.company.seen.ended {
                 Some(_) => "the run is over; you can still read and query",
+                // Needs whose tool is locked are left out: that is not the same as none.
+                None if look.company.running_lesson().is_some_and(|own| own.tools.is_some()) => {
+                    "nothing that this lesson has a tool for: n starts the next week"
+                }
                 None => "nothing: n starts the next week",
             };
             canvas.text(seat.area, text, Role::Dim);

@@ -11,6 +11,7 @@ use crate::console::action::Action;
 use crate::console::attention::BETWEEN_CELLS;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
+use crate::console::keys::Chord;
 use crate::console::widgets::Field;
 use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
 use crate::notation::dollars;
@@ -30,6 +31,8 @@ pub struct Form {
     pub at: CellPlace,
     /// The cell is being typed into; what it held before.
     pub typing: Option<Option<Field>>,
+    /// The cell that enter has just left: what is copied down then is what was typed.
+    left: Option<CellPlace>,
     /// A customer number is being typed, to add a row to a block.
     pub adding: Option<(usize, Field)>,
     /// What the last reset discarded, by path: a second one brings it back.
@@ -50,6 +53,7 @@ impl Form {
             sheet: Sheet::of(spec, company),
             at: CellPlace::default(),
             typing: None,
+            left: None,
             adding: None,
             dropped: BTreeMap::new(),
             preview: None,
@@ -74,7 +78,7 @@ impl Form {
     /// Forgets the drafts.
     pub fn reset(&mut self, company: &Company) {
         self.sheet = Sheet::of(self.spec, company);
-        (self.typing, self.adding, self.preview) = (None, None, None);
+        (self.typing, self.left, self.adding, self.preview) = (None, None, None, None);
         self.dropped.clear();
         self.keep_inside();
     }
@@ -176,11 +180,12 @@ impl Form {
 
     /// Does an action of the form or of a list.
     pub fn act(&mut self, action: Action, company: &Company) -> Vec<Effect> {
+        let left = self.left.take();
         match action {
             Action::Apply => return self.apply(),
             Action::EditCell if self.sheet.blocks.is_empty() => return self.apply(),
             Action::EditCell => self.edit(),
-            Action::SameDown => return self.same_down(),
+            Action::SameDown => return self.same_down(left.unwrap_or(self.at)),
             Action::ClearCell => return self.clear(),
             Action::ResetForm => return self.drop_drafts(company),
             Action::CopyCall => return vec![Effect::Copy(self.call())],
@@ -223,6 +228,12 @@ impl Form {
         }
     }
 
+    /// Whether a digit begins the number of the cell with the focus.
+    pub fn takes_numbers(&self) -> bool {
+        let is_cell = self.sheet.slot(self.at).is_some() && !self.is_at_text();
+        !self.is_typing() && (is_cell || self.at_adding_row().is_some())
+    }
+
     /// Whether the focus is on a line of text.
     fn is_at_text(&self) -> bool {
         self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_text)
@@ -257,7 +268,7 @@ impl Form {
         // the last row, typing stays open: digits that follow are meant for the form and must not switch screens.
         match action {
             Action::CommitDown if self.at == left => self.go_on_here(),
-            Action::Commit => {}
+            Action::Commit => self.left = Some(left),
             _ if self.at == left => {}
             _ => self.edit(),
         }
@@ -293,22 +304,23 @@ impl Form {
         drafts.map(Field::text).chain(adding).collect::<Vec<_>>().join(BETWEEN_CELLS)
     }
 
-    fn same_down(&mut self) -> Vec<Effect> {
-        let text = self.sheet.slot(self.at).map(super::sheet::Slot::text).unwrap_or_default();
+    /// Copies what a cell holds to those below it.
+    fn same_down(&mut self, from: CellPlace) -> Vec<Effect> {
+        let text = self.sheet.slot(from).map(super::sheet::Slot::text).unwrap_or_default();
         if text.trim().is_empty() {
             return vec![Effect::Complain("this cell is empty: there is no value to copy down".to_owned())];
         }
-        let below = self.sheet.blocks[self.at.block].rows.len();
+        let below = self.sheet.blocks[from.block].rows.len();
         // A block of one row stands for one argument; those below it are meant then.
-        let blocks = if self.sheet.blocks[self.at.block].is_scalar() {
-            (self.at.block..self.sheet.blocks.len()).filter(|at| self.sheet.blocks[*at].is_scalar()).collect()
+        let blocks = if self.sheet.blocks[from.block].is_scalar() {
+            (from.block..self.sheet.blocks.len()).filter(|at| self.sheet.blocks[*at].is_scalar()).collect()
         } else {
-            vec![self.at.block]
+            vec![from.block]
         };
         for block in blocks {
-            let rows = if block == self.at.block { self.at.row..below } else { 0..1 };
+            let rows = if block == from.block { from.row..below } else { 0..1 };
             for row in rows {
-                if let Some(slot) = self.sheet.slot_mut(CellPlace { block, row, column: self.at.column }) {
+                if let Some(slot) = self.sheet.slot_mut(CellPlace { block, row, column: from.column }) {
                     slot.draft = Some(Field::of(text.clone()));
                 }
             }
@@ -371,6 +383,10 @@ impl Form {
 
     /// Takes a key that is typed into a cell.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        self.left = None;
+        if self.takes_numbers() && Chord::of(key).begins_number() {
+            self.edit();
+        }
         if let Some((_, field)) = &mut self.adding {
             field.key(key);
             return Vec::new();

@@ -27,6 +27,10 @@ impl Pane<Tools> for FormPane {
         if typing { vec![Scope::Field, Scope::Form] } else { vec![Scope::Form, Scope::List] }
     }
 
+    fn takes_numbers(&self, tools: &Tools) -> bool {
+        tools.seen_form().is_some_and(Form::takes_numbers)
+    }
+
     fn hints(&self, tools: &Tools) -> Vec<Action> {
         if tools.seen_form().is_some_and(Form::is_typing) {
             return vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard];

@@ -69,7 +69,7 @@ fn an_empty_cell_says_that_it_has_nothing_to_copy() {
 #[test]
 fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
     let (mut tools, _) =
-        typed(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab", "7"]);
+        typed(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab"]);
     let form = tools.seen_form().expect("a form");
     assert!(!form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
@@ -93,8 +93,12 @@ fn leaving_the_form_ends_typing_and_keeps_what_was_typed() {
 }
 
 #[test]
-fn keys_pressed_outside_a_cell_type_nothing() {
-    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["9", "$", "-", "5"]);
+fn a_digit_begins_a_number_and_letters_type_nothing() {
+    let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "enter", "2"]);
+    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
+    let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "esc"]);
+    assert!(!tools.seen_form().expect("a form").sheet.is_changed(), "esc brings back what was there");
+    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["v", "t"]);
     let form = tools.seen_form().expect("a form");
     assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
 }
@@ -168,11 +172,16 @@ fn escape_brings_back_what_was_there() {
 
 #[test]
 fn the_same_value_goes_down_a_column() {
-    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["right", "enter", "4", "0", "enter", "up", "="]);
-    let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
-    let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
-    assert_eq!(matrix.len(), 5);
-    assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
+    // Of the cell with the focus, or of the one that enter has just left.
+    for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
+        let (tools, _) = typed(ToolId::SetTargetedAdSpend, keys);
+        let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
+        let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
+        assert_eq!(matrix.len(), 5);
+        assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
+    }
+    let (_, said) = typed(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
+    assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
 }
 
 #[test]

@@ -37,8 +37,8 @@ fn the_help_begins_with_the_pane_that_has_the_focus() {
     let screen = console.screen();
     let row = |words: &str| screen.lines().position(|line| line.contains(words));
     let first = screen.lines().position(|line| line.contains("pane  ")).expect("a row of the pane");
-    assert!(row("Type a value.").expect("edit") == first, "{screen}");
-    console.press("esc ; m ; m 1 ?");
+    assert!(row("Type a value;").expect("edit") == first, "{screen}");
+    console.press("esc ; m ; m g o ?");
     console.shows("Keys: Overview › ");
     console.press("esc");
 }

@@ -233,7 +233,7 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
     console.press("esc 8 enter");
     console.press("enter '77' enter");
     pass(&mut console, 4);
-    console.press("9 'SELECT' _ '4'");
+    console.press("g q 'SELECT' _ '4'");
     pass(&mut console, 4);
     let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
     let all = ["because of S1", "77", "SELECT 4"];

@@ -12,6 +12,7 @@ mod experiments;
 mod forecasts;
 mod laws;
 mod metrics;
+mod opponents;
 mod output;
 mod read_runs;
 mod results;
@@ -67,6 +68,8 @@ enum Laboratory {
     Consistency(consistency::Options),
     /// Print the figures of a run day by day, hidden ones included: a debug run, or one that is over.
     Metrics(metrics::Options),
+    /// Play the strong policies and the baseline in the world of a run that is over.
+    Opponents(opponents::Options),
     /// Play policies by scenarios by parameters by seeds into one tidy table, whole or in shards.
     Study(study::Options),
     /// Put the shards of a study together.
@@ -121,6 +124,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Laboratory::Behaviour(options) => behaviour::run(options, context),
         Laboratory::Consistency(options) => consistency::run(options, context),
         Laboratory::Metrics(options) => metrics::run(options, context),
+        Laboratory::Opponents(options) => opponents::run(options, context),
         Laboratory::Study(options) => study::run(options, context),
         Laboratory::Merge(options) => study::merge(options),
         Laboratory::Diff(options) => difference::run(options, context),

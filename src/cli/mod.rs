@@ -322,6 +322,13 @@ fn study_here() -> Option<PathBuf> {
     Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
+/// A write beyond the largest file that is allowed becomes an error, which is told as a full disk is; unheard, the signal would
+/// end the program.
+fn take_full_files_as_errors() {
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
+}
+
 /// Runs a command.
 ///
 /// # Errors
@@ -336,6 +343,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             command.name()
         )));
     }
+    take_full_files_as_errors();
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let mut context = Context {
         configuration: Configuration::of_user(),

@@ -13,6 +13,7 @@ use crate::console::photograph::{self, Paper};
 use crate::console::request::Recorded;
 use crate::console::screens::ScreenId;
 use crate::console::theme::Theme;
+use crate::lab::play_opponents;
 use crate::session::{Goal, find_run_to_read};
 
 /// Options of `pictures`.
@@ -78,6 +79,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         runs,
         again: context.again(),
         lists_everybody: false,
+        opponents: play_opponents,
     };
     let places = places(options, &settings.keys)?;
     let mut console = Headless::new(settings, options.size);

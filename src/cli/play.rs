@@ -16,6 +16,7 @@ use crate::console::preferences::Preferences;
 use crate::console::request::Recorded;
 use crate::console::request::Request;
 use crate::console::theme::Theme;
+use crate::lab::play_opponents;
 use crate::session::{
     Access, Configuration, ConsentGiven, ConsentMeans, Goal, Handout, LessonEntry, Library, Mode, NewRun,
     RunError, Session, Study, find_run, steady,
@@ -234,6 +235,7 @@ fn show_console_again(
         runs: context.runs()?,
         again,
         lists_everybody: context.is_experimenter,
+        opponents: play_opponents,
     };
     let (code, farewell) = crate::console::play(settings, start)
         .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;

@@ -403,6 +403,7 @@ actions! {
         ReportOfRun "report-of-run" "report" "Write the report into the run's folder, as Markdown and HTML."
         CardOfRun "card-of-run" "card" "Write a card to hand on into the run's folder, as text and as a drawing."
         ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
+        Opponents "opponents" "opponents" "Play the strong policies and the baseline in the world of this run, with its luck, and rank the run among them."
         WhatIf "what-if" "what if" "Simulate the run again from a week on under other decisions; it begins twelve weeks before the end."
         StayInRun "stay" "look around" "Close this page and look at the run."
     }

@@ -10,6 +10,7 @@ mod leaving;
 mod lesson;
 mod limits;
 mod news;
+mod opponents;
 mod orders;
 mod overlay;
 mod record;
@@ -46,6 +47,7 @@ use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
 use crate::console::request::Request;
 use crate::report::Story;
+use crate::report::opponents::PlayOpponents;
 use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
 
 pub use super::attention::Layer;
@@ -239,6 +241,10 @@ pub struct App {
     branches_question: u64,
     /// The newest question for a curve.
     curve_question: u64,
+    /// The newest question for opponents.
+    opponents_question: u64,
+    /// What plays the opponents of a run.
+    opponents: PlayOpponents,
     /// Number of the last look at hidden state.
     look_question: u64,
     /// What is to follow when the run is closed.
@@ -278,6 +284,8 @@ pub struct Settings {
     pub again: String,
     /// The start menu lists the runs of all participants.
     pub lists_everybody: bool,
+    /// What plays the opponents of a run.
+    pub opponents: PlayOpponents,
 }
 
 impl App {
@@ -315,6 +323,8 @@ impl App {
             why_question: 0,
             branches_question: 0,
             curve_question: 0,
+            opponents_question: 0,
+            opponents: settings.opponents,
             look_question: 0,
             closing: None,
             opens_on: None,

@@ -11,6 +11,7 @@ use super::readings::Reading;
 use super::resimulation::BranchesFound;
 use crate::report::Story;
 use crate::report::class::Shown;
+use crate::report::opponents::Opponents;
 use crate::session::record::Limit;
 use crate::session::{
     Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library,
@@ -116,6 +117,8 @@ pub enum News {
     BranchesProgress(u64, usize, usize),
     /// What would have been.
     Branches(u64, Box<Result<BranchesFound, Refusal>>),
+    /// What the strong policies make of the world of the run; the number says which question it answers.
+    Opponents(u64, Box<Result<Opponents, Refusal>>),
     /// The curve of a group was drawn; the number says which question it answers.
     Curve(u64, Box<Result<Arc<CurveExplorer>, Refusal>>),
     /// The tree of branches in which a run stands, with its id.

@@ -143,6 +143,7 @@ mod tests {
             runs: runs.to_owned(),
             again: String::new(),
             lists_everybody: false,
+            opponents: |_, _, _| Ok(None),
         }
     }
 

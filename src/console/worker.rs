@@ -15,6 +15,7 @@ mod kin;
 mod lesson;
 mod limits;
 mod mending;
+mod opponents;
 mod player;
 mod queries;
 mod run;
@@ -37,6 +38,7 @@ use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
 use super::resimulation::{BranchesAsked, WhyAsked};
+use crate::report::opponents::PlayOpponents;
 use crate::session::record::{LeavingCause, PresenceEvent};
 use crate::session::{
     Activity, Causes, Configuration, Goal, Interface, Interrupt, LastRead, Playback, QuerySource, Refusal,
@@ -70,6 +72,8 @@ pub enum Job {
     FindCauses(WhyAsked),
     /// Find out what would have been.
     FindBranches(BranchesAsked),
+    /// Play the opponents of the run; the number tells the answer from others, the flag ends the work.
+    PlayOpponents(u64, PlayOpponents, Arc<AtomicBool>),
     /// Draw the curve of a group; the number tells the answer from others.
     FindCurve(u64, Group),
     /// Read the tree of branches in which the run stands.
@@ -299,6 +303,7 @@ impl SessionThread {
             }),
             Job::FindCauses(asked) => self.find_causes(asked),
             Job::FindBranches(asked) => self.find_branches(asked),
+            Job::PlayOpponents(number, play, stop) => self.play_opponents(number, play, stop),
             Job::FindCurve(number, group) => self.find_curve(number, group),
             Job::ReadKin => self.read_kin(),
             Job::AskInside(number, sql) => self.ask_inside(number, &sql),

@@ -22,6 +22,7 @@ pub mod laws;
 mod lesson_check;
 mod metrics;
 mod normal;
+mod opponents;
 mod policy;
 mod ranks;
 pub(crate) mod results;
@@ -41,6 +42,7 @@ pub use lesson_check::{
     FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,
 };
 pub use metrics::{Collector, Figure};
+pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
 pub use seeds::{Seeds, parse_seeds};

@@ -69,7 +69,7 @@ impl Answer {
 
     /// An unreadable line.
     pub fn usage(problem: impl Into<String>, column: usize) -> Answer {
-        Answer::Usage { problem: problem.into(), column, place: None }
+        Answer::Usage { problem: without_long_words(&problem.into()), column, place: None }
     }
 
     /// The same answer to a line; an unreadable one names the word that is wrong.
@@ -78,7 +78,7 @@ impl Answer {
         let bare = |word: &str| word.trim_matches([',', ';', ':', '?', '.']).to_owned();
         let place = word_at(line, column);
         let is_named = problem.split_whitespace().any(|word| bare(word) == bare(&place));
-        let place = Some(place).filter(|_| !is_named);
+        let place = Some(without_long_words(&place)).filter(|_| !is_named);
         Answer::Usage { problem, column, place }
     }
 
@@ -180,6 +180,16 @@ fn table_of(list: &[Value]) -> String {
     let row = |object: &&Map<String, Value>| columns.iter().map(|column| cell(object, column)).collect();
     let rows: Vec<Vec<String>> = objects.iter().map(row).collect();
     aligned(&columns, &rows)
+}
+
+/// A problem quotes what was typed, which can be a file that somebody pasted: words end after so many letters.
+fn without_long_words(text: &str) -> String {
+    const MOST_LETTERS: usize = 80;
+    let cut = |word: &str| match word.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => format!("{}…", &word[..end]),
+        None => word.to_owned(),
+    };
+    text.split(' ').map(cut).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

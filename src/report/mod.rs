@@ -27,6 +27,7 @@ mod markdown;
 pub(crate) mod measures;
 mod movement;
 pub(crate) mod needs;
+pub(crate) mod opponents;
 mod outline;
 pub(crate) mod page;
 pub(crate) mod parameters;

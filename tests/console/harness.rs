@@ -47,6 +47,7 @@ impl Console {
             runs: runs.to_owned(),
             again: "novamind --run latest".to_owned(),
             lists_everybody: false,
+            opponents: novamind::lab::play_opponents,
         };
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");

@@ -108,6 +108,6 @@ fn an_unfinished_baseline_is_told_no_cause() {
         assert!(!report.contains(word), "{word}:\n{report}");
     }
     console.press("; w");
-    console.shows("causes are found by simulating the company again");
+    console.shows("simulate the company again");
     assert!(!console.screen().contains("composition"));
 }

@@ -6,6 +6,7 @@ use crate::console::keys::Keys;
 use crate::console::speed;
 use crate::console::theme::Theme;
 use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, keep_a_large_company};
+use crate::lab::play_opponents;
 
 /// Weeks whose keys are measured for each repetition: some hundred keys.
 const WEEKS: usize = 6;
@@ -46,6 +47,7 @@ fn settings(bench: &Bench) -> Result<Settings, BenchError> {
         runs: bench.scratch.clone(),
         again: String::new(),
         lists_everybody: false,
+        opponents: play_opponents,
     })
 }
 

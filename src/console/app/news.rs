@@ -136,6 +136,12 @@ impl App {
                 }
                 return;
             }
+            News::Opponents(number, _) => {
+                if *number == self.opponents_question {
+                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
+                }
+                return;
+            }
             News::Curve(number, _) => {
                 if *number == self.curve_question {
                     self.in_dialog(|dialog, look| dialog.hear(&news, look));

@@ -53,8 +53,14 @@ impl DebriefPage {
 }
 
 /// What one does here.
-const KEYS: [Action; 5] =
-    [Action::ToMenu, Action::TryAgain, Action::NextPart, Action::ReportOfRun, Action::StayInRun];
+const KEYS: [Action; 6] = [
+    Action::ToMenu,
+    Action::TryAgain,
+    Action::NextPart,
+    Action::Opponents,
+    Action::ReportOfRun,
+    Action::StayInRun,
+];
 
 impl Dialog for DebriefPage {
     fn what(&self) -> String {
@@ -80,6 +86,7 @@ impl Dialog for DebriefPage {
             Action::ToMenu => return Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::Close => return Outcome::close(),
             Action::ReportOfRun => return self.written(),
+            Action::Opponents => return Outcome::with(vec![Effect::Do(Action::Opponents)]),
             Action::TryAgain => {
                 return Outcome::with(
                     page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect(),

@@ -32,11 +32,12 @@ const TWO_COLUMNS: (u16, u16) = (104, 26);
 const NAMES: usize = 22;
 
 /// What can be done from here.
-const KEYS: [Action; 6] = [
+const KEYS: [Action; 7] = [
     Action::ReportOfRun,
     Action::CardOfRun,
     Action::ReplayOfRun,
     Action::WhatIf,
+    Action::Opponents,
     Action::StayInRun,
     Action::ToMenu,
 ];
@@ -101,6 +102,9 @@ impl Dialog for FinalPage {
         match action {
             Action::ReplayOfRun => replay(look.company, Goal::First),
             Action::WhatIf => Outcome::close_with(vec![Effect::Do(Action::Branches)]),
+            Action::Opponents if !hides_result(look.company) => {
+                Outcome::with(vec![Effect::Do(Action::Opponents)])
+            }
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
             Action::CardOfRun if !hides_result(look.company) => self.card(),

@@ -11,6 +11,7 @@ pub mod final_page;
 pub mod glossary;
 pub mod help;
 pub mod lesson;
+pub mod opponents;
 pub mod palette;
 pub mod pause;
 pub mod reader;

@@ -55,10 +55,10 @@ impl Interpreter {
                 .map_err(|wrong| problem(wrong.text));
         }
         match words.strip_prefix("adopt ") {
-            Some(rest) => {
+            Some(rest) if rest.trim_start().starts_with("from") => {
                 read(rest, column + "adopt ".len()).and_then(|question| self.adopt(&question, column))
             }
-            None => read(words, column).map(|question| self.compare(&question)),
+            _ => read(words, column).map(|question| self.compare(&question)),
         }
     }
 
@@ -250,6 +250,9 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
     let mut named = head.split_whitespace().peekable();
     while let Some(word) = named.next() {
         let at = word.as_ptr() as usize - words.as_ptr() as usize;
+        if matches!(word, "from" | "until") {
+            named.next_if_eq(&"week");
+        }
         let number = named.peek().and_then(|next| next.parse::<u32>().ok());
         match (word, number) {
             ("from", Some(week)) => question.from = week,
@@ -262,6 +265,11 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
             ("from" | "until", None) => {
                 return Err(problem(format!("{word} needs the number of a week; {USAGE}"), at));
             }
+            ("adopt", _) => {
+                let usage = "for instance: whatif adopt from 20: set_prices * 0.9";
+                return Err(problem(format!("adopt takes the week from which it is played; {usage}"), at));
+            }
+            ("file", _) => return Err(problem("file needs the path of a file of text".to_owned(), at)),
             _ => return Err(problem(format!("{word} is not understood; {USAGE}"), at)),
         }
         if number.is_some() {
@@ -382,6 +390,9 @@ mod tests {
         assert!(said("from: set_prices * 2").text.starts_with("from needs the number of a week"));
         let wrong = said("from 20 to 30: drop 1");
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
+        assert!(said("adopt 5").text.starts_with("adopt takes the week"));
+        assert!(said("file").text.starts_with("file needs"));
+        assert_eq!(read("from week 3", 1).map(|own| own.from), Ok(3));
         assert!(said("from 20 futures 1: drop 1").text.starts_with("futures are drawn in numbers"));
         let wrong = said("from 20: set_price * 2");
         assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
+use super::companies::{CallHere, in_other_numbers};
 use super::edits::{AddedCall, AddedSetting, Edits, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
@@ -44,6 +45,8 @@ pub(in crate::session) struct BranchOutcome {
     pub unfit: Vec<(u32, String, Refusal)>,
     /// Calls that the run refused and that would be accepted now; they are not made.
     pub possible: Vec<PastCall>,
+    /// Calls by which the capacity followed usage.
+    pub followed: Vec<AddedCall>,
     /// Why its days ended before their last one, if a day had no room for its leads.
     pub crowded: Option<Refusal>,
     /// Where it ended.
@@ -141,6 +144,7 @@ struct OpenBranch<'a> {
     refused: Vec<RefusedCall>,
     unfit: Vec<(u32, String, Refusal)>,
     possible: Vec<PastCall>,
+    followed: Vec<AddedCall>,
     /// Why no further day is simulated.
     crowded: Option<Refusal>,
 }
@@ -173,6 +177,7 @@ impl<'a> OpenBranch<'a> {
             refused: Vec::new(),
             unfit: Vec::new(),
             possible: Vec::new(),
+            followed: Vec::new(),
             crowded: None,
         };
         branch.open();
@@ -218,22 +223,25 @@ impl<'a> OpenBranch<'a> {
         }
         let changed = self.edits.changed.get(&call.seq);
         if !call.accepted && changed.is_none() {
-            if self.plan(call.tool, &call.args, true).is_ok() {
+            let here = self.here(call.tool, &call.args);
+            if here.args.is_some_and(|args| self.plan(call.tool, &args, true).is_ok()) {
                 self.possible.push(call.clone());
             }
             return;
         }
-        if let Err(refusal) = self.call(call.tool, changed.unwrap_or(&call.args), changed.is_some()) {
-            let PastCall { seq, day, tool, .. } = *call;
-            self.refused.push(RefusedCall { seq: Some(seq), day, tool, refusal });
-        }
+        self.call(Some(call.seq), call.tool, changed.unwrap_or(&call.args), changed.is_some());
     }
 
     /// Makes a call that the run did not make.
     fn try_new(&mut self, tool: ToolId, args: &Value) {
-        if let Err(refusal) = self.call(tool, args, true) {
-            let day = self.simulation.world.day;
-            self.refused.push(RefusedCall { seq: None, day, tool, refusal });
+        self.call(None, tool, args, true);
+    }
+
+    /// A call under the numbers that its companies have here.
+    fn here(&self, tool: ToolId, args: &Value) -> CallHere {
+        match &self.edits.meant {
+            None => CallHere { args: Some(args.clone()), absent: Vec::new() },
+            Some(meant) => CallHere::of(tool, args, meant, &self.simulation.world.customers.numbers),
         }
     }
 
@@ -250,7 +258,18 @@ impl<'a> OpenBranch<'a> {
         Ok(planned.command)
     }
 
-    fn call(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Refusal> {
+    /// Makes a call, and takes down what is refused of it.
+    fn call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
+        let CallHere { args: here, absent } = self.here(tool, args);
+        let is_renumbered = here.as_ref().is_some_and(|here| here != args);
+        let refusal = here.and_then(|here| self.carry_out(tool, &here, is_new).err());
+        let refusal = refusal.map(|refusal| if is_renumbered { in_other_numbers(refusal) } else { refusal });
+        let day = self.simulation.world.day;
+        let refused = absent.into_iter().chain(refusal);
+        self.refused.extend(refused.map(|refusal| RefusedCall { seq, day, tool, refusal }));
+    }
+
+    fn carry_out(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Refusal> {
         let command = self.plan(tool, args, is_new)?;
         let resolved = self.simulation.resolve(command);
         if resolved.only_reads() {
@@ -316,7 +335,11 @@ impl<'a> OpenBranch<'a> {
             && let Some(week) = self.weeks.last()
         {
             let tier = covering_tier(week.busiest_day, &self.simulation.params);
-            self.try_new(ToolId::SetCapacityTier, &json!({ "tier": tier }));
+            if tier != self.simulation.world.settings.core.capacity_tier {
+                let args = json!({ "tier": tier });
+                self.try_new(ToolId::SetCapacityTier, &args);
+                self.followed.push(AddedCall { day, tool: ToolId::SetCapacityTier, args });
+            }
         }
         if let Some(Redrawn { after, salt }) = edits.redrawn
             && day == after
@@ -379,11 +402,24 @@ impl<'a> OpenBranch<'a> {
             refused,
             unfit,
             possible,
+            followed,
             crowded,
             ..
         } = self;
         let end = KeptState::of(simulation);
-        BranchOutcome { weeks, days, satisfaction, groups, states, refused, unfit, possible, crowded, end }
+        BranchOutcome {
+            weeks,
+            days,
+            satisfaction,
+            groups,
+            states,
+            refused,
+            unfit,
+            possible,
+            followed,
+            crowded,
+            end,
+        }
     }
 }
 

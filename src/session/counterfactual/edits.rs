@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use crate::tools::ToolId;
+use crate::world::customers::numbers::CustomerNumbers;
 use crate::world::held::Held;
 use crate::world::params::Params;
 
@@ -24,6 +25,8 @@ pub(in crate::session) struct Edits {
     pub set: Vec<AddedSetting>,
     /// At the start of every week the smallest capacity tier is set that covers the busiest day of the week before.
     pub capacity_follows_usage: bool,
+    /// Which customers the calls mean by their numbers; none where numbers are the same in every branch.
+    pub meant: Option<Arc<CustomerNumbers>>,
     /// Inputs of the world that are held.
     pub held: Held,
     /// Other parameters.

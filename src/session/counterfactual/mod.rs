@@ -5,6 +5,7 @@
 //! [`Edits`](edits::Edits), and the figures that come out.
 
 pub(in crate::session) mod branch;
+pub(in crate::session) mod companies;
 pub(in crate::session) mod edits;
 pub(in crate::session) mod kept_state;
 pub(in crate::session) mod last_read;

@@ -76,11 +76,7 @@ impl Past {
 
     /// The last day that was simulated.
     pub(in crate::session) fn last_day(&self) -> u32 {
-        let days = self.moves.iter().rev().find_map(|step| match step {
-            Move::Days(days) => Some(days.until),
-            Move::Call(_) | Move::Parameter(_) => None,
-        });
-        days.unwrap_or(0)
+        self.last_end(u32::MAX)
     }
 
     /// Days of a week.
@@ -91,6 +87,15 @@ impl Past {
     /// Whether days of the record end on a day.
     pub(in crate::session) fn ends_on(&self, day: u32) -> bool {
         day == 0 || self.moves.iter().any(|step| matches!(step, Move::Days(days) if days.until == day))
+    }
+
+    /// The last day up to another on which days of the record end.
+    pub(in crate::session) fn last_end(&self, until: u32) -> u32 {
+        let ends = self.moves.iter().filter_map(|step| match step {
+            Move::Days(days) => Some(days.until),
+            Move::Call(_) | Move::Parameter(_) => None,
+        });
+        ends.take_while(|day| *day <= until).last().unwrap_or(0)
     }
 
     /// The run at the end of a day on which days of the record end, simulated from the nearest moment before it that is

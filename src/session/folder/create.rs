@@ -156,7 +156,7 @@ impl Session {
         }
     }
 
-    fn begin(
+    pub(in crate::session) fn begin(
         manifest: Manifest,
         params: Params,
         folder: Option<PathBuf>,

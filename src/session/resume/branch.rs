@@ -39,7 +39,7 @@ impl Session {
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
         };
-        let day = week.saturating_sub(1) * self.simulation.params.run.days_per_week;
+        let day = week.saturating_sub(1).saturating_mul(self.simulation.params.run.days_per_week);
         if week == 0 || day > self.simulation.world.day {
             let last = self.simulation.world.day / self.simulation.params.run.days_per_week + 1;
             return Err(Refusal::at(

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::decision_edit::{DecisionEdit, Opening, edits};
 use super::lesson_limits::refuse_locked;
 use crate::session::counterfactual::branch::covering_tier;
+use crate::session::counterfactual::companies::{CallHere, in_other_numbers};
 use crate::session::counterfactual::edits::Edits;
 use crate::session::counterfactual::script::{Move, PastCall, moves};
 use crate::session::folder::mode::Mode;
@@ -15,6 +16,7 @@ use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
 use crate::session::trajectory::{Line, Record, Trajectory};
 use crate::tools::{Refusal, ToolId};
+use crate::world::customers::numbers::CustomerNumbers;
 
 /// A branch that was played up to where its run stands.
 pub struct Adopted {
@@ -59,20 +61,36 @@ impl Session {
         let (settings, params) = (session.settings(), session.params());
         let opening = Opening { day: from, settings, params, mode };
         let edits = edits(decided, &opening, &known, until.max(from + 1))?;
-        let mut adopted = Adopted { session, refused: Vec::new() };
+        let mut adopted =
+            Adopting { session, refused: Vec::new(), meant: &self.simulation.world.customers.numbers };
         adopted.play(&later, &edits, progress);
-        let Adopted { mut session, refused } = adopted;
-        // What the disk did not take is no decision of the branch: without it there is no branch.
-        if let Some((_, _, refusal)) = refused.iter().find(|(_, _, refusal)| refusal.code == "not_saved") {
-            return Err(refusal.clone());
+        let Adopting { mut session, refused, .. } = adopted;
+        // What the disk did not take, or no memory holds, is no decision of the branch: without it there is no branch.
+        let ends_it = |refusal: &&Refusal| ["not_saved", "too_many_leads"].contains(&refusal.code);
+        if let Some(refusal) = refused.iter().map(|(_, _, refusal)| refusal).find(ends_it) {
+            return Err(no_branch(refusal.clone()));
         }
-        session.save().map_err(not_saved)?;
+        session.save().map_err(|error| no_branch(not_saved(error)))?;
         drop(session);
-        Ok(Adopted { session: branch.name().map_err(not_saved)?, refused })
+        Ok(Adopted { session: branch.name().map_err(|error| no_branch(not_saved(error)))?, refused })
     }
 }
 
-impl Adopted {
+/// Why there is no branch.
+fn no_branch(refusal: Refusal) -> Refusal {
+    let message = format!("{}; there is no branch, and this run is as it was", refusal.message);
+    Refusal { message, ..refusal }
+}
+
+/// A branch that is being played.
+struct Adopting<'a> {
+    session: Session,
+    refused: Vec<(u32, String, Refusal)>,
+    /// Which customers the calls of the run mean.
+    meant: &'a CustomerNumbers,
+}
+
+impl Adopting<'_> {
     fn play(&mut self, later: &[Line], edits: &Edits, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) {
         for (tool, args) in &edits.opening {
             self.call(*tool, args);
@@ -151,8 +169,12 @@ impl Adopted {
     }
 
     fn call(&mut self, tool: ToolId, args: &serde_json::Value) {
-        if let Err(refusal) = self.session.call(tool, args, Via::Branch) {
-            self.refuse(tool.name(), refusal);
+        let here = &self.session.simulation.world.customers.numbers;
+        let CallHere { args: here, absent } = CallHere::of(tool, args, self.meant, here);
+        absent.into_iter().for_each(|refusal| self.refuse(tool.name(), refusal));
+        let Some(here) = here else { return };
+        if let Err(refusal) = self.session.call(tool, &here, Via::Branch) {
+            self.refuse(tool.name(), if here == *args { refusal } else { in_other_numbers(refusal) });
         }
     }
 

@@ -90,11 +90,14 @@ impl BranchFigures {
         let mut refused: Vec<_> = calls.chain(outcome.unfit.iter().cloned()).collect();
         refused.sort_by_key(|(day, ..)| *day);
         let possible = outcome.possible.iter().map(|call| (call.seq, call.day, call.tool));
+        let followed = outcome.followed.iter().map(|call| new_call(call.day, call.tool, &call.args));
+        let mut differences: Vec<_> = differences(made, moves, from).into_iter().chain(followed).collect();
+        differences.sort_by_key(|call| call.day);
         BranchFigures {
             edits: edits.to_vec(),
             days: outcome.weeks.iter().map(|week| week.day).collect(),
             weeks: values(earlier, outcome),
-            differences: differences(made, moves, from),
+            differences,
             parameters: parameters(made, moves),
             refused,
             possible: possible.collect(),
@@ -128,17 +131,14 @@ impl BranchComparison {
     }
 }
 
-/// The calls that differ, by day; those that a rule makes are not among them.
+/// A call that the run did not make.
+fn new_call(day: u32, tool: ToolId, args: &Value) -> DecisionDifference {
+    DecisionDifference { day, tool, seq: None, was: None, is: Some(args.clone()), again: None }
+}
+
+/// The calls that edits change.
 fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifference> {
-    let new = |day, tool, args: &Value| DecisionDifference {
-        day,
-        tool,
-        seq: None,
-        was: None,
-        is: Some(args.clone()),
-        again: None,
-    };
-    let opening = edits.opening.iter().map(|(tool, args)| new(from, *tool, args));
+    let opening = edits.opening.iter().map(|(tool, args)| new_call(from, *tool, args));
     let next = |added: &AddedCall| {
         moves.iter().find_map(|step| match step {
             Move::Call(call)
@@ -155,15 +155,13 @@ fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifferen
     let added = edits.added.iter().map(|call| {
         let is_set = call.tool.spec().kind == Kind::Setting;
         let again = if is_set { next(call) } else { None };
-        DecisionDifference { again, ..new(call.day, call.tool, &call.args) }
+        DecisionDifference { again, ..new_call(call.day, call.tool, &call.args) }
     });
     let of_run = moves.iter().filter_map(|step| match step {
         Move::Call(call) => of_call(edits, call),
         Move::Parameter(_) | Move::Days(_) => None,
     });
-    let mut all: Vec<DecisionDifference> = opening.chain(of_run).chain(added).collect();
-    all.sort_by_key(|call| call.day);
-    all
+    opening.chain(of_run).chain(added).collect()
 }
 
 /// The parameters that are set otherwise, by day.

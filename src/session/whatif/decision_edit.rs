@@ -114,8 +114,11 @@ impl Opening<'_> {
         if self.mode != Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only"));
         }
-        self.params.value(key).map_err(unknown)?;
+        let in_force = self.params.value(key).map_err(unknown)?;
         let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
+        if let (Value::String(word), false) = (value, in_force.is_str()) {
+            return Err(not_allowed(format!("{word} is no value of {key}, which is {in_force} now")));
+        }
         let value =
             value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be null, nor hold it")))?;
         self.params.with(key, value).map(drop).map_err(|error| not_allowed(error.problem))
@@ -238,7 +241,9 @@ pub fn sets_amounts(tool: ToolId) -> bool {
 impl Display for DecisionEdit {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            DecisionEdit::Scale { tool, factor } => write!(formatter, "{} * {factor}", tool.name()),
+            DecisionEdit::Scale { tool, factor } => {
+                write!(formatter, "{} * {}", tool.name(), json_number(*factor))
+            }
             DecisionEdit::Keep(tool) => write!(formatter, "keep {}", tool.name()),
             DecisionEdit::Drop(seq) => write!(formatter, "drop {seq}"),
             DecisionEdit::Change { seq, args } => write!(formatter, "change {seq} {args}"),
@@ -261,9 +266,9 @@ pub const FORMS: [&str; 7] = [
     "keep set_daily_spend",
     "drop 57",
     "change 57 {\"B\": 30}",
-    "[in 24] set_prices B=30",
+    "in 24 set_prices B=30",
     "capacity follows usage",
-    "[in 24] set group.S1.c_max_mean 60",
+    "in 24 set group.S1.c_max_mean 60",
 ];
 
 impl FromStr for DecisionEdit {
@@ -282,6 +287,7 @@ impl FromStr for DecisionEdit {
                 Ok(DecisionEdit::Change { seq: line(seq)?, args: arguments(args, None)? })
             }
             "in" => {
+                let rest = rest.strip_prefix("week ").map_or(rest, str::trim_start);
                 let (week, call) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 let number = week.parse().map_err(|_| format!("{week} is not the number of a week"))?;
                 decided_besides(Some(number), call.trim())
@@ -319,6 +325,9 @@ fn decided_besides(week: Option<u32>, text: &str) -> Result<DecisionEdit, String
     let (key, value) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
     match value.trim() {
         "" => Err("set needs a parameter and its value, for instance set group.S1.c_max_mean 60".to_owned()),
+        value if value.contains(" from ") => Err(format!(
+            "a what-if sets a value from the start of a week on: in 24 set {key} VALUE, not {value}"
+        )),
         value => {
             let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
             Ok(DecisionEdit::Set { week, key: key.to_owned(), value })
@@ -394,9 +403,11 @@ mod tests {
             let edit: DecisionEdit = text.parse().expect(text);
             assert_eq!(edit.to_string(), text);
         }
-        assert!(FORMS.iter().all(|form| form.replace(['[', ']'], "").parse::<DecisionEdit>().is_ok()));
+        assert!(FORMS.iter().all(|form| form.parse::<DecisionEdit>().is_ok()));
         let call = |text: &str| text.parse::<DecisionEdit>().expect(text).to_string();
         assert_eq!(call("set_prices*2"), "set_prices * 2");
+        assert_eq!(call("set_prices * 1e-300"), "set_prices * 1e-300");
+        assert_eq!(call("in week 3 set_prices A=16"), "in 3 set_prices {\"A\":16}");
         assert_eq!(call("in 3 set_prices A=16 B=34.5"), "in 3 set_prices {\"A\":16,\"B\":34.5}");
         assert_eq!(
             call("set_targeted_ad_spend {\"linkedin\": {\"S1\": 5}}"),
@@ -424,6 +435,7 @@ mod tests {
         assert!(said("drop it").starts_with("it is not the number of a line"));
         assert_eq!(said("in x set_prices B=3"), "x is not the number of a week");
         assert!(said("set group.S1.c_max_mean").starts_with("set needs a parameter and its value"));
+        assert!(said("set quality.base_product_quality 5 from 300").contains("in 24 set"));
         assert!(said("in 3 set").starts_with("there is no tool set"));
         assert_eq!(said("set_prices B"), "B is no argument; write NAME=VALUE");
         assert!(said("set_prices {B}").starts_with("the arguments are not JSON"));

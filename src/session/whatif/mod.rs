@@ -27,6 +27,7 @@ pub use kin::{BranchOrigin, Kin, branches_of, origin_of};
 
 use self::lesson_limits::{lesson_of, refuse_locked};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
+use super::counterfactual::companies::highest_named;
 use super::counterfactual::edits::{Edits, Redrawn};
 use super::counterfactual::kept_state::KeptState;
 use super::counterfactual::last_read::OfRecord;
@@ -109,12 +110,24 @@ impl WhatIf {
         self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.refuse_before_guess(weeks))
     }
 
-    /// What each branch decides and how its days are edited for it, if the player may decide it.
-    fn all_edits(&self, alternatives: &[Vec<DecisionEdit>], parting: &Parting) -> Result<AllEdits, Refusal> {
+    /// What each branch decides and how its days are edited for it, if the player may decide it. None if it was stopped.
+    fn all_edits(
+        &mut self,
+        alternatives: &[Vec<DecisionEdit>],
+        parting: &Parting,
+        progress: OnWhatIfProgress<'_>,
+    ) -> Result<Option<AllEdits>, Refusal> {
         if let Some(lesson) = &self.lesson {
             alternatives.iter().try_for_each(|own| refuse_locked(lesson, own, &parting.moves))?;
         }
-        all_edits(alternatives, parting, self.past.manifest.mode)
+        let (all, mut edits) = all_edits(alternatives, parting, self.past.manifest.mode)?;
+        let Some(day) = parting.last_meeting(&edits) else { return Ok(Some((all, edits))) };
+        let day = self.past.last_end(day);
+        let met = self.past.moment(day, &mut |simulated| progress(simulated as usize, day as usize));
+        let Some(met) = met.map_err(|error| not_readable(&error))? else { return Ok(None) };
+        let meant = Arc::new(met.world.customers.numbers.clone());
+        edits.iter_mut().for_each(|own| own.meant = Some(meant.clone()));
+        Ok(Some((all, edits)))
     }
 
     /// The calls of the run from a week on: what can be decided otherwise.
@@ -145,7 +158,7 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<(BranchComparison, Option<Futures>)>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let all = self.all_edits(alternatives, &parting)?;
+        let Some(all) = self.all_edits(alternatives, &parting, progress)? else { return Ok(None) };
         let Some(compared) = self.compared(&parting, &all, progress)? else { return Ok(None) };
         let Some(count) = futures else { return Ok(Some((compared, None))) };
         let drawn = self.drawn(&parting, &all.1, count, progress)?;
@@ -217,7 +230,7 @@ impl WhatIf {
         progress: OnWhatIfProgress<'_>,
     ) -> Result<Option<Futures>, Refusal> {
         let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let (_, edits) = self.all_edits(alternatives, &parting)?;
+        let Some((_, edits)) = self.all_edits(alternatives, &parting, progress)? else { return Ok(None) };
         self.drawn(&parting, &edits, count, progress)
     }
 
@@ -277,12 +290,21 @@ impl WhatIf {
         let from = self.day_of(week)?;
         let (days, horizon) = (self.past.days_per_week(), self.past.manifest.days);
         let until = match until_week {
+            Some(last) if last > horizon.div_ceil(days) => {
+                let message =
+                    format!("week {last} is after the last week of the run, {}", horizon.div_ceil(days));
+                return Err(Refusal::at("until", "week_unknown", message));
+            }
             Some(last) if last >= week => last.saturating_mul(days).min(horizon),
             Some(last) => {
                 let message = format!("a what-if from week {week} cannot end with week {last}");
                 return Err(Refusal::at("until", "week_unknown", message));
             }
-            None => self.past.last_day().max(from + LEAST_WEEKS * days).min(horizon),
+            // A record can stop inside a week; figures are those of whole ones.
+            None => {
+                let last_end = self.past.last_day().div_ceil(days) * days;
+                last_end.max(from + LEAST_WEEKS * days).min(horizon)
+            }
         };
         let mut reach = |day: u32| progress(day as usize, from as usize);
         let back = (0..=from.saturating_sub(WEEKS_BACK * days)).rev().find(|day| self.past.ends_on(*day));
@@ -300,6 +322,24 @@ impl WhatIf {
 }
 
 impl Parting {
+    /// The last day of the run on which a call names a customer who came after the branches part; such customers have other
+    /// numbers in a branch into which more or fewer came.
+    fn last_meeting(&self, edits: &[Edits]) -> Option<u32> {
+        let first_new = self.start.world.customers.next_customer;
+        let is_met = |tool, args| highest_named(tool, args) >= Some(first_new);
+        let made = self.moves.iter().filter_map(|step| match step {
+            Move::Call(call) => Some(call),
+            Move::Parameter(_) | Move::Days(_) => None,
+        });
+        let kept = made.clone().filter(|call| is_met(call.tool, &call.args)).map(|call| call.day);
+        let changed = made.filter(|call| {
+            let mut other = edits.iter().filter_map(|own| own.changed.get(&call.seq));
+            other.any(|args| is_met(call.tool, args))
+        });
+        let added = edits.iter().flat_map(|own| &own.added).filter(|call| is_met(call.tool, &call.args));
+        kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
+    }
+
     /// Simulates the days under each of some edits. None if it was stopped.
     ///
     /// # Errors

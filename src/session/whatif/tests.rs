@@ -15,6 +15,7 @@ use crate::session::trajectory::record::Via;
 use crate::session::trajectory::{Record, Trajectory};
 use crate::statistics::Interval;
 use crate::tools::ToolId;
+use crate::world::identifiers::Group;
 
 fn on(_: usize, _: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())
@@ -359,4 +360,101 @@ fn days_that_were_run_one_by_one_are_adopted_too() {
     session.run_until_breakpoint(9, &mut |_| {}).expect("days");
     let same = adopted(&session, 2, &[]);
     assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
+}
+
+/// A run that answers every company that waits, each week.
+fn run_with_offers(runs: &Path) -> Session {
+    let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
+    let mut session = played(runs, Mode::Debug, 3, None);
+    for (tool, args) in [
+        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+        ("set_targeted_ad_spend", json!({"social_media": ads, "linkedin": ads})),
+    ] {
+        session.call(tool, &args, Via::Plain).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    for _ in 0..8 {
+        let threads = &session.simulation.world.enterprise.threads;
+        let open = threads.iter().filter(|thread| thread.is_open()).map(|thread| thread.customer);
+        let deals: Vec<_> = open.map(|customer| json!([customer, [["B", 20], ["C", 50]]])).collect();
+        if !deals.is_empty() {
+            session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Plain).expect("offers");
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+/// The companies to which a run made offers: day, group and running number in it; and under which numbers.
+fn offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
+    let numbers = &session.simulation.world.customers.numbers;
+    let path = session.folder().expect("a folder").join("trajectory.jsonl");
+    let lines = Trajectory::read(&path).expect("a trajectory").lines;
+    let mut met = (Vec::new(), Vec::new());
+    for line in &lines {
+        let Record::Call(call) = &line.record else { continue };
+        if call.tool != ToolId::SendEnterpriseDeal {
+            continue;
+        }
+        for deal in call.args["deals"].as_array().expect("deals") {
+            let number = deal[0].as_u64().expect("a number") as u32;
+            let (group, n) = numbers.find(number).expect("a customer");
+            met.0.push((line.day, group, n));
+            met.1.push(number);
+        }
+    }
+    met
+}
+
+#[test]
+fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run_with_offers(runs.path());
+    let (made, numbers) = offers(&session);
+    assert!(made.len() > 10, "{made:?}");
+    for (alternative, all_come) in
+        [("set_targeted_ad_spend * 1.5", true), ("set_targeted_ad_spend * 0.2", false)]
+    {
+        let compared = compared(&session, 9, &[&[alternative]]);
+        let own = &compared.branches[1];
+        let mut on = |_| ControlFlow::Continue(());
+        let adopted = session.branch_with_decisions(9, &edits(&[alternative]), Mode::Debug, &mut on);
+        let Adopted { session: branch, refused } = adopted.expect("a branch");
+        let (reached, under) = offers(&branch);
+        assert_ne!(under, numbers, "{alternative}");
+        let is_absent =
+            |(_, _, refusal): &(u32, String, Refusal)| refusal.message.contains("has not come here");
+        let absent = refused.iter().filter(|refused| is_absent(refused)).count();
+        assert_eq!(own.refused.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
+        assert_eq!(absent == 0, all_come, "{alternative}: {absent}");
+        assert!(reached.iter().all(|own| made.contains(own)), "{alternative}");
+        let rejected = refused.len() - absent;
+        assert!(
+            reached.len() + absent <= made.len() && reached.len() + absent + rejected > 10,
+            "{alternative}"
+        );
+        let seats: Vec<f64> =
+            branch.weeks().iter().skip(8).map(|week| week.enterprise_seats.into()).collect();
+        let curve: Vec<f64> = own.curve(BranchFigure::Seats).map(|(_, seats)| seats).collect();
+        assert_eq!(curve, seats, "{alternative}");
+    }
+}
+
+#[test]
+fn figures_of_a_record_that_stops_inside_a_week_are_those_of_whole_weeks() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = run(runs.path(), Mode::Debug);
+    for _ in 0..5 {
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    }
+    session.step(3, &mut |_| {}).expect("days");
+    let compared = of(&session).compare(2, None, &[edits(&["set_prices * 0.9"])], &on);
+    let compared = compared.expect("an answer").expect("it is not stopped");
+    assert_eq!((compared.recorded_until, compared.until), (108, 112));
+    for branch in &compared.branches {
+        assert!(branch.value(BranchFigure::Cash, compared.until).is_some(), "{branch:?}");
+    }
+    let beyond = of(&session).compare(2, Some(19), &[], &on).expect_err("the run has 120 days");
+    assert_eq!(beyond.code, "week_unknown");
 }

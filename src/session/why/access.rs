@@ -29,7 +29,7 @@ pub(in crate::session) fn sight(manifest: &Manifest, ended: bool) -> Result<Sigh
         (Mode::Sandbox | Mode::Lesson, false) => Ok(Sight::Market),
         (Mode::Baseline, false) => Err(Refusal::new(
             "not_in_this_mode",
-            "causes are found by simulating the company again, which agents cannot do either: not in an unfinished \
+            "why and what-if simulate the company again, which agents cannot do either: not in an unfinished \
              baseline run",
         )),
     }

@@ -58,6 +58,6 @@ impl Session {
 
     /// Day on which a customer came; 0 if nobody of this number did.
     pub(in crate::session) fn arrival_of(&self, customer: u32) -> u32 {
-        self.simulation.world.customers.arrival_day(customer).unwrap_or(0)
+        self.simulation.world.customers.numbers.arrival_day(customer).unwrap_or(0)
     }
 }

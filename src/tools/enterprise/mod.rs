@@ -1,9 +1,11 @@
 //! Negotiations with companies.
 
+mod addressed;
 mod reading;
 mod reject_enterprise_deal;
 mod send_enterprise_deal;
 
+pub use addressed::readdressed;
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
 pub use send_enterprise_deal::SendEnterpriseDeal;
 

@@ -3,6 +3,7 @@
 pub mod choice;
 pub mod columns;
 pub mod curve;
+pub mod numbers;
 pub mod persona;
 pub mod traits;
 
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use super::canonical::{Canonical, CanonicalHasher, Stretch, canonical, hash_of_stretches};
 use super::identifiers::{ByGroup, Group};
 use columns::{BLOCK, Block, Subscriber};
+use numbers::{ArrivalRun, CustomerNumbers};
 
 /// The first real customer; number 1 is the market observer, who only owns posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
@@ -41,8 +43,8 @@ pub struct Customers {
     pub next_customer: u32,
     /// Number of the next subscription.
     pub next_subscription: u32,
-    /// Which numbers came when, in order.
-    arrivals: Vec<ArrivalRun>,
+    /// Which numbers came when.
+    pub numbers: CustomerNumbers,
 }
 
 /// Customers of one group.
@@ -54,42 +56,9 @@ pub struct GroupCustomers {
     pub blocks: Vec<Block>,
 }
 
-/// Customers of one group that came on one day: consecutive numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ArrivalRun {
-    /// Day of arrival.
-    pub day: u32,
-    /// Their group.
-    pub group: Group,
-    /// Customer number of the first.
-    pub first_customer: u32,
-    /// Running number of the first within the group.
-    pub first_n: u32,
-    /// How many.
-    pub count: u32,
-}
-
-impl ArrivalRun {
-    /// Running numbers within the group, with customer numbers.
-    pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
-        (self.first_n..self.first_n + self.count).zip(self.first_customer..)
-    }
-
-    /// The same run in pieces of so many.
-    pub fn pieces(self, most: u32) -> impl Iterator<Item = ArrivalRun> {
-        (0..self.count).step_by(most as usize).map(move |from| ArrivalRun {
-            first_customer: self.first_customer + from,
-            first_n: self.first_n + from,
-            count: most.min(self.count - from),
-            ..self
-        })
-    }
-}
-
 canonical! {
-    Customers { groups, next_customer, next_subscription, arrivals }
+    Customers { groups, next_customer, next_subscription, numbers }
     GroupCustomers { created, blocks }
-    ArrivalRun { day, group, first_customer, first_n, count }
 }
 
 impl Default for Customers {
@@ -98,7 +67,7 @@ impl Default for Customers {
             groups: ByGroup::default(),
             next_customer: FIRST_CUSTOMER,
             next_subscription: 1,
-            arrivals: Vec::new(),
+            numbers: CustomerNumbers::default(),
         }
     }
 }
@@ -176,25 +145,13 @@ impl Customers {
             ArrivalRun { day, group, first_customer: self.next_customer, first_n: own.created + 1, count };
         own.created += count;
         self.next_customer += count;
-        if count > 0 {
-            self.arrivals.push(run);
-        }
+        self.numbers.give(run);
         run
     }
 
     /// Group and running number of a customer, if that number was ever given to one.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
-        let after = self.arrivals.partition_point(|run| run.first_customer <= customer);
-        let run = self.arrivals[..after].last()?;
-        let offset = customer - run.first_customer;
-        (offset < run.count).then_some((run.group, run.first_n + offset))
-    }
-
-    /// Day on which a customer came, if that number was ever given to one.
-    pub fn arrival_day(&self, customer: u32) -> Option<u32> {
-        self.find(customer)?;
-        let after = self.arrivals.partition_point(|run| run.first_customer <= customer);
-        self.arrivals[..after].last().map(|run| run.day)
+        self.numbers.find(customer)
     }
 
     /// Works through all blocks that hold anybody, on several threads when there are many; the results stand
@@ -241,7 +198,7 @@ impl Customers {
 
     /// Hash of their canonical bytes, made on several threads: they are nearly all of the state.
     pub fn hash(&self) -> blake3::Hash {
-        let Customers { groups, next_customer, next_subscription, arrivals } = self;
+        let Customers { groups, next_customer, next_subscription, numbers } = self;
         let mut stretches = Vec::new();
         for GroupCustomers { created, blocks } in &groups.0 {
             stretches.push(Stretch::new(size_of::<u32>() + size_of::<u64>(), |hasher| {
@@ -253,7 +210,7 @@ impl Customers {
         }
         let mut rest = CanonicalHasher::collector(0);
         (*next_customer, *next_subscription).feed(&mut rest);
-        arrivals.feed(&mut rest);
+        numbers.feed(&mut rest);
         let rest = rest.into_bytes();
         stretches.push(Stretch::new(rest.len(), move |hasher| hasher.bytes(&rest)));
         hash_of_stretches(&stretches)

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::leads::{LeadContext, LeadFactors, lead_factors};
 use crate::context::DayContext;
+use crate::customers::Customers;
 use crate::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
 use crate::customers::columns::Subscriber;
 use crate::customers::curve::Curve;
+use crate::customers::numbers::ArrivalRun;
 use crate::customers::traits::{Traits, traits_from};
-use crate::customers::{ArrivalRun, Customers};
 use crate::enterprise::{Company, Enterprise, Standing};
 use crate::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
 use crate::identifiers::{ByGroup, ByPlan, Group, Plan};

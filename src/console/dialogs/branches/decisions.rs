@@ -33,6 +33,8 @@ pub(super) struct Decisions {
     days_per_week: u32,
     /// None until they were read.
     calls: Option<Vec<PastCall>>,
+    /// They are not told.
+    is_refused: bool,
     alternatives: Vec<Vec<DecisionEdit>>,
     /// The alternative that is shown.
     shown: usize,
@@ -47,6 +49,7 @@ impl Decisions {
             last_week,
             days_per_week: 1,
             calls: None,
+            is_refused: false,
             alternatives: vec![Vec::new()],
             shown: 0,
             selected: 0,
@@ -64,6 +67,11 @@ impl Decisions {
 
     pub(super) fn take(&mut self, calls: Vec<PastCall>, days_per_week: u32) {
         (self.calls, self.days_per_week) = (Some(calls), days_per_week);
+    }
+
+    /// The calls are not told: nothing is waited for.
+    pub(super) fn refuse(&mut self) {
+        self.is_refused = self.calls.is_none();
     }
 
     /// The alternatives that decide something otherwise.
@@ -223,6 +231,7 @@ impl Decisions {
         let list = Rect { height: area.height - below, ..area };
         let rows = self.rows();
         match (&self.calls, rows.is_empty()) {
+            (None, _) if self.is_refused => {}
             (None, _) => canvas.text(list, "reading the record …", Role::Warning),
             (Some(_), true) => canvas.text(list, "nothing was decided in these weeks", Role::Dim),
             _ => {}

@@ -111,6 +111,7 @@ impl BranchesPage {
             }
             Err(refusal) => {
                 self.problem = Some(refusal.message.clone());
+                self.decisions.refuse();
                 self.page = Page::Decisions;
             }
         }

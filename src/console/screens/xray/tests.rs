@@ -249,5 +249,6 @@ fn settings(runs: &std::path::Path) -> Settings {
         runs: runs.to_owned(),
         again: "novamind --run latest".to_owned(),
         lists_everybody: false,
+        opponents: |_, _, _| Ok(None),
     }
 }

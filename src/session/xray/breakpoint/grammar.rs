@@ -145,7 +145,9 @@ impl<'a> Words<'a> {
     fn number(&mut self) -> Result<f64, ConditionProblem> {
         let token = self.next();
         let Some(word) = token else { return Err(self.problem_at(None, "a number is missing")) };
-        let plain = word.text.replace('_', "");
+        let is_grouped =
+            word.text.split('_').all(|digits| digits.starts_with(|digit: char| digit.is_ascii_digit()));
+        let plain = if is_grouped { word.text.replace('_', "") } else { word.text.to_owned() };
         let (digits, unit) = plain.strip_suffix('%').map_or((plain.as_str(), 1.0), |digits| (digits, 100.0));
         let number = digits.parse::<f64>().ok().filter(|number| number.is_finite());
         number

@@ -1,0 +1,172 @@
+//! What the strong policies make of the world of a run that is over, beside the run.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ratatui::layout::Rect;
+use ratatui::text::Line as TextLine;
+
+use super::{Dialog, Outcome};
+use crate::console::action::{Action, Scope};
+use crate::console::canvas::{Canvas, centered};
+use crate::console::company::Company;
+use crate::console::effect::Effect;
+use crate::console::message::News;
+use crate::console::screens::Look;
+use crate::console::text::{fitting, wrapped};
+use crate::console::theme::Role;
+use crate::notation::dollars;
+use crate::report::opponents::{Opponent, Opponents};
+use crate::session::{Ended, Refusal};
+
+/// Widest that reads well, and its rows.
+const SIZE: (u16, u16) = (96, 16);
+/// Columns before the bars: mark, name, score.
+const NAMED: usize = 38;
+
+/// The page.
+#[derive(Default)]
+pub struct OpponentsPage {
+    found: Option<Result<Opponents, Refusal>>,
+    /// Ends the work.
+    stop: Arc<AtomicBool>,
+}
+
+impl OpponentsPage {
+    /// What it asks when it is opened.
+    pub fn opening_question(&self) -> Effect {
+        Effect::PlayOpponents(self.stop.clone())
+    }
+}
+
+impl Dialog for OpponentsPage {
+    fn what(&self) -> String {
+        "opponents".to_owned()
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::Dialog]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        vec![Action::Close]
+    }
+
+    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+        if action != Action::Close {
+            return Outcome::stay();
+        }
+        self.stop.store(true, Ordering::Relaxed);
+        Outcome::close()
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
+        if let News::Opponents(_, found) = news {
+            self.found = Some((**found).clone());
+        }
+        Outcome::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+        let own = centered(area, SIZE.0.min(area.width), SIZE.1.min(area.height));
+        canvas.clear(own, Role::Text);
+        let inside = canvas.pane(own, "Opponents", "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        canvas.pane_keys(own, &look.hints(&self.hints()));
+        let width = inside.width as usize;
+        let (role, told) = match &self.found {
+            None => (Role::Warning, "strong policies play this world from day 0 …".to_owned()),
+            Some(Err(refusal)) => (Role::Bad, refusal.message.clone()),
+            Some(Ok(opponents)) => (Role::Dim, opponents.in_words()),
+        };
+        let mut lines: Vec<TextLine<'_>> =
+            wrapped(&told, width).into_iter().map(|line| TextLine::from(canvas.span(line, role))).collect();
+        if let Some(Ok(opponents)) = &self.found {
+            lines.push(TextLine::default());
+            lines.extend(ranked(canvas, look.company, opponents, width));
+        }
+        canvas.lines(inside, &lines);
+    }
+}
+
+/// The policies, and the run among them where it has a score.
+fn ranked<'a>(
+    canvas: &Canvas<'_>,
+    company: &Company,
+    opponents: &Opponents,
+    width: usize,
+) -> Vec<TextLine<'a>> {
+    let seen = &company.seen;
+    let own = match seen.ended {
+        Some(Ended::Bankruptcy) => Some((0.0, format!("bankrupt on day {}", seen.day))),
+        Some(Ended::Horizon | Ended::Lesson) => Some((seen.cash, dollars(seen.cash))),
+        Some(Ended::Abandoned) | None => None,
+    };
+    let policy = |one: &Opponent| (one.policy.clone(), one.score(), one.in_words(), false);
+    let mut rows: Vec<_> = opponents.policies.iter().map(policy).collect();
+    if let Some((score, told)) = own {
+        rows.insert(opponents.ahead_of(score), ("You".to_owned(), score, told, true));
+    }
+    let most = rows.iter().map(|row| row.1).fold(1.0, f64::max);
+    let room = width.saturating_sub(NAMED) as f64;
+    let line = |(name, score, told, is_own): (String, f64, String, bool)| {
+        let role = if is_own { Role::Good } else { Role::Text };
+        let bar = "█".repeat((score.max(0.0) / most * room).round() as usize);
+        let mark = if is_own { "▌ " } else { "  " };
+        let told = fitting([told], width.saturating_sub(22));
+        TextLine::from(vec![
+            canvas.span(format!("{mark}{name:<20}"), role),
+            canvas.span(format!("{told:>14}  "), role),
+            canvas.span(bar, if is_own { Role::Good } else { Role::Series(0) }),
+        ])
+    };
+    rows.into_iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::dialogs::picture;
+    use crate::report::test_kit;
+
+    fn page(found: Result<Opponents, Refusal>) -> OpponentsPage {
+        OpponentsPage { found: Some(found), ..OpponentsPage::default() }
+    }
+
+    fn opponent(policy: &str, cash: f64, is_bankrupt: bool) -> Opponent {
+        Opponent { policy: policy.to_owned(), day: 35, cash, is_bankrupt, stopped: None }
+    }
+
+    #[test]
+    fn the_run_stands_among_its_opponents() {
+        let company = Company::of(&test_kit::finished());
+        let own = company.seen.cash;
+        let policies = vec![
+            opponent("ads-first", own * 2.0, false),
+            opponent("baseline", own / 2.0, false),
+            opponent("harvest-late", -12.0, true),
+        ];
+        let page = page(Ok(Opponents { day: 35, policies }));
+        for (width, height) in [(60, 14), (80, 22), (120, 38)] {
+            let text = picture(&page, &company, width, height);
+            let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part} is missing:\n{text}"));
+            assert!(at("ads-first") < at("▌ You") && at("▌ You") < at("baseline"), "{text}");
+            assert!(at(&dollars(own)) > 0 && at("bankrupt on day 35") > at("harvest-late"), "{text}");
+        }
+    }
+
+    #[test]
+    fn it_says_what_it_waits_for_and_why_there_is_nothing_in_windows_of_every_size() {
+        let company = Company::of(&test_kit::ruined());
+        let waits = OpponentsPage::default();
+        assert!(picture(&waits, &company, 60, 14).contains("strong policies play this world"));
+        let refused = page(Err(Refusal::new("not_possible", "parameters were set")));
+        assert!(picture(&refused, &company, 60, 14).contains("parameters were set"));
+        for (width, height) in
+            (0..130).step_by(9).flat_map(|width| (0..44).step_by(3).map(move |height| (width, height)))
+        {
+            picture(&waits, &company, width, height);
+            picture(&refused, &company, width, height);
+        }
+    }
+}

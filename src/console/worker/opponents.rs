@@ -1,0 +1,28 @@
+//! The opponents of a run, played on a thread of their own.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::SessionThread;
+use crate::console::message::{Message, News};
+use crate::report::opponents::PlayOpponents;
+use crate::session::Refusal;
+
+impl SessionThread {
+    /// Plays the opponents of the run that is open, and reports what became of them.
+    pub(super) fn play_opponents(&mut self, number: u64, play: PlayOpponents, stop: Arc<AtomicBool>) {
+        let Some(open) = &mut self.open else { return };
+        let missing = || Refusal::new("not_possible", "a run in memory has no record to play against");
+        let folder = open.session().folder().map(Path::to_owned).ok_or_else(missing);
+        let (news, configuration) = (self.news.clone(), self.configuration.clone());
+        std::thread::spawn(move || {
+            let goes_on = || !stop.load(Ordering::Relaxed);
+            let found = folder.and_then(|folder| play(&folder, &configuration, &goes_on));
+            // Nobody waits for what was stopped.
+            if let Some(found) = found.transpose() {
+                let _ = news.send(Message::News(News::Opponents(number, Box::new(found))));
+            }
+        });
+    }
+}

@@ -1,0 +1,80 @@
+//! Who deals are for, and the same deals for others.
+
+use serde_json::Value;
+
+use super::super::ToolId;
+use super::reading::{Unreadable, customer};
+
+/// The arguments of a call with each company that it names replaced by the one that stands for it. Elements of companies that
+/// nobody stands for are left out, and where no other is left there is no call; elements that name none stay. Calls of other
+/// tools stay as they are.
+pub fn readdressed(
+    tool: ToolId,
+    args: &Value,
+    stands_for: &mut dyn FnMut(u32) -> Option<u32>,
+) -> Option<Value> {
+    let mut args = args.clone();
+    if !matches!(tool, ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal) {
+        return Some(args);
+    }
+    let is_named = args.get("deals").is_some();
+    let deals = if is_named { args.get_mut("deals")? } else { &mut args };
+    let is_left = match deals {
+        Value::Array(list) => {
+            let count = list.len();
+            list.retain_mut(|element| readdress(element, stands_for));
+            list.len() == count || !list.is_empty()
+        }
+        single => readdress(single, stands_for),
+    };
+    is_left.then_some(args)
+}
+
+/// Puts another company into an element; false where nobody stands for the one it names.
+fn readdress(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+    let named = match element {
+        Value::Object(map) => map.get_mut("customer_id"),
+        Value::Array(list) => list.first_mut(),
+        single => Some(single),
+    };
+    let Some(named) = named else { return true };
+    let number = match customer(Some(named), "") {
+        Ok(number) => u32::try_from(number).ok(),
+        Err(Unreadable::Call(_) | Unreadable::Element(_)) => None,
+    };
+    match number.map(stands_for) {
+        Some(Some(other)) => *named = other.into(),
+        Some(None) => return false,
+        None => {}
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn each_form_of_a_deal_reaches_who_stands_for_its_company() {
+        let moved =
+            |tool, args| readdressed(tool, &args, &mut |customer| (customer != 13).then_some(customer + 100));
+        let send = ToolId::SendEnterpriseDeal;
+        let given = json!({"deals": [[7, [["B", 20]]], {"customer_id": "8", "offerings": [["C", 9]]}, [13, []], 5.5]});
+        let expected =
+            json!({"deals": [[107, [["B", 20]]], {"customer_id": 108, "offerings": [["C", 9]]}, 5.5]});
+        assert_eq!(moved(send, given), Some(expected));
+        let reject = ToolId::RejectEnterpriseDeal;
+        let ended = moved(reject, json!({"deals": [9, [10], "x"]}));
+        assert_eq!(ended, Some(json!({"deals": [109, [110], "x"]})));
+        assert_eq!(
+            [moved(reject, json!({"deals": 13})), moved(reject, json!({"deals": [[13]]}))],
+            [None, None]
+        );
+        assert_eq!(moved(reject, json!({"customer_id": 3})), Some(json!({"customer_id": 103})));
+        for (tool, args) in [(ToolId::SetPrices, json!({"A": 7})), (reject, json!({"deals": []}))] {
+            assert_eq!(moved(tool, args.clone()), Some(args));
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Which customer has which number.
+//!
+//! Customers are numbered as they come, over all groups; what chance gives one is keyed by its group and its running number
+//! there. So two companies under the same luck have the same customers under other numbers, once more or fewer came.
+
+use crate::canonical::canonical;
+use crate::identifiers::Group;
+
+/// The numbers that were given, in the order of the days.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CustomerNumbers {
+    given: Vec<ArrivalRun>,
+}
+
+/// Customers of one group that came on one day: consecutive numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArrivalRun {
+    /// Day of arrival.
+    pub day: u32,
+    /// Their group.
+    pub group: Group,
+    /// Customer number of the first.
+    pub first_customer: u32,
+    /// Running number of the first within the group.
+    pub first_n: u32,
+    /// How many.
+    pub count: u32,
+}
+
+canonical! {
+    CustomerNumbers { given }
+    ArrivalRun { day, group, first_customer, first_n, count }
+}
+
+impl ArrivalRun {
+    /// Running numbers within the group, with customer numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        (self.first_n..self.first_n + self.count).zip(self.first_customer..)
+    }
+
+    /// The same run in pieces of so many.
+    pub fn pieces(self, most: u32) -> impl Iterator<Item = ArrivalRun> {
+        (0..self.count).step_by(most as usize).map(move |from| ArrivalRun {
+            first_customer: self.first_customer + from,
+            first_n: self.first_n + from,
+            count: most.min(self.count - from),
+            ..self
+        })
+    }
+}
+
+impl CustomerNumbers {
+    /// Takes down that consecutive customers came.
+    pub(super) fn give(&mut self, run: ArrivalRun) {
+        if run.count > 0 {
+            self.given.push(run);
+        }
+    }
+
+    /// Group and running number of a customer, if that number was ever given to one.
+    pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
+        let (run, offset) = self.place(customer)?;
+        Some((run.group, run.first_n + offset))
+    }
+
+    /// Day on which a customer came, if that number was ever given to one.
+    pub fn arrival_day(&self, customer: u32) -> Option<u32> {
+        self.place(customer).map(|(run, _)| run.day)
+    }
+
+    /// Number of the customer with a running number in a group, if it has come.
+    pub fn of(&self, group: Group, n: u32) -> Option<u32> {
+        let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
+        let run = self.given.iter().rev().find(holds)?;
+        Some(run.first_customer + (n - run.first_n))
+    }
+
+    fn place(&self, customer: u32) -> Option<(&ArrivalRun, u32)> {
+        let after = self.given.partition_point(|run| run.first_customer <= customer);
+        let run = self.given[..after].last()?;
+        let offset = customer - run.first_customer;
+        (offset < run.count).then_some((run, offset))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Customers, FIRST_CUSTOMER};
+    use crate::identifiers::Group;
+
+    #[test]
+    fn a_number_leads_to_a_customer_and_back() {
+        let [one, other] = [Group::all().next(), Group::all().nth(3)].map(|group| group.expect("a group"));
+        let mut customers = Customers::default();
+        for (day, group, count) in [(1, one, 3), (1, other, 2), (2, one, 0), (3, one, 4)] {
+            customers.arrive(day, group, count);
+        }
+        let numbers = &customers.numbers;
+        let named = |number| numbers.find(FIRST_CUSTOMER + number);
+        assert_eq!([named(2), named(4), named(5)], [Some((one, 3)), Some((other, 2)), Some((one, 4))]);
+        assert_eq!([named(9), numbers.find(FIRST_CUSTOMER - 1)], [None, None]);
+        assert_eq!(numbers.arrival_day(FIRST_CUSTOMER + 8), Some(3));
+        for number in 0..9 {
+            let (group, n) = named(number).expect("a customer");
+            assert_eq!(numbers.of(group, n), Some(FIRST_CUSTOMER + number));
+        }
+        assert_eq!([numbers.of(one, 8), numbers.of(other, 3), numbers.of(one, 0)], [None; 3]);
+    }
+}

@@ -1,6 +1,8 @@
 //! `novamind bench`: the speed of this machine's simulator.
 
 mod console;
+#[cfg(feature = "server")]
+mod http;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -39,7 +41,11 @@ pub struct Options {
 
 /// Everything that is measured.
 fn every_case() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().chain(console::CASES)
+    #[cfg(feature = "server")]
+    let served = http::CASES;
+    #[cfg(not(feature = "server"))]
+    let served: &[Case] = &[];
+    CASES.iter().chain(console::CASES).chain(served)
 }
 
 impl Options {

@@ -58,6 +58,12 @@ impl NewRunOptions {
         NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
     }
 
+    /// Whether a scenario is asked for.
+    #[cfg(feature = "server")]
+    pub fn names_scenario(&self) -> bool {
+        self.scenario.is_some()
+    }
+
     /// The same, played by somebody of this label unless another was named.
     #[cfg(feature = "server")]
     pub fn played_by(&self, label: &str) -> NewRunOptions {

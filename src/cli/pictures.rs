@@ -57,7 +57,7 @@ enum PictureFormat {
 /// Largest window, columns and rows: a picture of more is a mistake.
 const LARGEST: u16 = 500;
 
-fn size(text: &str) -> Result<(u16, u16), String> {
+pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
     let parts = text.split_once(['x', '×']);
     let number = |part: &str| part.trim().parse::<u16>().ok().filter(|number| (1..=LARGEST).contains(number));
     parts

@@ -1,5 +1,7 @@
 //! `novamind replay`: play a recorded run again, in the console or headless to compare every state.
 
+mod cast;
+
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -20,17 +22,40 @@ pub struct Options {
     /// Simulate again and compare every recorded state.
     #[arg(long)]
     verify: bool,
-    /// Begin after this week.
-    #[arg(long, value_name = "N", conflicts_with = "verify")]
-    week: Option<u32>,
+    /// Begin after this week; with --cast: record this week, or from the first to the last of A..B.
+    #[arg(long, value_name = "N|A..B", conflicts_with = "verify", value_parser = weeks)]
+    week: Option<(u32, Option<u32>)>,
     /// Begin on the X-ray screen, at the end of the record unless --week says otherwise; of a debug run, or of one that is over.
     #[arg(long, conflicts_with = "verify")]
     xray: bool,
+    /// Record the replay for terminal players instead of showing it: an asciicast, action by action.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["verify", "xray"])]
+    cast: Option<PathBuf>,
+    #[command(flatten)]
+    recording: cast::RecordingOptions,
+}
+
+/// A week, or the first and the last of some.
+fn weeks(text: &str) -> Result<(u32, Option<u32>), String> {
+    let number = |text: &str| text.parse::<u32>().map_err(|_| format!("{text} is not the number of a week"));
+    match text.split_once("..") {
+        None => Ok((number(text)?, None)),
+        Some((first, last)) => match (number(first)?, number(last)?) {
+            (first, last) if 1 <= first && first <= last => Ok((first, Some(last))),
+            (first, last) => Err(format!(
+                "weeks {first} to {last} are none; write the first, two dots, the last, for instance 20..24"
+            )),
+        },
+    }
 }
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    if options.verify { check(options, context) } else { show(options, context) }
+    match &options.cast {
+        Some(file) => cast::record(file, recorded(&options.run), options.week, &options.recording, context),
+        None if options.verify => check(options, context),
+        None => show(options, context),
+    }
 }
 
 fn show(options: &Options, context: &Context) -> Result<(), Failure> {
@@ -45,7 +70,12 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
         ));
     }
     let (goal, from) = match (options.week, options.xray) {
-        (Some(week), _) => (Goal::Week(week), format!("week {week}")),
+        (Some((_, Some(_))), _) => {
+            return Err(Failure::usage(
+                "a replay on the screen begins after one week; --cast records several",
+            ));
+        }
+        (Some((week, None)), _) => (Goal::Week(week), format!("week {week}")),
         (None, true) => (Goal::Last, "the end".to_owned()),
         (None, false) => (Goal::Week(0), "week 0".to_owned()),
     };

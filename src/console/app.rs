@@ -14,6 +14,7 @@ mod opponents;
 mod orders;
 mod overlay;
 mod record;
+mod settings;
 mod stopped;
 mod trail;
 mod unsent;
@@ -52,6 +53,7 @@ use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
 
 pub use super::attention::Layer;
 use leaving::Closing;
+pub use settings::Settings;
 pub use stopped::Cover;
 
 /// Screens that back remembers.
@@ -266,26 +268,6 @@ pub struct App {
     /// Columns and rows of the window in the last frame.
     pub window: (u16, u16),
     orders: Vec<Order>,
-}
-
-/// How the console looks and where it keeps things.
-pub struct Settings {
-    /// Colours.
-    pub theme: Theme,
-    /// Keys.
-    pub keys: Keys,
-    /// What is drawn with.
-    pub glyphs: Glyphs,
-    /// Configuration of this person.
-    pub configuration: Configuration,
-    /// Folder of the runs.
-    pub runs: PathBuf,
-    /// The command that goes on with the newest run.
-    pub again: String,
-    /// The start menu lists the runs of all participants.
-    pub lists_everybody: bool,
-    /// What plays the opponents of a run.
-    pub opponents: PlayOpponents,
 }
 
 impl App {

@@ -18,7 +18,7 @@ use super::message::{Message, News, VisitNews};
 use super::request::{Recorded, Request, VisitRequest};
 use super::worker::{Job, Workers};
 use crate::session::record::LeavingCause;
-use crate::session::{Access, Goal, Study};
+use crate::session::{Access, Goal, PlaybackPosition, Study};
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -107,6 +107,19 @@ impl Headless {
     /// It does not open.
     pub fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Replay { recorded, goal, follow }))
+    }
+
+    /// Goes somewhere in the replay.
+    ///
+    /// # Errors
+    /// It does not get there.
+    pub fn go(&mut self, goal: Goal) -> io::Result<()> {
+        self.open_with(Effect::Go(goal))
+    }
+
+    /// Where the replay is; none where nothing is replayed.
+    pub fn place(&self) -> Option<&PlaybackPosition> {
+        self.app.run()?.viewer.as_ref().map(|viewer| &viewer.place)
     }
 
     /// Plays a recorded run again from a moment on, and shows its hidden state where it may.

@@ -8,6 +8,7 @@ mod action;
 mod agreement;
 pub mod app;
 mod ascii;
+pub mod asciicast;
 mod attention;
 mod canvas;
 mod company;

@@ -15,6 +15,7 @@ mod page;
 mod remote;
 mod request;
 mod schema;
+mod transcript;
 
 pub use announcement::Announcement;
 pub use client::write_client;
@@ -23,3 +24,4 @@ pub use mcp::serve_mcp;
 pub use page::{PageOf, page, write_documents};
 pub use remote::{Remote, Reply};
 pub use schema::functions;
+pub use transcript::{ForeignCall, ForeignTranscript, PlayedTranscript};

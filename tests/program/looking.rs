@@ -86,8 +86,9 @@ fn why_tells_the_causes_of_a_group_and_keeps_what_is_hidden() {
         let trajectory = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("lines");
         let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
         if mode == "baseline" {
-            let refused =
-                answers.iter().all(|answer| answer.contains("refused not_in_this_mode: causes are found by"));
+            let refused = answers
+                .iter()
+                .all(|answer| answer.contains("refused not_in_this_mode: why and what-if simulate"));
             assert!(refused && looks.is_empty(), "{}", said.out);
             continue;
         }

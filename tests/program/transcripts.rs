@@ -116,3 +116,71 @@ fn an_evaluation_log_has_a_sample_with_every_message_and_the_cash_as_its_score()
     let called = messages.iter().filter(|message| message["tool_calls"].is_array()).count();
     assert!(called > 8 && roles("tool") == called, "{called}");
 }
+
+#[test]
+fn a_trajectory_becomes_a_run_in_the_same_state() {
+    let home = Home::new();
+    let (run, hash) = played(&home);
+    export(&home, &run, "atif");
+    let file = home.0.path().join("atif");
+    let other = Home::new();
+    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains(&hash), "{}", said.out);
+    let folder = other.only_run();
+    assert_eq!(last_hash(&folder), hash);
+    let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
+    assert!(
+        manifest.contains("participant = \"P01\"") && manifest.contains("mode = \"sandbox\""),
+        "{manifest}"
+    );
+    assert_eq!(other.run(&["replay", "latest", "--verify"]).code, 0);
+    // Another world answers otherwise, and says so.
+    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
+    said.fails(1, &["ended in another state"]);
+    let lines = other.0.path().join("calls.jsonl");
+    fs::write(&lines, "{\"tool\": \"set_prices\", \"args\": {\"A\": 12}, \"success\": false}\n")
+        .expect("a file");
+    let lines = lines.to_string_lossy().into_owned();
+    other.run(&["runs", "import", "--transcript", &lines]).fails(2, &["--seed"]);
+    other.run(&["runs", "import", "--transcript", &lines, "--seed", "3"]).fails(1, &["answered otherwise"]);
+    other.run(&["runs", "import", "--transcript", "nothing.json"]).fails(1, &["nothing.json"]);
+    other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).fails(2, &["--transcript"]);
+}
+
+#[test]
+fn weeks_of_a_replay_are_recorded_for_terminal_players() {
+    let home = Home::new();
+    let (run, _) = played(&home);
+    let file = home.0.path().join("talk.cast");
+    let file = file.to_string_lossy().into_owned();
+    let said =
+        home.run(&["replay", &run, "--cast", &file, "--week", "2..3", "--speed", "2", "--size", "80x24"]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    let lines: Vec<Value> = fs::read_to_string(&file)
+        .expect("a recording")
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    assert_eq!(
+        (&lines[0]["version"], &lines[0]["width"], &lines[0]["height"]),
+        (&json!(2), &json!(80), &json!(24))
+    );
+    let times: Vec<f64> = lines[1..].iter().map(|line| line[0].as_f64().expect("a time")).collect();
+    assert!(times.is_sorted() && times.len() > 6, "{times:?}");
+    let side = |length| std::num::NonZero::new(length).expect("a side");
+    let mut screen = vt100::Parser::new(side(24), side(80), 0);
+    let mut seen = Vec::new();
+    for line in &lines[1..] {
+        screen.process(line[2].as_str().expect("output").as_bytes());
+        seen.push(screen.screen().contents());
+    }
+    let at = |part: &str| seen.iter().position(|text| text.contains(part));
+    let [first, last] =
+        ["day 7", "day 21"].map(|part| at(part).unwrap_or_else(|| panic!("{part}: {seen:#?}")));
+    assert!(first < last && last + 3 >= seen.len(), "{first} {last} of {}", seen.len());
+    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not recorded"]);
+    let said = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
+    assert!(said.code == 2 && said.err.contains("20..24"), "{}", said.err);
+    home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).fails(1, &["/nowhere/talk.cast"]);
+}

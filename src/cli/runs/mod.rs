@@ -1,6 +1,8 @@
 //! `novamind runs`: list, show, end, delete, export, import.
 
 mod formats;
+#[cfg(feature = "server")]
+mod transcript;
 mod transfer;
 
 pub use transfer::{as_csv, tidy_up_on_signals, write_tables};
@@ -70,7 +72,7 @@ enum RunsCommand {
     },
     /// Seal a run into one file to hand over, or all runs with tables of their runs and weeks.
     Export(transfer::Export),
-    /// Import the run of an archive, after checking every byte of it.
+    /// Import the run of an archive, after checking every byte of it, or play a transcript that was made elsewhere.
     Import(transfer::Import),
     /// Explain every column of the tables that `export --all` writes.
     Columns,
@@ -135,7 +137,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print(&format!("run {id} is deleted\n"))
         }
         Some(RunsCommand::Export(export)) => export.run(&folders, options.json, context),
-        Some(RunsCommand::Import(import)) => import.run(&runs, options.json),
+        Some(RunsCommand::Import(import)) => import.run(&runs, options.json, context),
         Some(RunsCommand::Columns) => transfer::explain_columns(options.json),
         Some(RunsCommand::Schema) => print(SCHEMA),
     }

@@ -6,7 +6,11 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::formats::{self, ExportFormat};
+#[cfg(feature = "server")]
+use super::transcript::import_transcript;
 use super::{find_in, list_all};
+#[cfg(feature = "server")]
+use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::notation::csv_cell;
@@ -45,11 +49,20 @@ pub struct Export {
 #[derive(Debug, Args)]
 pub struct Import {
     /// Archives, as `runs export` makes them.
-    #[arg(required = true)]
+    #[cfg_attr(feature = "server", arg(required_unless_present = "transcript"))]
+    #[cfg_attr(not(feature = "server"), arg(required = true))]
     files: Vec<PathBuf>,
     /// Import one archive under this name, beside another record of the same run.
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
+    /// Play a transcript that was made elsewhere in a new run: a trajectory of the Agent Trajectory Interchange Format, or lines
+    /// with a tool and its args each.
+    #[cfg(feature = "server")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
+    transcript: Option<PathBuf>,
+    #[cfg(feature = "server")]
+    #[command(flatten)]
+    made_of: NewRunOptions,
 }
 
 /// What signs archives, and what seals the snapshots of runs besides the runs.
@@ -266,8 +279,20 @@ fn told(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> Value {
 
 impl Import {
     /// Runs the command. One archive that cannot be taken does not keep the others out.
-    pub fn run(&self, runs: &Path, json: bool) -> Result<(), Failure> {
+    pub fn run(&self, runs: &Path, json: bool, context: &Context) -> Result<(), Failure> {
         tidy_up_on_signals();
+        #[cfg(feature = "server")]
+        match &self.transcript {
+            Some(file) => return import_transcript(file, &self.made_of, context),
+            None if self.made_of.ask_for_one() => {
+                return Err(Failure::usage(
+                    "an archive says what its run is; options of a run go with --transcript",
+                ));
+            }
+            None => {}
+        }
+        #[cfg(not(feature = "server"))]
+        let _ = context;
         if self.under.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--under names one run: import one archive with it"));
         }

@@ -3,6 +3,8 @@
 mod resources;
 mod tools;
 
+pub(super) use tools::request;
+
 use std::io;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,0 +1,126 @@
+//! `novamind replay RUN --cast FILE`: the replay as a recording that terminal players show.
+
+use std::path::Path;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::super::pictures::size;
+use super::super::{Context, Failure, print};
+use super::note_look;
+use crate::console::app::Settings;
+use crate::console::asciicast::Asciicast;
+use crate::console::glyphs::Glyphs;
+use crate::console::headless::Headless;
+use crate::console::keys::Keys;
+use crate::console::request::Recorded;
+use crate::console::theme::Theme;
+use crate::lab::play_opponents;
+use crate::session::Goal;
+
+/// How long the frame after an action stays, and the one after a week, at speed 1.
+const AFTER_ACTION: Duration = Duration::from_millis(700);
+const AFTER_WEEK: Duration = Duration::from_millis(2500);
+
+/// Options of a recording.
+#[derive(Debug, Args)]
+pub struct RecordingOptions {
+    /// With --cast: so many times as fast, from 0.1 to 100.
+    #[arg(long, default_value_t = 1.0, value_name = "X", requires = "cast", value_parser = speed)]
+    speed: f64,
+    /// With --cast: columns and rows of the window.
+    #[arg(long, default_value = "120x40", requires = "cast", value_parser = size)]
+    size: (u16, u16),
+    /// With --cast: theme.
+    #[arg(long, default_value = "dark", value_name = "NAME", requires = "cast")]
+    theme: String,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed: &f64| (0.1..=100.0).contains(speed));
+    speed.ok_or_else(|| "a speed is a number from 0.1 to 100".to_owned())
+}
+
+/// Records the weeks of a replay into a file: one week, from the first to the last of some, or all.
+pub fn record(
+    file: &Path,
+    recorded: Recorded,
+    weeks: Option<(u32, Option<u32>)>,
+    options: &RecordingOptions,
+    context: &Context,
+) -> Result<(), Failure> {
+    let (first, last) = match weeks {
+        None => (1, u32::MAX),
+        Some((first, last)) => (first.max(1), last.unwrap_or(first.max(1))),
+    };
+    note_look(&recorded, &format!("cast {first}"), context)?;
+    let settings = Settings {
+        theme: Theme::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
+        glyphs: Glyphs::Braille,
+        configuration: context.configuration.clone(),
+        runs: context.runs()?,
+        again: context.again(),
+        lists_everybody: false,
+        opponents: play_opponents,
+    };
+    let mut console = Headless::new(settings, options.size);
+    let recording = recording(&mut console, recorded, (first, last), options);
+    console.finish();
+    let (text, frames) = recording?;
+    std::fs::write(file, text).map_err(|error| Failure::failed(format!("{}: {error}", file.display())))?;
+    print(&format!("{}: {frames} frames\n", file.display()))
+}
+
+/// The recording, and of how many frames it is.
+fn recording(
+    console: &mut Headless,
+    recorded: Recorded,
+    (first, last): (u32, u32),
+    options: &RecordingOptions,
+) -> Result<(String, usize), Failure> {
+    let failed = |error: std::io::Error| Failure::failed(error.to_string());
+    let title = match &recorded {
+        Recorded::Run(id) => format!("NovaMind run {id}"),
+        Recorded::File(path) => format!("NovaMind {}", path.display()),
+    };
+    console.replay(recorded, Goal::Week(first - 1), false).map_err(failed)?;
+    let stays = |pause: Duration| pause.div_f64(options.speed);
+    let mut cast = Asciicast::new(options.size, &title);
+    let mut frames = 0;
+    loop {
+        let place = console.place().ok_or_else(|| Failure::failed("nothing is replayed"))?;
+        let (line, week, weeks, at_end) = (place.line, place.week, place.weeks, place.at_end);
+        if first > weeks {
+            return Err(Failure::usage(format!(
+                "week {first} is not recorded; the record has {weeks} weeks"
+            )));
+        }
+        let is_over = at_end || week >= last;
+        let is_new_week = frames == 0 || place.chapter.done == 0;
+        let frame = console.draw();
+        cast.show(&frame, stays(if is_over || is_new_week { AFTER_WEEK } else { AFTER_ACTION }))
+            .map_err(failed)?;
+        frames += 1;
+        if is_over {
+            return Ok((cast.finish(), frames));
+        }
+        console.go(Goal::Lines(1)).map_err(failed)?;
+        if console.place().is_some_and(|place| place.line == line) {
+            return Ok((cast.finish(), frames));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_are_numbers_that_make_sense() {
+        assert_eq!((speed("2"), speed("0.1")), (Ok(2.0), Ok(0.1)));
+        for wrong in ["0", "-1", "nan", "inf", "fast", "101"] {
+            assert!(speed(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! `novamind runs import --transcript`: what was played elsewhere becomes a run.
+
+use std::path::Path;
+
+use crate::cli::new_run::NewRunOptions;
+use crate::cli::run::progress_bar;
+use crate::cli::{Context, Failure, print};
+use crate::server::ForeignTranscript;
+use crate::session::{Mode, NewRun, Session};
+
+/// Largest transcript, bytes: 500 days of an agent are a few megabytes.
+const LARGEST: u64 = 512 << 20;
+/// Answers that differ are listed up to this many.
+const LISTED: usize = 10;
+
+/// Plays a transcript in a new run. What the options do not say of it, the transcript says.
+pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context) -> Result<(), Failure> {
+    let named = |why: String| Failure::failed(format!("{}: {why}", file.display()));
+    let length = std::fs::metadata(file).map_err(|error| named(error.to_string()))?.len();
+    if length > LARGEST {
+        return Err(named(format!("it has {length} bytes; a transcript has at most {LARGEST}")));
+    }
+    let text = std::fs::read_to_string(file).map_err(|error| named(error.to_string()))?;
+    let read = ForeignTranscript::read(&text).map_err(named)?;
+    let asked = made_of.played_by(read.player.as_deref().unwrap_or("transcript"));
+    let asked = asked.new_run(Mode::Sandbox, context)?;
+    let scenario = read.scenario.clone().filter(|_| !made_of.names_scenario());
+    let new = NewRun {
+        seed: asked.seed.or(read.seed),
+        days: asked.days.or(read.days),
+        cash: asked.cash.or(read.cash),
+        scenario: scenario.unwrap_or(asked.scenario.clone()),
+        sync_calls: false,
+        ..asked
+    };
+    if new.seed.is_none() {
+        return Err(Failure::usage("the transcript names no seed: name it with --seed"));
+    }
+    let mut session = Session::create(new, &context.configuration)?;
+    let bar = progress_bar(read.calls.len() as u64, "calls");
+    let played = read.play(&mut session, &mut |made| bar.set_position(made as u64));
+    bar.finish_and_clear();
+    session.save()?;
+    let (run, day, hash) = (session.manifest().id.clone(), session.day(), session.state_hash().0);
+    print(&format!("run {run}: {} calls, day {day}, state {hash}\n", played.made))?;
+    for (place, tool, said) in played.otherwise.iter().take(LISTED) {
+        print(&format!("step {place}: {tool} is answered otherwise than in the transcript: {said}\n"))?;
+    }
+    match played.otherwise.len() {
+        0 if read.state_hash.as_ref().is_some_and(|own| *own != hash) => Err(Failure::failed(
+            "every call is answered as in the transcript, which ended in another state: its program or its parameters \
+             were others; the run is kept",
+        )),
+        0 => Ok(()),
+        count => Err(Failure::failed(format!(
+            "{count} calls are answered otherwise: the run is kept, and is not the one of the transcript"
+        ))),
+    }
+}

@@ -1,0 +1,108 @@
+//! A recording of frames as an asciicast of version 2, which terminal players show (<https://docs.asciinema.org>).
+
+use std::time::Duration;
+
+use ratatui::backend::{Backend, CrosstermBackend};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use serde_json::json;
+
+/// The cursor is hidden, and the window is empty.
+const BEGINNING: &str = "\u{1b}[?25l\u{1b}[0m\u{1b}[2J";
+
+/// Frames one after the other, each as what changes in the window.
+pub struct Asciicast {
+    lines: String,
+    shown: Buffer,
+    time: Duration,
+}
+
+impl Asciicast {
+    /// A recording in a window of so many columns and rows.
+    pub fn new((columns, rows): (u16, u16), title: &str) -> Asciicast {
+        // Colours belong to the recording, whatever the terminal of this process shows.
+        crossterm::style::force_color_output(true);
+        let header = json!({
+            "version": 2, "width": columns, "height": rows, "title": title, "env": { "TERM": "xterm-256color" },
+        });
+        let mut recording = Asciicast {
+            lines: format!("{header}\n"),
+            shown: Buffer::empty(Rect::new(0, 0, columns, rows)),
+            time: Duration::ZERO,
+        };
+        recording.write(BEGINNING);
+        recording
+    }
+
+    /// Shows a frame of that window for a while.
+    ///
+    /// # Errors
+    /// It cannot be written as what a terminal understands.
+    pub fn show(&mut self, frame: &Buffer, stays: Duration) -> std::io::Result<()> {
+        let mut bytes = Vec::new();
+        CrosstermBackend::new(&mut bytes).draw(self.shown.diff(frame).into_iter())?;
+        self.write(&String::from_utf8_lossy(&bytes));
+        self.shown = frame.clone();
+        self.time += stays;
+        Ok(())
+    }
+
+    /// The recording; its last frame stays as long as was asked.
+    pub fn finish(mut self) -> String {
+        self.write("");
+        self.lines
+    }
+
+    fn write(&mut self, output: &str) {
+        self.lines += &format!("{}\n", json!([self.time.as_secs_f64(), "o", output]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::style::{Color, Style};
+    use std::num::NonZero;
+
+    use serde_json::Value;
+
+    use super::*;
+    use crate::console::photograph::text;
+
+    #[test]
+    fn a_terminal_shows_each_frame_at_its_time() {
+        let size = (20, 3);
+        let area = Rect::new(0, 0, size.0, size.1);
+        let mut frames = Vec::new();
+        for words in ["first ─ frame", "second", "Ω ▌ third"] {
+            let mut frame = Buffer::empty(area);
+            frame.set_string(1, 1, words, Style::new().fg(Color::Red));
+            frames.push(frame);
+        }
+        let mut recording = Asciicast::new(size, "a title");
+        for frame in &frames {
+            recording.show(frame, Duration::from_millis(1500)).expect("it is written");
+        }
+        let recording = recording.finish();
+        let lines: Vec<Value> =
+            recording.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        assert_eq!(
+            (&lines[0]["version"], &lines[0]["width"], &lines[0]["height"]),
+            (&2.into(), &20.into(), &3.into())
+        );
+        let times: Vec<f64> = lines[1..].iter().filter_map(|line| line[0].as_f64()).collect();
+        assert_eq!(times, [0.0, 0.0, 1.5, 3.0, 4.5]);
+        let side = |length| NonZero::new(length).expect("a side");
+        let mut screen = vt100::Parser::new(side(size.1), side(size.0), 0);
+        let mut seen = Vec::new();
+        for line in &lines[1..] {
+            screen.process(line[2].as_str().expect("output").as_bytes());
+            seen.push(screen.screen().contents());
+        }
+        let trimmed =
+            |text: &str| text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n").trim_end().to_owned();
+        for (frame, seen) in frames.iter().zip(&seen[1..]) {
+            assert_eq!(trimmed(seen), trimmed(&text(frame)));
+        }
+        assert!(recording.contains("[38;5;1;"), "{recording}");
+    }
+}

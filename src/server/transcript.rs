@@ -1,0 +1,225 @@
+//! A transcript that was made elsewhere, played call by call (docs/formats/exports.md#importing-a-transcript).
+
+use serde_json::{Map, Value};
+
+use super::answering::answer;
+use super::mcp::request;
+use crate::session::{Session, Via};
+use crate::tools::{ToolId, find};
+
+/// What somebody did with the tools of this program, in order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForeignTranscript {
+    /// Who it says has played.
+    pub player: Option<String>,
+    /// What it says of its world, where it says it.
+    pub seed: Option<u64>,
+    /// Name of the scenario.
+    pub scenario: Option<String>,
+    /// Last day.
+    pub days: Option<u32>,
+    /// Cash on day 0, dollars.
+    pub cash: Option<f64>,
+    /// Hash of the state it led to.
+    pub state_hash: Option<String>,
+    /// Its calls.
+    pub calls: Vec<ForeignCall>,
+}
+
+/// A call in a transcript.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForeignCall {
+    /// Where it stands: number of its step or line, counted from 1.
+    pub place: usize,
+    /// The tool as it is called here.
+    pub tool: String,
+    /// Its arguments.
+    pub arguments: Map<String, Value>,
+    /// Whether it was accepted; none where the transcript does not say.
+    pub accepted: Option<bool>,
+}
+
+/// What came of playing a transcript.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct PlayedTranscript {
+    /// Calls that were made, weeks and statements among them.
+    pub made: usize,
+    /// Calls that were answered otherwise than the transcript says, or that the run no longer took: place, tool, what it said.
+    pub otherwise: Vec<(usize, String, String)>,
+}
+
+impl ForeignTranscript {
+    /// Reads a trajectory in the Agent Trajectory Interchange Format, or lines with a `tool` and its `args` each.
+    ///
+    /// # Errors
+    /// It is neither, or no call in it is one of a tool of this program: why, in words.
+    pub fn read(text: &str) -> Result<ForeignTranscript, String> {
+        let read = match serde_json::from_str::<Value>(text) {
+            Ok(Value::Object(whole)) if whole.contains_key("steps") => of_steps(&whole),
+            _ => of_lines(text)?,
+        };
+        match read.calls.is_empty() {
+            true => Err("it holds no call of a tool of this program".to_owned()),
+            false => Ok(read),
+        }
+    }
+
+    /// Makes the calls in a run. `progress` is told of each.
+    pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
+        let mut played = PlayedTranscript::default();
+        for call in &self.calls {
+            let said = answer(session, request(&call.tool, call.arguments.clone()), Via::Script);
+            let accepted = said.succeeded();
+            if call.accepted.is_some_and(|before| before != accepted) {
+                let told = said.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
+                played.otherwise.push((call.place, call.tool.clone(), told));
+            }
+            played.made += 1;
+            progress(played.made);
+        }
+        played
+    }
+}
+
+/// The tool behind a name as clients write it: some put the name of the server before it.
+fn own_tool(name: &str) -> Option<&'static str> {
+    let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
+    let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
+    let known = |name: &str| ToolId::all().map(ToolId::name).find(|own| *own == name);
+    known(bare).or_else(|| find(bare).map(|tool| tool.spec().name()))
+}
+
+fn of_steps(whole: &Map<String, Value>) -> ForeignTranscript {
+    let steps = whole["steps"].as_array().map_or(&[][..], Vec::as_slice);
+    let world = &whole.get("final_metrics").map_or(&Value::Null, |metrics| &metrics["extra"]);
+    let calls = steps.iter().enumerate().flat_map(|(at, step)| {
+        let calls = step["tool_calls"].as_array().map_or(&[][..], Vec::as_slice);
+        calls.iter().filter_map(move |call| {
+            let arguments = call["arguments"].as_object().cloned().unwrap_or_default();
+            let tool = own_tool(call["function_name"].as_str()?)?.to_owned();
+            Some(ForeignCall {
+                place: at + 1,
+                tool,
+                arguments,
+                accepted: accepted(step, &call["tool_call_id"]),
+            })
+        })
+    });
+    ForeignTranscript {
+        player: whole.get("agent").and_then(|agent| agent["name"].as_str()).map(str::to_owned),
+        seed: world["seed"].as_u64(),
+        scenario: world["scenario"].as_str().map(str::to_owned),
+        days: world["days"].as_u64().and_then(|days| u32::try_from(days).ok()),
+        cash: world["starting_cash"].as_f64(),
+        state_hash: world["state_hash"].as_str().filter(|hash| !hash.is_empty()).map(str::to_owned),
+        calls: calls.collect(),
+    }
+}
+
+/// Whether the observation of a step says that a call was accepted, where it says so.
+fn accepted(step: &Value, id: &Value) -> Option<bool> {
+    let results = step["observation"]["results"].as_array()?;
+    let own = results.iter().find(|result| result["source_call_id"] == *id)?;
+    let said: Value = serde_json::from_str(own["content"].as_str()?).ok()?;
+    match (&said["success"], said.get("dashboard")) {
+        (Value::Bool(success), _) => Some(*success),
+        (_, Some(_)) => Some(true),
+        _ => None,
+    }
+}
+
+fn of_lines(text: &str) -> Result<ForeignTranscript, String> {
+    let mut calls = Vec::new();
+    for (at, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let place = at + 1;
+        let read: Value = serde_json::from_str(line).map_err(|error| {
+            format!("line {place} is no JSON ({error}), and the whole is no trajectory with steps")
+        })?;
+        let name = read["tool"].as_str().ok_or_else(|| format!("line {place} names no tool"))?;
+        let tool = own_tool(name).ok_or_else(|| format!("line {place}: there is no tool {name}"))?.to_owned();
+        let arguments = match read.get("args").or_else(|| read.get("arguments")) {
+            None | Some(Value::Null) => Map::new(),
+            Some(Value::Object(arguments)) => arguments.clone(),
+            Some(_) => return Err(format!("line {place}: the arguments are no object")),
+        };
+        calls.push(ForeignCall { place, tool, arguments, accepted: read["success"].as_bool() });
+    }
+    Ok(ForeignTranscript {
+        player: None,
+        seed: None,
+        scenario: None,
+        days: None,
+        cash: None,
+        state_hash: None,
+        calls,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::session::{Configuration, NewRun};
+
+    #[test]
+    fn names_are_read_as_clients_write_them() {
+        for name in ["set_prices", "mcp__novamind__set_prices", "novamind.set_prices", "novamind/set_prices"]
+        {
+            assert_eq!(own_tool(name), Some("set_prices"), "{name}");
+        }
+        assert_eq!((own_tool("next_week"), own_tool("query")), (Some("next_week"), Some("query")));
+        assert_eq!([own_tool("bash"), own_tool(""), own_tool("set_prices_now")], [None; 3]);
+    }
+
+    #[test]
+    fn lines_and_steps_are_played_and_what_is_answered_otherwise_is_told() {
+        let forecast = json!({"point": 1e6, "lower": 0, "upper": 2e6});
+        let predictions =
+            json!({"cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast});
+        let week = json!({"rationale": "on", "predictions": predictions});
+        let lines = format!(
+            "{}\n\n{}\n{}\n",
+            json!({"tool": "set_prices", "args": {"B": 30}}),
+            json!({"tool": "set_prices", "args": {"B": -1}, "success": true}),
+            json!({"tool": "next_week", "args": week, "success": true}),
+        );
+        let steps = json!({
+            "agent": {"name": "somebody"}, "final_metrics": {"extra": {"seed": 5}},
+            "steps": [
+                {"source": "user", "message": "play"},
+                {"tool_calls": [
+                    {"tool_call_id": "1", "function_name": "mcp__n__set_prices", "arguments": {"B": 30}},
+                    {"tool_call_id": "2", "function_name": "bash", "arguments": {}},
+                    {"tool_call_id": "3", "function_name": "set_prices", "arguments": {"B": -1}},
+                 ], "observation": {"results": [{"source_call_id": "3", "content": "{\"success\": true}"}]}},
+                {"tool_calls": [{"tool_call_id": "4", "function_name": "next_week", "arguments": week}],
+                 "observation": {"results": [{"source_call_id": "4", "content": "{\"day\": 7, \"dashboard\": \"…\"}"}]}},
+            ],
+        });
+        for (text, place) in [(lines, 3), (steps.to_string(), 2)] {
+            let read = ForeignTranscript::read(&text).expect("a transcript");
+            assert_eq!(read.calls.len(), 3, "{read:?}");
+            let new = NewRun { seed: read.seed, days: Some(28), ..NewRun::default() };
+            let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+            let played = read.play(&mut session, &mut |_| {});
+            assert_eq!((played.made, played.otherwise.len(), session.day()), (3, 1, 7), "{played:?}");
+            assert_eq!((played.otherwise[0].0, played.otherwise[0].1.as_str()), (place, "set_prices"));
+        }
+    }
+
+    #[test]
+    fn what_is_no_transcript_is_refused_in_words() {
+        for (text, words) in [
+            ("", "no call"),
+            ("{\"steps\": []}", "no call"),
+            ("hello", "line 1 is no JSON"),
+            ("{\"tool\": \"bash\"}", "there is no tool bash"),
+            ("{\"args\": {}}", "names no tool"),
+            ("{\"tool\": \"set_prices\", \"args\": [1]}", "no object"),
+        ] {
+            let said = ForeignTranscript::read(text).expect_err(text);
+            assert!(said.contains(words), "{text}: {said}");
+        }
+    }
+}

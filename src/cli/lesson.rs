@@ -29,6 +29,13 @@ enum LessonCommand {
         /// Name of the lesson, or path of its file.
         lesson: String,
     },
+    /// Write the two files of a lesson under another name, to make a lesson of your own of them.
+    Copy {
+        /// Name of the lesson, or path of its file.
+        lesson: String,
+        /// A name, for the folder of your lessons, or the path of a file that ends in .toml.
+        to: String,
+    },
     /// Play a lesson.
     Play {
         /// Name of the lesson, or path of its file.
@@ -66,16 +73,41 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         LessonCommand::Debrief { run, html, markdown } => debrief(&run, html, markdown, context),
         LessonCommand::List => list(configuration),
         LessonCommand::Show { lesson } => print(&shown(&lesson_of(&lesson, configuration)?)),
+        LessonCommand::Copy { lesson, to } => copy(&lesson, &to, configuration),
         LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson], configuration),
         LessonCommand::Check { lesson: None } => check(&configuration.lessons(), configuration),
     }
 }
 
+/// Writes the files of a lesson under another name.
+fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Failure> {
+    let from = lesson_of(lesson, configuration)?;
+    let path = match is_file(to) {
+        true => PathBuf::from(to),
+        false => configuration
+            .own_lesson(to)
+            .ok_or_else(|| Failure::usage("there is no folder of configuration: name the path of a file"))?,
+    };
+    if path.extension().is_none_or(|ending| ending != "toml") {
+        return Err(Failure::usage(format!("{to}: the file of a lesson ends in .toml")));
+    }
+    from.copy_to(&path)?;
+    let name = if is_file(to) { path.display().to_string() } else { to.to_owned() };
+    print(&format!(
+        "written: {} and {}\nchange them, then: novamind lesson check {name}\n",
+        path.display(),
+        path.with_extension("md").display()
+    ))
+}
+
+/// Whether a word is the path of a file and no name.
+fn is_file(name: &str) -> bool {
+    Path::new(name).components().count() > 1 || name.ends_with(".toml")
+}
+
 /// A lesson by its name, or by the path of its file.
 pub(super) fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
-    let path = Path::new(name);
-    let is_file = path.components().count() > 1 || name.ends_with(".toml");
-    Ok(if is_file { Lesson::of_file(path)? } else { configuration.lesson(name)? })
+    Ok(if is_file(name) { Lesson::of_file(Path::new(name))? } else { configuration.lesson(name)? })
 }
 
 fn list(configuration: &Configuration) -> Result<(), Failure> {

@@ -71,6 +71,8 @@ pub enum Effect {
     AskCurve(Group),
     /// Find out what would have been; the flag ends the work.
     AskBranches(BranchesQuestion, Arc<AtomicBool>),
+    /// Show the page of the opponents.
+    ShowOpponents,
     /// Play the strong policies in the world of the run; the flag ends the work.
     PlayOpponents(Arc<AtomicBool>),
     /// Read the tree of branches in which the run stands.

@@ -1,4 +1,5 @@
-//! What is told once a run takes requests, and the file in its folder by which others find the server again.
+//! What is told once a run takes requests, and the file in its folder by which others find the server again, or see that a
+//! program plays it.
 
 use std::path::{Path, PathBuf};
 
@@ -11,8 +12,9 @@ use crate::session::{RunError, SERVER_FILE, write_whole};
 pub struct Announcement {
     /// The run.
     pub run: String,
-    /// Port on 127.0.0.1.
-    pub port: u16,
+    /// Port on 127.0.0.1; none where a client plays over standard input and output, and nobody else can ask.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub port: Option<u16>,
     /// Process of the server.
     pub pid: u32,
     /// File with the token that requests must carry, if they must.

@@ -23,8 +23,10 @@ const MOST_BYTES: usize = 256 * 1024 * 1024;
 /// A server that was found to play a run.
 #[derive(Debug, Clone)]
 pub struct Remote {
-    /// Where it is.
+    /// What it says of itself.
     pub announcement: Announcement,
+    /// Port on 127.0.0.1.
+    pub port: u16,
     /// What requests carry, if they must carry something.
     pub token: Option<String>,
 }
@@ -39,7 +41,7 @@ pub struct Reply {
 }
 
 impl Remote {
-    /// The server that plays the run in a folder; none if there is none that answers for this run.
+    /// The server that plays the run in a folder; none if there is none that answers for this run over HTTP.
     ///
     /// What a server that was killed left behind is recognised before anything is sent: nobody holds the run then.
     pub fn find(folder: &Path, run: &str) -> Option<Remote> {
@@ -51,7 +53,7 @@ impl Remote {
             Some(file) => Some(std::fs::read_to_string(file).ok()?.trim().to_owned()),
             None => None,
         };
-        let remote = Remote { announcement, token };
+        let remote = Remote { port: announcement.port?, announcement, token };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
         (health.status == 200 && health.body["run"] == run).then_some(remote)
     }
@@ -101,7 +103,7 @@ impl Remote {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| error.to_string())?;
         runtime.block_on(async {
-            let asked = tokio::time::timeout(deadline, ask(self.announcement.port, request));
+            let asked = tokio::time::timeout(deadline, ask(self.port, request));
             asked.await.map_err(|_| format!("it did not answer within {} s", deadline.as_secs()))?
         })
     }

@@ -85,7 +85,7 @@ fn begins_played(folder: &Path, manifest: &Manifest) -> Result<bool, RunError> {
     let Some(stamp) = &manifest.lesson else { return Ok(false) };
     let lesson = Lesson::of_run(folder, &stamp.name)?;
     let part = lesson.plan.parts.get(stamp.part.saturating_sub(1) as usize);
-    Ok(part.is_some_and(|part| part.start_weeks > 0 || !part.start.is_empty()))
+    Ok(part.is_some_and(|part| !part.begins_empty()))
 }
 
 #[cfg(test)]

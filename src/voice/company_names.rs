@@ -134,7 +134,10 @@ mod tests {
     #[test]
     fn a_company_keeps_its_name() {
         assert_eq!(names(42).of(16_064), names(42).of(16_064));
-        let of_seed = |seed: u64| (1..200).map(|customer| names(seed).of(customer)).collect::<Vec<_>>();
+        let of_seed = |seed: u64| {
+            let names = names(seed);
+            (1..200).map(|customer| names.of(customer)).collect::<Vec<_>>()
+        };
         let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
         assert!(same < 5, "{same} of 199 have one name in two runs");
         assert_eq!(names(42).with_number(16_064), format!("{} #16064", names(42).of(16_064)));
@@ -145,10 +148,11 @@ mod tests {
     #[test]
     fn a_name_holds_the_word_of_the_address() {
         let email = Params::shipped().personas.email;
+        let names = names(42);
         for customer in 1..2_000 {
             let domain = address(customer, &email);
             let domain = domain.split(['@', '.']).nth_back(1).expect("a domain").to_owned();
-            let name = names(42).of(customer).to_lowercase();
+            let name = names.of(customer).to_lowercase();
             assert!(
                 name.split(' ').any(|word| word.len() > 3 && domain.starts_with(word)),
                 "{name}: {domain}"
@@ -159,8 +163,9 @@ mod tests {
     #[test]
     fn names_are_short_words_and_rarely_shared() {
         let mut count: BTreeMap<String, u32> = BTreeMap::new();
+        let names = names(42);
         for customer in (10_000..45_000).step_by(10) {
-            *count.entry(names(42).of(customer)).or_default() += 1;
+            *count.entry(names.of(customer)).or_default() += 1;
         }
         let shared: u32 = count.values().filter(|count| **count > 1).sum();
         assert!(shared < 70, "{shared} of 3,500 share their name with another");

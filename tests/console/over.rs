@@ -54,6 +54,25 @@ fn a_what_if_of_the_final_page_begins_twelve_weeks_before_the_end() {
 }
 
 #[test]
+fn opponents_play_its_world_and_rank_it() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = over(runs.path(), Mode::Baseline, (120, 40));
+    console.shows("o opponents");
+    console.press("o");
+    for size in SIZES {
+        console.size = size;
+        for part in ["each policy plays", "▌ You", "enterprise-led", "harvest-late", "baseline"] {
+            console.shows(part);
+        }
+    }
+    // The page closes to the final page, and can be asked again.
+    console.press("esc");
+    console.shows("You end with");
+    console.press("o");
+    console.shows("▌ You");
+}
+
+#[test]
 fn why_is_asked_about_other_weeks_of_it() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = over(runs.path(), Mode::Sandbox, (120, 40));

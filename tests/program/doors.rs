@@ -247,8 +247,12 @@ fn a_client_of_the_protocol_finds_every_tool_and_plays() {
     let manual = ask(50, "resources/read", json!({ "uri": "novamind://manual" }));
     assert!(manual["result"]["contents"][0]["text"].as_str().is_some_and(|text| text.contains("set_prices")));
     assert!(ask(51, "resources/read", json!({ "uri": "novamind://hidden" }))["error"].is_object());
+    let listed = || home.run(&["runs", "list"]).out.contains("played by a program");
+    assert!(listed());
+    home.run(&["agent", "status", "--run", "latest"]).fails(1, &["open in another program"]);
     drop(to);
     assert!(child.wait().expect("it ends").success());
+    assert!(!listed() && !home.only_run().join("server.json").exists());
     assert_eq!(last_hash(&home), of_plain_mode());
 }
 

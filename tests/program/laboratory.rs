@@ -91,3 +91,29 @@ fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
         said.err
     );
 }
+
+#[test]
+fn opponents_play_the_world_of_a_run_that_is_over() {
+    let home = Home::new();
+    let said =
+        home.run(&["run", "--policy", "P1a", "--seed", "9", "--days", "28", "--surges", "on", "--save"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let told = home.run(&["lab", "opponents", "latest", "--json"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let opponents: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    let policies = opponents["policies"].as_array().expect("policies");
+    assert_eq!((opponents["day"].as_u64(), policies.len()), (Some(28), 5));
+    for own in policies {
+        let name = own["policy"].as_str().expect("a name");
+        let alone =
+            home.run(&["run", "--policy", name, "--seed", "9", "--days", "28", "--surges", "on", "--json"]);
+        let alone: serde_json::Value =
+            serde_json::from_str(alone.out.lines().next().expect("a line")).expect("JSON");
+        assert_eq!((&own["cash"], &own["day"]), (&alone["cash"], &alone["day"]), "{name}");
+    }
+    let text = home.run(&["lab", "opponents", "latest"]).out;
+    assert!(text.contains("same luck") && text.contains("harvest-late"), "{text}");
+    let other = Home::new();
+    other.two_weeks();
+    other.run(&["lab", "opponents", "latest"]).fails(1, &["end it first"]);
+}

@@ -19,6 +19,7 @@ mod hostile;
 mod laboratory;
 #[cfg(unix)]
 mod large_studies;
+mod lessons;
 mod looking;
 mod own_runs;
 mod plain;

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What Python packages say of what the program serves and exports: atif and inspect-ai read ten runs, mcp lists and calls
-# every tool. Makes a virtual environment in target/python. Where Python or the packages cannot be had it says so and ends
-# well; with --required it fails then.
+# What Python packages say of what the program serves and exports: atif and inspect-ai read ten runs, whose scripts lead to
+# their states, mcp lists and calls every tool. Makes a virtual environment in target/python. Where Python or the packages
+# cannot be had it says so and ends well; with --required it fails then.
 set -eu
 cd "$(dirname "$0")/../.."
 program=${NOVAMIND:-target/debug/novamind}
@@ -22,5 +22,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 NOVAMIND_RUNS="$work/runs" XDG_CONFIG_HOME="$work/config" NOVAMIND="$program" \
     "$environment/bin/python" tests/python/check_exports.py "$work"
+NOVAMIND_RUNS="$work/runs" XDG_CONFIG_HOME="$work/config" NOVAMIND="$program" \
+    "$environment/bin/python" tests/python/check_scripts.py "$work"
 NOVAMIND_RUNS="$work/runs" XDG_CONFIG_HOME="$work/config" NOVAMIND="$program" \
     "$environment/bin/python" tests/python/check_mcp.py

@@ -36,7 +36,7 @@ pub fn equip(command: &mut Command, own: &AgentRun, remote: &Remote, client: &Pa
     let path: OsString = std::env::join_paths(path).map_err(|error| {
         Failure::usage(format!("the folder of the run cannot be put on PYTHONPATH: {error}"))
     })?;
-    command.env("PYTHONPATH", path).env("NOVAMIND_API_PORT", remote.announcement.port.to_string());
+    command.env("PYTHONPATH", path).env("NOVAMIND_API_PORT", remote.port.to_string());
     command.env("NOVAMIND_RUN", &own.id);
     // Commands of the agent find the run, wherever they are started.
     command

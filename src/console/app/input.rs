@@ -296,7 +296,6 @@ impl App {
             Action::Explain => self.explain(),
             Action::Why => self.show_why(),
             Action::Branches => self.show_branches(),
-            Action::Opponents => self.show_opponents(),
             Action::Breakpoints => self.show_breakpoints(),
             Action::HiddenValues => self.toggle_hidden_values(),
             Action::Curves => self.show_curve(None),

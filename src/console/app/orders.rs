@@ -84,6 +84,7 @@ impl App {
             Effect::ShowCurve(group) => self.show_curve(group),
             Effect::AskCurve(group) => self.ask_curve(group),
             Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
+            Effect::ShowOpponents => self.show_opponents(),
             Effect::PlayOpponents(stop) => self.ask_opponents(stop),
             Effect::ReadKin => self.orders.push(Order::Job(Job::ReadKin)),
             Effect::OpenRun(id) => self.open_other(id),

@@ -76,8 +76,13 @@ impl Dialog for DebriefPage {
     }
 
     fn hints_here(&self, look: &Look<'_>) -> Vec<Action> {
-        let has_next = look.company.lesson.as_ref().is_some_and(|page| page.next_part.is_some());
-        KEYS.into_iter().filter(|action| has_next || *action != Action::NextPart).collect()
+        let page = look.company.lesson.as_ref();
+        let is_there = |action: &Action| match action {
+            Action::NextPart => page.is_some_and(|page| page.next_part.is_some()),
+            Action::Opponents => page.is_some_and(|page| page.has_opponents),
+            _ => true,
+        };
+        KEYS.into_iter().filter(is_there).collect()
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
@@ -86,7 +91,7 @@ impl Dialog for DebriefPage {
             Action::ToMenu => return Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::Close => return Outcome::close(),
             Action::ReportOfRun => return self.written(),
-            Action::Opponents => return Outcome::with(vec![Effect::Do(Action::Opponents)]),
+            Action::Opponents => return Outcome::with(vec![Effect::ShowOpponents]),
             Action::TryAgain => {
                 return Outcome::with(
                     page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect(),

@@ -102,9 +102,7 @@ impl Dialog for FinalPage {
         match action {
             Action::ReplayOfRun => replay(look.company, Goal::First),
             Action::WhatIf => Outcome::close_with(vec![Effect::Do(Action::Branches)]),
-            Action::Opponents if !hides_result(look.company) => {
-                Outcome::with(vec![Effect::Do(Action::Opponents)])
-            }
+            Action::Opponents if !hides_result(look.company) => Outcome::with(vec![Effect::ShowOpponents]),
             Action::ToMenu => Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::GoOn => Outcome::close(),
             Action::CardOfRun if !hides_result(look.company) => self.card(),

@@ -64,7 +64,8 @@ pub fn serve_http(
         let listener = TcpListener::bind(address).await.map_err(failed())?;
         let port = listener.local_addr().map_err(failed())?.port();
         let file = options.token.as_deref().map(|file| std::path::absolute(file).unwrap_or(file.to_owned()));
-        let announcement = Announcement { run: run.clone(), port, pid: std::process::id(), token: file };
+        let announcement =
+            Announcement { run: run.clone(), port: Some(port), pid: std::process::id(), token: file };
         let shutdown = Shutdown::listen().map_err(failed())?;
         if let Some(folder) = &folder {
             announcement.put_up(folder)?;

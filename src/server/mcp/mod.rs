@@ -6,7 +6,7 @@ mod tools;
 pub(super) use tools::request;
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rmcp::model::{
@@ -18,6 +18,7 @@ use rmcp::service::RequestContext;
 use rmcp::transport::stdio;
 use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
+use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
@@ -32,6 +33,11 @@ const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every t
 /// The disk did not take the end of the record, or standard input and output cannot be used.
 pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> {
     let numbers = session.numbers();
+    let folder = session.folder().map(PathBuf::from);
+    let run = session.manifest().id.clone();
+    if let Some(folder) = &folder {
+        Announcement { run, port: None, pid: std::process::id(), token: None }.put_up(folder)?;
+    }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
     let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
@@ -41,6 +47,10 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     });
     // Reading standard input cannot be cancelled, and nothing is waited for any more.
     runtime.shutdown_background();
+    // While the run is still held: nobody else can have put up another one.
+    if let Some(folder) = &folder {
+        Announcement::take_down(folder);
+    }
     owner.finish()?;
     served.map(drop).map_err(RunError::io(Path::new("standard input")))
 }

@@ -119,6 +119,23 @@ impl Lesson {
         (&self.plan_text, &self.texts)
     }
 
+    /// Writes its two files, to be changed: the plan at a path, the texts beside it. Nothing is replaced.
+    ///
+    /// # Errors
+    /// One of them is there already, or cannot be written.
+    pub fn copy_to(&self, path: &Path) -> Result<(), RunError> {
+        use std::io::Write;
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        }
+        let written = |path: &Path, text: &str| {
+            let opened = std::fs::File::create_new(path);
+            opened.and_then(|mut file| file.write_all(text.as_bytes())).map_err(RunError::io(path))
+        };
+        written(path, &self.plan_text)?;
+        written(&path.with_extension("md"), &self.texts)
+    }
+
     /// Keeps it with a run, so that the run can be judged wherever it goes.
     ///
     /// # Errors

@@ -42,6 +42,8 @@ pub struct LessonPage {
     pub is_over: bool,
     /// Number of the next part, counted from 1, once this one is over and there is one.
     pub next_part: Option<u32>,
+    /// Whether others can play its world from day 0: the lesson is over, and nothing was played or set for the student.
+    pub has_opponents: bool,
     /// Names of the screens that the lesson has besides the Overview; all where none are named.
     pub screens: Option<Vec<String>>,
     /// The tools that the lesson has; all where none are named.
@@ -115,6 +117,7 @@ impl Session {
             pitfalls: pitfalls(&standing),
             before: step.checked_sub(1).filter(|_| passed == 0).and_then(|before| standing.came_to(before)),
             is_over: going.is_none(),
+            has_opponents: going.is_none() && next_part.0 > next_part.1 && standing.own_part().begins_empty(),
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
             tools: plan.access.tools.clone(),

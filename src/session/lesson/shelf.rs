@@ -1,5 +1,7 @@
 //! The lessons that a person has: the shipped ones, and those of the configuration folder.
 
+use std::path::PathBuf;
+
 use super::lesson_file::Lesson;
 use crate::session::error::RunError;
 use crate::session::folder::configuration::Configuration;
@@ -7,6 +9,11 @@ use crate::shipped;
 use crate::world::params::ParameterSource;
 
 impl Configuration {
+    /// The file of a lesson of this person's own; none where there is no folder of configuration.
+    pub fn own_lesson(&self, name: &str) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
+    }
+
     /// Names of all lessons: the shipped ones in the order of the course, then this person's.
     pub fn lessons(&self) -> Vec<String> {
         let mut names: Vec<String> =

@@ -22,6 +22,12 @@ pub struct LessonStanding {
 }
 
 impl LessonPart {
+    /// Whether it begins with an empty company, in a world in which nothing is set on the way.
+    pub fn begins_empty(&self) -> bool {
+        let is_set = |step: &LessonStep| !step.parameters.is_empty();
+        self.start_weeks == 0 && self.start.is_empty() && !self.steps.iter().any(is_set)
+    }
+
     /// Weeks from the first day of the company to the end of the last step.
     pub fn weeks(&self) -> u32 {
         self.start_weeks + self.steps.iter().map(|step| step.weeks).sum::<u32>()

@@ -184,6 +184,7 @@ mod tests {
             ("churn(S1) 4 5", "5 is one word too many", 13),
             ("churn(S12)", "S12 is not a group; did you mean S1", 7),
             ("churn(S1", "a closing bracket is missing", 9),
+            ("churn()", "a group is missing", 7),
             ("reputation 3", "reputation is a figure of a group; write for instance reputation(S1)", 1),
             ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
         ] {

@@ -1,6 +1,7 @@
 //! Reading parameters: merge the shipped files with overrides, and say where a wrong value stands.
 
 use std::fmt;
+use std::sync::OnceLock;
 
 use toml::de::DeValue;
 use toml::{Spanned, Table, Value};
@@ -74,9 +75,11 @@ pub fn shipped_sources() -> Vec<ParameterSource> {
 }
 
 impl Params {
-    /// The parameters as shipped.
+    /// The parameters as shipped; read once.
     pub fn shipped() -> Params {
-        Params::load(&shipped_sources(), &[]).expect("the shipped parameters are tested")
+        static SHIPPED: OnceLock<Params> = OnceLock::new();
+        let read = || Params::load(&shipped_sources(), &[]).expect("the shipped parameters are tested");
+        SHIPPED.get_or_init(read).clone()
     }
 
     /// Reads the base sources, which together hold every key once, and lays the overrides over them in order.

@@ -93,6 +93,11 @@ impl<'a> Words<'a> {
         if !self.next_if("(") {
             return Ok(None);
         }
+        if let Some(bracket) = self.tokens.get(self.at).copied().filter(|token| token.text == ")") {
+            return Err(
+                self.problem_at(Some(bracket), "a group is missing between the brackets, for instance (S1)")
+            );
+        }
         let groups: Vec<Group> = Group::all().collect();
         let (group, _) = self.one_of(&groups, Group::id, "a group")?;
         match self.next_if(")") {

@@ -1,0 +1,33 @@
+//! Lessons of one's own, as the author's guide says.
+
+use std::fs;
+
+use crate::support::home::Home;
+
+#[test]
+fn a_lesson_is_copied_changed_and_checked() {
+    let home = Home::new();
+    let said = home.run(&["lesson", "copy", "cheapest-dollar", "late-help"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(
+        said.out.contains("late-help.toml") && said.out.contains("novamind lesson check late-help"),
+        "{}",
+        said.out
+    );
+    assert!(
+        home.run(&["lesson", "list"]).out.lines().last().is_some_and(|line| line.starts_with("late-help "))
+    );
+    let [plan, texts] =
+        ["toml", "md"].map(|ending| home.0.path().join(format!("configuration/lessons/late-help.{ending}")));
+    assert!(fs::read_to_string(texts).expect("texts").contains("## For the teacher"));
+    // What is there is never replaced.
+    home.run(&["lesson", "copy", "ladder", "late-help"]).fails(3, &["late-help.toml", "exists"]);
+    let wrong = fs::read_to_string(&plan).expect("a plan").replacen("minutes = ", "minuets = ", 1);
+    fs::write(&plan, wrong).expect("a plan");
+    home.run(&["lesson", "check", "late-help"]).fails(3, &["late-help.toml, line 2", "minuets"]);
+    let path = home.0.path().join("elsewhere/another.toml").to_string_lossy().into_owned();
+    assert_eq!(home.run(&["lesson", "copy", "ladder", &path]).code, 0);
+    assert_eq!(home.run(&["lesson", "show", &path]).code, 0);
+    home.run(&["lesson", "copy", "ladder", "somewhere/lesson.txt"]).fails(2, &[".toml"]);
+    home.run(&["lesson", "copy", "nothing", "mine"]).fails(2, &["there is no lesson nothing"]);
+}

@@ -2,6 +2,7 @@
 //! published rows (docs/laboratory/results-table.md).
 
 mod exhibit;
+#[cfg(feature = "server")]
 mod tries;
 
 use std::collections::BTreeMap;
@@ -15,6 +16,7 @@ use crate::report::ranking::{Whose, beaten, by_result, published};
 use crate::session::{Configuration, Ended, Line, Session};
 use crate::statistics::Sample;
 
+#[cfg(feature = "server")]
 pub use tries::{Try, tries_exhibit};
 
 /// A run that is over and has a score.

@@ -56,8 +56,10 @@ impl Session {
         if let Some(lesson) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) {
             refuse_locked(lesson, decided, &known)?;
         }
-        let branch = self.begin_branch(week, mode)?;
-        let session = branch.open().map_err(not_saved)?;
+        let no_room =
+            |refusal: Refusal| if refusal.code == "not_saved" { no_branch(refusal) } else { refusal };
+        let branch = self.begin_branch(week, mode).map_err(no_room)?;
+        let session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
         let (settings, params) = (session.settings(), session.params());
         let opening = Opening { day: from, settings, params, mode };
         let edits = edits(decided, &opening, &known, until.max(from + 1))?;

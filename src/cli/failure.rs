@@ -50,6 +50,11 @@ impl Failure {
         Failure { code, message: message.into() }
     }
 
+    /// The same failure with what it is about before its words.
+    pub fn about(self, subject: &str) -> Failure {
+        Failure { message: format!("{subject}: {}", self.message), ..self }
+    }
+
     /// An exit code without words of its own.
     pub fn code_only(code: u8) -> Failure {
         Failure { code, message: String::new() }

@@ -84,6 +84,12 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
     let from = lesson_of(lesson, configuration)?;
     let path = match is_file(to) {
         true => PathBuf::from(to),
+        false if configuration.lessons().iter().any(|known| known == to) => {
+            return Err(Failure::usage(format!("there is a lesson {to} already: choose another name")));
+        }
+        false if !to.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) => {
+            return Err(Failure::usage(format!("{to}: the name of a lesson has letters, digits, - and _")));
+        }
         false => configuration
             .own_lesson(to)
             .ok_or_else(|| Failure::usage("there is no folder of configuration: name the path of a file"))?,
@@ -174,7 +180,8 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     let mut failed = 0;
     for name in names {
         let lesson = Arc::new(lesson_of(name, configuration)?);
-        let check = check_lesson(&lesson)?;
+        let check =
+            check_lesson(&lesson).map_err(|error| Failure::from(error).about(&format!("lesson {name}")))?;
         let problems = check.problems();
         failed += usize::from(!problems.is_empty());
         print(&checked(&lesson, &check, &problems))?;
@@ -199,6 +206,10 @@ fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String 
         for (at, goal) in plays.iter().take(1).flat_map(|play| play.goals.iter().enumerate()) {
             text += &format!("  {name:<4}  {:<44}  {}\n", goal.text, values(plays, at));
         }
+    }
+    let plays = check.good.iter().chain(&check.bad);
+    if plays.flat_map(|play| &play.goals).any(|goal| !goal.met) {
+        text += "  (in parentheses: not reached)\n";
     }
     for figure in &check.figures {
         let stated = &figure.stated;

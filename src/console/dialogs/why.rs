@@ -20,6 +20,8 @@ use crate::session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;
+/// Causes that stay on screen beside a long sentence.
+const LEAST_LISTED: usize = 4;
 
 /// Why a figure changed.
 pub struct WhyBox {
@@ -164,7 +166,8 @@ impl Dialog for WhyBox {
         };
         let text = wrapped(&text, inner);
         let causes = self.why().map(lines).unwrap_or_default();
-        let gap = usize::from(!causes.is_empty());
+        let room = area.height.saturating_sub(2) as usize;
+        let gap = usize::from(!causes.is_empty() && text.len() + causes.len() < room);
         let height = (text.len() + gap + causes.len() + 2) as u16;
         let own = centered(area, width, height);
         canvas.clear(own, Role::Text);
@@ -174,8 +177,9 @@ impl Dialog for WhyBox {
         };
         let inside = canvas.pane(own, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // Causes give way last: they say what the equation says.
-        let shown = text.len().min((inside.height as usize).saturating_sub(causes.len() + gap).max(1));
+        // The list scrolls, the sentence does not.
+        let listed = causes.len().min(LEAST_LISTED);
+        let shown = text.len().min((inside.height as usize).saturating_sub(listed + gap).max(1));
         for (row, line) in rows_of(inside).zip(text.iter().take(shown)) {
             canvas.text(row, line, role);
         }

@@ -13,7 +13,7 @@ impl BoundAccount {
     pub(super) fn why(&self, line: AccountLine, own: f64, params: &Params) -> String {
         let millions = own / 1e6;
         if (millions - line.published()).abs() <= line.rounding() {
-            return "rounds to the published figure".to_owned();
+            return format!("within the {} to which the published figure is rounded", line.rounding());
         }
         let ratio = line.published() / millions;
         match line {

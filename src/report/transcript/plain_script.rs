@@ -10,13 +10,15 @@ pub fn plain_script(run: &Transcript) -> String {
     let own = &run.manifest;
     let head = format!(
         "# Run {} of NovaMind console {}, {} days of which {} passed; last state {}.\n\
-         # novamind play --plain --strict {} < THIS FILE\n",
+         # novamind play --plain --strict {}{} < THIS FILE\n",
         own.id,
         own.version,
         own.days,
         run.last.0,
         run.state_hash,
         new_run(run),
+        // Whoever plays it again is not the one who played it.
+        if own.mode == Mode::Baseline { " --participant again" } else { "" },
     );
     let lines: String = run.acts.iter().filter_map(line).map(|line| line + "\n").collect();
     head + &lines

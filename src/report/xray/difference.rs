@@ -105,21 +105,27 @@ fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
 fn customers(found: &Difference, names: (&str, &str)) -> Vec<String> {
     let count = |count: usize| grouped(count as f64, 0);
     let mut lines = vec![format!(
-        "customers: {} differ, {} subscribe only in {}, {} only in {}",
+        "customers: {} differ, {} subscribe only {}, {} only {}",
         count(found.customers),
         count(found.only.0),
-        names.0,
+        within(names.0),
         count(found.only.1),
-        names.1
+        within(names.1)
     )];
     lines.extend(found.first_customers.iter().map(|own| customer(own, names)));
     lines
 }
 
+/// A day or a run as where something holds: `on day 307`, `in ebd6481f`.
+fn within(name: &str) -> String {
+    let before = if name.starts_with("day ") { "on" } else { "in" };
+    format!("{before} {name}")
+}
+
 fn customer(own: &CustomerDifference, names: (&str, &str)) -> String {
     let what = match own.subscribes {
-        (true, false) => format!("subscribes only in {}", names.0),
-        (false, _) => format!("subscribes only in {}", names.1),
+        (true, false) => format!("subscribes only {}", within(names.0)),
+        (false, _) => format!("subscribes only {}", within(names.1)),
         (true, true) => {
             let columns = own.columns.iter().map(|(name, one, other)| {
                 let (one, other) = cells_apart(one, other);

@@ -24,7 +24,7 @@ pub fn leads_in_words(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<
                 .to_owned(),
         );
     }
-    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.6}"));
+    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
     let by_group: Vec<String> = by_group.collect();
     lines.push(match by_group.is_empty() {
         true => "  word of mouth from nobody: there are no subscribers".to_owned(),

@@ -28,9 +28,15 @@ pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
 pub fn written_by(write: &Write) -> String {
     let count = write.changes.len();
     match write.by {
-        WrittenBy::Reputation(ReputationCause::Departures) => format!("departures ({count})"),
-        WrittenBy::Reputation(ReputationCause::LostCompany) => format!("lost companies ({count})"),
-        WrittenBy::Reputation(ReputationCause::Mood(mood)) => format!("mood of {} subscribers", mood.count),
+        WrittenBy::Reputation(ReputationCause::Departures) => {
+            format!("departures ({})", grouped(count as f64, 0))
+        }
+        WrittenBy::Reputation(ReputationCause::LostCompany) => {
+            format!("lost companies ({})", grouped(count as f64, 0))
+        }
+        WrittenBy::Reputation(ReputationCause::Mood(mood)) => {
+            format!("mood of {} subscribers", grouped(mood.count as f64, 0))
+        }
         WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
             format!("spill-over from {}", spill.source)
         }
@@ -90,6 +96,7 @@ fn amount_of(target: WriteTarget, amount: f64) -> String {
         WriteTarget::Reputation(_) => format!("{amount:+.9}"),
         WriteTarget::Cash if amount <= 0.0 => cents(amount),
         WriteTarget::Cash => format!("+{}", cents(amount)),
-        WriteTarget::Subscribers(_) => format!("{amount:+}"),
+        WriteTarget::Subscribers(_) if amount <= 0.0 => grouped(amount, 0),
+        WriteTarget::Subscribers(_) => format!("+{}", grouped(amount, 0)),
     }
 }

@@ -285,10 +285,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
         let _ = std::fs::remove_file(&draft);
         return Err(RunError::io(path)(error));
     }
-    if let Some(folder) = path.parent() {
-        sync_folder(folder)?;
+    match path.parent() {
+        // A name alone is in the folder where the program was started.
+        Some(folder) if folder.as_os_str().is_empty() => sync_folder(Path::new(".")),
+        Some(folder) => sync_folder(folder),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Makes the names in a folder survive a power cut, where the system can do that.

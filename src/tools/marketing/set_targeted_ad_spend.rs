@@ -29,7 +29,8 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Matrix(Key::Channel, Key::Group, Range::AT_LEAST_ZERO),
         required: true,
         unit: "$/day",
-        doc: "budget by channel, then group; pairs left out get nothing",
+        doc: "budget by channel (social_media, search_ads, linkedin, content_marketing, referral_program), then \
+                  group; pairs left out get nothing",
     }],
     own_unknown: false,
     whole: Some("targeted_spend"),

@@ -59,7 +59,7 @@ static SPEC: Spec = Spec {
         Output { name: "day", kind: "integer", doc: "the last simulated day" },
         Output { name: "dashboard", kind: "text", doc: "the weekly dashboard" },
     ],
-    example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}}}"#,
+    example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}, "cash_4wk": {"point": 960000, "lower": 930000, "upper": 985000}, "cash_12wk": {"point": 900000, "lower": 800000, "upper": 1000000}, "cash_26wk": {"point": 850000, "lower": 600000, "upper": 1200000}}}"#,
 };
 
 /// What is filed before a week.

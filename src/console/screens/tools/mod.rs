@@ -227,6 +227,9 @@ impl ScreenState for Tools {
                         if form.spec.kind.acts() {
                             self.focus = ToolsPane::List;
                         }
+                    } else if !look.company.has_tool(*tool) {
+                        // What a lesson has no tool for cannot be sent later either.
+                        form.reset(look.company);
                     } else if let Err(refusal) = answer
                         && let Some(place) =
                             refusal.field.as_ref().and_then(|field| form.sheet.place_of(field))

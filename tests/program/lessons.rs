@@ -21,7 +21,10 @@ fn a_lesson_is_copied_changed_and_checked() {
         ["toml", "md"].map(|ending| home.0.path().join(format!("configuration/lessons/late-help.{ending}")));
     assert!(fs::read_to_string(texts).expect("texts").contains("## For the teacher"));
     // What is there is never replaced.
-    home.run(&["lesson", "copy", "ladder", "late-help"]).fails(3, &["late-help.toml", "exists"]);
+    for taken in ["late-help", "ladder"] {
+        let message = format!("there is a lesson {taken} already");
+        home.run(&["lesson", "copy", "ladder", taken]).fails(2, &[&message]);
+    }
     let wrong = fs::read_to_string(&plan).expect("a plan").replacen("minutes = ", "minuets = ", 1);
     fs::write(&plan, wrong).expect("a plan");
     home.run(&["lesson", "check", "late-help"]).fails(3, &["late-help.toml, line 2", "minuets"]);

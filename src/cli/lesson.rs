@@ -87,8 +87,10 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
         false if configuration.lessons().iter().any(|known| known == to) => {
             return Err(Failure::usage(format!("there is a lesson {to} already: choose another name")));
         }
-        false if !to.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) => {
-            return Err(Failure::usage(format!("{to}: the name of a lesson has letters, digits, - and _")));
+        false
+            if to.is_empty() || !to.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) =>
+        {
+            return Err(Failure::usage(format!("{to:?}: the name of a lesson has letters, digits, - and _")));
         }
         false => configuration
             .own_lesson(to)

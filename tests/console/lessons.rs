@@ -152,6 +152,11 @@ fn what_is_not_in_the_lesson_says_so() {
     console.shows("not in this lesson");
     console.press("enter");
     console.shows("Not in this lesson.");
+    // What was typed into it cannot be sent, so no week waits for it.
+    console.press("n '0.25' enter 8 : 'set_daily_spend' enter enter '900' enter");
+    console.shows("900");
+    console.press("esc n");
+    assert!(!console.screen().contains("not sent"), "{}", console.screen());
 }
 
 #[test]

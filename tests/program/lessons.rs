@@ -25,6 +25,16 @@ fn a_lesson_is_copied_changed_and_checked() {
         let message = format!("there is a lesson {taken} already");
         home.run(&["lesson", "copy", "ladder", taken]).fails(2, &[&message]);
     }
+    for no_name in ["", "two words"] {
+        home.run(&["lesson", "copy", "ladder", no_name]).fails(2, &["letters, digits, - and _"]);
+    }
+    let no_world =
+        fs::read_to_string(&plan).expect("a plan").replacen("scenario = \"", "scenario = \"no-", 1);
+    let elsewhere = home.0.path().join("no-world.toml");
+    fs::write(&elsewhere, no_world).expect("a plan");
+    fs::copy(plan.with_extension("md"), elsewhere.with_extension("md")).expect("texts");
+    let elsewhere = elsewhere.to_string_lossy().into_owned();
+    home.run(&["lesson", "check", &elsewhere]).fails(2, &["no-world.toml: there is no scenario no-"]);
     let wrong = fs::read_to_string(&plan).expect("a plan").replacen("minutes = ", "minuets = ", 1);
     fs::write(&plan, wrong).expect("a plan");
     home.run(&["lesson", "check", "late-help"]).fails(3, &["late-help.toml, line 2", "minuets"]);

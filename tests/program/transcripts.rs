@@ -25,7 +25,11 @@ next "help" naive
 
 /// A run that was played in plain mode, with its last hash.
 fn played(home: &Home) -> (String, String) {
-    let said = home.play(&["--seed", "11", "--days", "28", "--participant", "P01"], PLAY);
+    played_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
+}
+
+fn played_with(home: &Home, options: &[&str]) -> (String, String) {
+    let said = home.play(options, PLAY);
     assert_eq!(said.code, 0, "{}", said.err);
     let folder = home.only_run();
     (id(&folder), last_hash(&folder))
@@ -47,8 +51,33 @@ fn export(home: &Home, run: &str, format: &str) -> Value {
 
 #[test]
 fn a_script_of_a_run_leads_to_its_state() {
+    leads_to_its_state(&["--seed", "11", "--days", "28", "--participant", "P01"]);
+}
+
+#[test]
+fn so_does_a_script_of_a_baseline() {
+    leads_to_its_state(&["--seed", "11", "--mode", "baseline", "--participant", "P01"]);
+}
+
+#[test]
+fn a_run_is_exported_to_a_name_alone() {
     let home = Home::new();
-    let (run, hash) = played(&home);
+    let (run, _) = played(&home);
+    for format in ["archive", "atif", "inspect"] {
+        let mut command = home.program();
+        command
+            .current_dir(home.0.path())
+            .args(["runs", "export", &run, "--format", format, "--out", format]);
+        let said = command.output().expect("the program starts");
+        assert!(said.status.success(), "{format}: {}", String::from_utf8_lossy(&said.stderr));
+        assert!(home.0.path().join(format).is_file(), "{format}");
+    }
+}
+
+#[track_caller]
+fn leads_to_its_state(options: &[&str]) {
+    let home = Home::new();
+    let (run, hash) = played_with(&home, options);
     let out = home.0.path().join("script");
     let said = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
     assert_eq!(said.code, 0, "{}", said.err);

@@ -19,7 +19,7 @@ use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
 use crate::session::{
     Export as Sealing, FoundVisit, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey,
-    VISITS, import_run, visits,
+    VISITS, folder_of, import_run, visits,
 };
 
 /// Options of `runs export`.
@@ -84,10 +84,7 @@ impl Export {
     }
 
     fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
-        let beside = match self.out.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let beside = folder_of(&self.out);
         if self.out.exists() {
             // Said before the run is simulated again, not after.
             let message = format!("{} already exists: choose another name, or remove it", self.out.display());
@@ -99,7 +96,7 @@ impl Export {
                 beside.display()
             )));
         }
-        let export = Sealing::prepare(folder, &beside, seal_key)?;
+        let export = Sealing::prepare(folder, beside, seal_key)?;
         let seal = export.write(&self.out, false, key.as_ref())?;
         let remarks = export.session().remarks();
         if json {

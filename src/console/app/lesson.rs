@@ -90,8 +90,7 @@ impl App {
         if !at_once {
             return false;
         }
-        let unsent = run.screens.tools.unsent().into_iter().filter(|tool| run.company.has_tool(*tool));
-        let unsent: Vec<&str> = unsent.map(|tool| tool.name()).collect();
+        let unsent: Vec<&str> = run.screens.tools.unsent().iter().map(|tool| tool.name()).collect();
         let week = Effect::Request(Request::Advance { rationale: NO_RATIONALE.to_owned(), forecasts });
         if unsent.is_empty() {
             self.ask_or_run(week);

@@ -13,7 +13,7 @@ impl BoundAccount {
     pub(super) fn why(&self, line: AccountLine, own: f64, params: &Params) -> String {
         let millions = own / 1e6;
         if (millions - line.published()).abs() <= line.rounding() {
-            return format!("within the {} to which the published figure is rounded", line.rounding());
+            return format!("within ±{}, the rounding of the published figure", line.rounding());
         }
         let ratio = line.published() / millions;
         match line {

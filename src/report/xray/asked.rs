@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use super::{difference_in_words, found_in_words, writes_in_words};
+use super::{days_in_words, found_in_words, writes_in_words};
 use crate::notation::nearest;
 use crate::notation::written::{Argument, Problem, Reader};
 use crate::report::parameters::{changed_in_words, set_in_words};
@@ -188,9 +188,7 @@ impl WordsFound {
         match self {
             WordsFound::Days(condition, found, last) => found_in_words(condition, found, *last),
             WordsFound::Writes(own) => writes_in_words(own),
-            WordsFound::Difference(one, other, found) => {
-                difference_in_words(found, (&format!("day {one}"), &format!("day {other}")))
-            }
+            WordsFound::Difference(one, other, found) => days_in_words(found, (*one, *other)),
             WordsFound::Parameters(changed) => changed_in_words(changed),
             WordsFound::Parameter(key, value) => vec![format!("{key} = {value}")],
             WordsFound::Set(set, today) => vec![set_in_words(set, *today)],

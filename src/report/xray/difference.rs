@@ -16,8 +16,13 @@ const MOST_DECIMALS: usize = 12;
 /// Parameters that are told.
 const PARAMETERS_TOLD: usize = 20;
 
-/// What differs between two ends of days that are called so.
-pub fn difference_in_words(found: &Difference, names: (&str, &str)) -> Vec<String> {
+/// What differs between two days of a run.
+pub fn days_in_words(found: &Difference, (one, other): (u32, u32)) -> Vec<String> {
+    difference_in_words(found, (&format!("day {one}"), &format!("day {other}")), "on")
+}
+
+/// What differs between two states that are called so; before a name stands `on` or `in`.
+fn difference_in_words(found: &Difference, names: (&str, &str), before: &str) -> Vec<String> {
     if found.is_none() {
         return vec!["nothing differs".to_owned()];
     }
@@ -31,7 +36,7 @@ pub fn difference_in_words(found: &Difference, names: (&str, &str)) -> Vec<Strin
         lines.push(format!("alike: {}", found.alike.join(", ")));
     }
     lines.extend(figures(found, names));
-    lines.extend(customers(found, names));
+    lines.extend(customers(found, names, before));
     lines
 }
 
@@ -43,7 +48,7 @@ pub fn runs_in_words(found: &RunDifference, names: (&str, &str)) -> Vec<String> 
     }];
     if let Some(difference) = &found.difference {
         lines.push(format!("day {}", difference.days.0));
-        lines.extend(difference_in_words(difference, names));
+        lines.extend(difference_in_words(difference, names, "in"));
     }
     lines
 }
@@ -102,30 +107,24 @@ fn figures(found: &Difference, names: (&str, &str)) -> Vec<String> {
     lines
 }
 
-fn customers(found: &Difference, names: (&str, &str)) -> Vec<String> {
+fn customers(found: &Difference, names: (&str, &str), before: &str) -> Vec<String> {
     let count = |count: usize| grouped(count as f64, 0);
     let mut lines = vec![format!(
-        "customers: {} differ, {} subscribe only {}, {} only {}",
+        "customers: {} differ, {} subscribe only {before} {}, {} only {before} {}",
         count(found.customers),
         count(found.only.0),
-        within(names.0),
+        names.0,
         count(found.only.1),
-        within(names.1)
+        names.1
     )];
-    lines.extend(found.first_customers.iter().map(|own| customer(own, names)));
+    lines.extend(found.first_customers.iter().map(|own| customer(own, names, before)));
     lines
 }
 
-/// A day or a run as where something holds: `on day 307`, `in ebd6481f`.
-fn within(name: &str) -> String {
-    let before = if name.starts_with("day ") { "on" } else { "in" };
-    format!("{before} {name}")
-}
-
-fn customer(own: &CustomerDifference, names: (&str, &str)) -> String {
+fn customer(own: &CustomerDifference, names: (&str, &str), before: &str) -> String {
     let what = match own.subscribes {
-        (true, false) => format!("subscribes only {}", within(names.0)),
-        (false, _) => format!("subscribes only {}", within(names.1)),
+        (true, false) => format!("subscribes only {before} {}", names.0),
+        (false, _) => format!("subscribes only {before} {}", names.1),
         (true, true) => {
             let columns = own.columns.iter().map(|(name, one, other)| {
                 let (one, other) = cells_apart(one, other);
@@ -185,7 +184,7 @@ mod tests {
             ],
         };
         assert_eq!(
-            difference_in_words(&found, ("one", "other")),
+            difference_in_words(&found, ("one", "other"), "in"),
             [
                 "  parameter                    one   other",
                 "  operations.base_outage_prob  0.01  0.5",
@@ -198,6 +197,9 @@ mod tests {
                 "  9 S1: subscribes only in one",
             ]
         );
+        let of_days = days_in_words(&found, (3, 300));
+        assert_eq!(of_days[6], "customers: 1 differ, 1 subscribe only on day 3, 0 only on day 300");
+        assert_eq!(of_days[8], "  9 S1: subscribes only on day 3");
         let alike = RunDifference { last_day: 28, first_day: None, difference: None };
         assert_eq!(runs_in_words(&alike, ("a", "b")), ["the runs are alike on every day up to day 28"]);
     }

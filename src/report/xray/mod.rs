@@ -19,7 +19,7 @@ pub use asked::{AskedWords, WordsFound};
 pub use breakpoints::{breakpoints_in_words, found_in_words, look_back_in_words, stop_in_words};
 pub use company::company_in_words;
 pub use customer::{SATISFACTION, customer_in_words};
-pub use difference::{difference_as_data, difference_in_words, runs_in_words};
+pub use difference::{days_in_words, difference_as_data, runs_in_words};
 pub use leads::{leads_in_words, line_of_factor};
 pub use market::{drift_in_words, rivals_in_words};
 pub use quality::quality_in_words;

@@ -2,7 +2,7 @@
 
 use super::{settled, table};
 use crate::notation::{cents, grouped};
-use crate::report::words::category_name;
+use crate::report::words::{category_name, whole};
 use crate::session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
 
 /// The figure before and after the day, and each write with its amount and what the figure was after it.
@@ -26,16 +26,12 @@ pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {
 
 /// What wrote, in words: `departures (17)`, `spill-over from S1`, `payments`.
 pub fn written_by(write: &Write) -> String {
-    let count = write.changes.len();
+    let count = whole(write.changes.len() as f64);
     match write.by {
-        WrittenBy::Reputation(ReputationCause::Departures) => {
-            format!("departures ({})", grouped(count as f64, 0))
-        }
-        WrittenBy::Reputation(ReputationCause::LostCompany) => {
-            format!("lost companies ({})", grouped(count as f64, 0))
-        }
+        WrittenBy::Reputation(ReputationCause::Departures) => format!("departures ({count})"),
+        WrittenBy::Reputation(ReputationCause::LostCompany) => format!("lost companies ({count})"),
         WrittenBy::Reputation(ReputationCause::Mood(mood)) => {
-            format!("mood of {} subscribers", grouped(mood.count as f64, 0))
+            format!("mood of {} subscribers", whole(mood.count as f64))
         }
         WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
             format!("spill-over from {}", spill.source)
@@ -92,11 +88,10 @@ fn value_of(target: WriteTarget, value: f64) -> String {
 }
 
 fn amount_of(target: WriteTarget, amount: f64) -> String {
-    match target {
-        WriteTarget::Reputation(_) => format!("{amount:+.9}"),
-        WriteTarget::Cash if amount <= 0.0 => cents(amount),
-        WriteTarget::Cash => format!("+{}", cents(amount)),
-        WriteTarget::Subscribers(_) if amount <= 0.0 => grouped(amount, 0),
-        WriteTarget::Subscribers(_) => format!("+{}", grouped(amount, 0)),
-    }
+    let written = match target {
+        WriteTarget::Reputation(_) => return format!("{amount:+.9}"),
+        WriteTarget::Cash => cents(amount),
+        WriteTarget::Subscribers(_) => grouped(amount, 0),
+    };
+    if amount > 0.0 { format!("+{written}") } else { written }
 }

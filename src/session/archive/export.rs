@@ -13,7 +13,7 @@ use super::workshop::Workshop;
 use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::manifest::{Manifest, folder_of, sync_folder};
 use crate::session::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::session::play::memo::notes_file;
@@ -112,16 +112,13 @@ impl Export {
         let _ = std::fs::remove_file(&database);
         self.session.copy_database(&database)?;
         let seal = self.seal()?;
-        let folder = match archive.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let workshop = Workshop::within(&folder)?;
+        let folder = folder_of(archive);
+        let workshop = Workshop::within(folder)?;
         let draft = workshop.path().join("archive");
         let written = self.pack(&draft, is_compressed(archive), (&seal, key));
         let placed = written.and_then(|()| std::fs::rename(&draft, archive));
         placed.map_err(RunError::io(archive))?;
-        sync_folder(&folder)?;
+        sync_folder(folder)?;
         Ok(seal)
     }
 

@@ -285,12 +285,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
         let _ = std::fs::remove_file(&draft);
         return Err(RunError::io(path)(error));
     }
-    match path.parent() {
-        // A name alone is in the folder where the program was started.
-        Some(folder) if folder.as_os_str().is_empty() => sync_folder(Path::new(".")),
-        Some(folder) => sync_folder(folder),
-        None => Ok(()),
-    }
+    sync_folder(folder_of(path))
+}
+
+/// The folder in which a file is: for a name alone, the one in which the program was started.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Makes the names in a folder survive a power cut, where the system can do that.

@@ -127,3 +127,14 @@ impl Tool for SetTargetedAdSpend {
         Ok(Planned::setting(SettingsChange::TargetedAds(ads), answer).with_row(row))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn its_text_names_every_channel() {
+        let channels = Channel::ALL.map(|channel| channel.id()).join(", ");
+        assert!(SPEC.arguments[0].doc.contains(&format!("({channels})")), "{channels}");
+    }
+}

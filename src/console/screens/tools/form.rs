@@ -25,6 +25,8 @@ use crate::tools::{ArgumentKind, Key, Kind, Spec};
 pub struct Form {
     /// The tool.
     pub spec: &'static Spec,
+    /// Whether the run has the tool.
+    is_offered: bool,
     /// Values.
     pub sheet: Sheet,
     /// The cell that has the focus.
@@ -50,6 +52,7 @@ impl Form {
     pub fn of(spec: &'static Spec, company: &Company) -> Form {
         Form {
             spec,
+            is_offered: company.has_tool(spec.id),
             sheet: Sheet::of(spec, company),
             at: CellPlace::default(),
             typing: None,
@@ -62,6 +65,11 @@ impl Form {
         }
     }
 
+    /// Whether it holds values that were not sent and can be: reads have none, and a lesson does without some tools.
+    pub fn is_draft(&self) -> bool {
+        self.is_offered && self.spec.kind.acts() && self.sheet.is_changed()
+    }
+
     /// Whether characters are typed.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some() || self.adding.is_some()
@@ -69,6 +77,7 @@ impl Form {
 
     /// Takes over what holds now; drafts stay.
     pub fn renew(&mut self, company: &Company) {
+        self.is_offered = company.has_tool(self.spec.id);
         self.sheet = self.sheet.renewed(company);
         self.earlier = earlier::calls(self.spec.id, company, earlier::MOST);
         self.preview = None;

@@ -131,10 +131,13 @@ impl Tools {
         })
     }
 
+    fn drafts(&self) -> impl Iterator<Item = &Form> {
+        self.forms.values().filter(|form| form.is_draft())
+    }
+
     /// Tools whose forms hold values that were not sent.
     pub fn unsent(&self) -> Vec<ToolId> {
-        let unsent = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
-        unsent.map(|form| form.spec.id).collect()
+        self.drafts().map(|form| form.spec.id).collect()
     }
 
     /// Name of the tool whose form is shown.
@@ -176,8 +179,7 @@ impl Tools {
         });
         let mut lines = vec![format!("# day {day}, run {}", company.seen.run)];
         lines.extend(done);
-        let drafts = self.forms.values().filter(|form| form.spec.kind.acts() && form.sheet.is_changed());
-        let drafts: Vec<String> = drafts.map(Form::call).collect();
+        let drafts: Vec<String> = self.drafts().map(Form::call).collect();
         if !drafts.is_empty() {
             lines.push("# not sent yet".to_owned());
             lines.extend(drafts);
@@ -227,9 +229,6 @@ impl ScreenState for Tools {
                         if form.spec.kind.acts() {
                             self.focus = ToolsPane::List;
                         }
-                    } else if !look.company.has_tool(*tool) {
-                        // What a lesson has no tool for cannot be sent later either.
-                        form.reset(look.company);
                     } else if let Err(refusal) = answer
                         && let Some(place) =
                             refusal.field.as_ref().and_then(|field| form.sheet.place_of(field))

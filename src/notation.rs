@@ -117,6 +117,25 @@ pub fn short_dollars(value: f64) -> String {
     format!("{sign}${}", compact(value.abs()))
 }
 
+/// Reads a number as people type it: `1,200`, `$3.5k`, `2M`, `1_000`.
+pub fn parse_number(text: &str) -> Option<f64> {
+    let cleaned: String =
+        text.trim().chars().filter(|letter| !matches!(letter, ',' | '_' | '$' | ' ')).collect();
+    let (digits, factor) = match cleaned.chars().last()? {
+        'k' | 'K' => (&cleaned[..cleaned.len() - 1], 1e3),
+        'm' | 'M' => (&cleaned[..cleaned.len() - 1], 1e6),
+        _ => (cleaned.as_str(), 1.0),
+    };
+    if digits.is_empty()
+        || !digits
+            .chars()
+            .all(|letter| letter.is_ascii_digit() || matches!(letter, '.' | '-' | '+' | 'e' | 'E'))
+    {
+        return None;
+    }
+    digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
+}
+
 /// A number as JSON: whole numbers without a decimal point, others in their shortest exact form.
 pub fn json_number(value: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;

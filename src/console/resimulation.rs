@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::session::{BranchComparison, DecisionEdit, Futures, PastCall, WeekQuantity};
+use crate::session::{BranchComparison, DecisionEdit, Futures, PastDecision, WeekQuantity};
 
 /// A question why a figure changed in a week.
 pub struct WhyAsked {
@@ -47,7 +47,7 @@ pub enum BranchesQuestion {
 #[derive(Debug, Clone)]
 pub enum BranchesFound {
     /// The calls of the run, and of how many days its weeks are.
-    Decisions(Vec<PastCall>, u32),
+    Decisions(Vec<PastDecision>, u32),
     /// Branches side by side.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
 }

@@ -9,11 +9,14 @@ use crate::glossary::{Term, terms};
 use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::{
     Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FigureUnit, FirstDifference,
-    JudgedFigure, MEASURED_SEEDS, PartedDecision, ReferenceCurve, WeekFigure,
+    JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, WeekFigure,
 };
 
 /// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;
+
+/// Most calls of a tool that are named one by one.
+const MOST_CALLS: usize = 2;
 
 /// What the part came to, in a sentence.
 pub fn headline(own: &Debrief) -> String {
@@ -95,9 +98,12 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
             vec!["Your decisions cannot be held against those of the good play in this run.".to_owned()]
         }
         DecisionComparison::Parted(parting) => {
-            let good = own.good.as_ref().and_then(|good| good.text.as_ref());
+            let told = |name: &str, play: &Option<ReferenceCurve>| {
+                let text = play.as_ref().and_then(|play| play.text.as_ref());
+                text.map(|text| format!("The {name} play: {text}"))
+            };
             let mut lines: Vec<String> =
-                good.map(|good| format!("The good play: {good}")).into_iter().collect();
+                [told("good", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
             lines.push(format!(
                 "Week {}, day {}, is the first in which you decided otherwise:",
                 parting.week, parting.day
@@ -105,7 +111,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
             lines.extend(
                 parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))),
             );
-            lines.push(effect_in_words(parting, own.judged_by.as_ref().map(|judged| judged.figure)));
+            lines.push(effect_in_words(parting, own));
             lines
         }
     }
@@ -125,7 +131,7 @@ fn decision_in_words(decision: &PartedDecision) -> String {
             all.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
         DecisionContrast::Calls(own, good) => {
-            format!("{}, the good play {}", count(own.len() as u32, "call"), count(good.len() as u32, "call"))
+            format!("{}; the good play: {}", calls_in_words(own), calls_in_words(good))
         }
     };
     format!("{}: {said}", decision.tool.name())
@@ -143,31 +149,71 @@ fn written(value: &Value) -> String {
     }
 }
 
-fn effect_in_words(parting: &FirstDifference, judged_by: Option<WeekFigure>) -> String {
-    match parting.effect {
-        Some(effect) => {
-            let figure = judged_by.zip(effect.judged).map(|(figure, (own, with))| {
-                let (own, with) = (of_figure(figure, own), of_figure(figure, with));
-                format!("{} of {with} instead of {own}, and ", figure.name())
-            });
-            let told = format!(
-                "Simulated again with what the good play decided in week {}, and everything else as you decided it: {}\
-                 cash of {} on day {} instead of {} ({}).",
-                parting.week,
-                figure.unwrap_or_default(),
-                money(effect.with),
-                effect.day,
-                money(effect.own),
-                signed_dollars(effect.with - effect.own)
-            );
-            let (own, with) = effect.judged.unwrap_or((effect.own, effect.with));
-            match with < own {
-                true => told + " In your company that decision does not pay by itself.",
-                false => told,
-            }
+/// Calls of one tool by their arguments.
+fn calls_in_words(calls: &[Value]) -> String {
+    let one = |call: &Value| {
+        let of = |(name, value): (&String, &Value)| format!("{name} {}", written(value));
+        call.as_object()
+            .map_or_else(|| written(call), |own| own.iter().map(of).collect::<Vec<_>>().join(", "))
+    };
+    let more = match calls.len().saturating_sub(MOST_CALLS) {
+        0 => String::new(),
+        more => format!("; {more} more"),
+    };
+    match calls {
+        [] => "no call".to_owned(),
+        calls => calls.iter().take(MOST_CALLS).map(one).collect::<Vec<_>>().join("; ") + &more,
+    }
+}
+
+fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
+    let Some(effect) = parting.effect else {
+        return "The calls of the good play are refused in your run, so their effect was not simulated."
+            .to_owned();
+    };
+    let judged_by = own.judged_by.as_ref();
+    let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {
+        let (own, with) = (of_figure(judged.figure, own), of_figure(judged.figure, with));
+        format!("{} of {with} instead of {own}, and ", judged.figure.name())
+    });
+    let told = format!(
+        "Simulated again with these decisions of the good play in week {}, and everything else as you decided it: {}\
+         cash of {} on day {} instead of {} ({}).",
+        parting.week,
+        figure.unwrap_or_default(),
+        money(effect.with),
+        effect.day,
+        money(effect.own),
+        signed_dollars(effect.with - effect.own)
+    );
+    told + &alone_or_together(effect, own)
+}
+
+/// What is to be said where the first other decisions of the good play alone would have made it worse.
+fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
+    let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
+    if with >= mine {
+        return String::new();
+    }
+    let good = match (&own.judged_by, effect.judged) {
+        (Some(judged), Some(_)) => {
+            judged.good.as_ref().and_then(|good| Some((good.last()?.1, judged.figure)))
         }
-        None => "The calls of the good play are refused in your run, so their effect was not simulated."
-            .to_owned(),
+        _ => None,
+    };
+    let cash = own.good.as_ref().and_then(|good| good.cash_by_day.last());
+    let (reached, words) = match (good, cash) {
+        (Some((value, figure)), _) => (value, of_figure(figure, value)),
+        (None, Some(cash)) => (*cash, money(*cash)),
+        (None, None) => return String::new(),
+    };
+    match reached > mine {
+        true => format!(
+            " Alone they would have cost you; with all that the good play decides later they come to {words}."
+        ),
+        false => {
+            format!(" They would have cost you: you came out ahead of the good play, which comes to {words}.")
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What happened in a lesson, in words.
 
 use super::words::money;
-use crate::notation::{cents, compact, percent, short_dollars};
+use crate::notation::{cents, compact, parse_number, percent, short_dollars};
 use crate::session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
 
 /// The word of an event, as lines write it.
@@ -104,6 +104,26 @@ pub fn is_share(question: &LessonQuestion) -> bool {
     question.unit.starts_with("share")
 }
 
+/// A guess as it was typed: `12,000`, `12k`, `$1.2M`, the number of a choice; a share in hundredths where it ends in `%`.
+///
+/// # Errors
+/// It is no such number.
+pub fn typed_guess(question: &LessonQuestion, text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let value = match text.strip_suffix('%') {
+        Some(bare) if is_share(question) => parse_number(bare).map(|value| value / 100.0),
+        Some(bare) if question.unit == "%" => parse_number(bare),
+        Some(_) => None,
+        None => parse_number(text),
+    };
+    let wanted = match (question.choices.is_empty(), is_share(question)) {
+        (false, _) => "answer with the number of a choice",
+        (true, true) => "a share is a number from 0 to 1, for instance 0.4, or 40%",
+        (true, false) => "a guess is a number, for instance 12,000 or $1.2M",
+    };
+    value.filter(|value| !is_share(question) || (0.0..=1.0).contains(value)).ok_or_else(|| wanted.to_owned())
+}
+
 /// A guess or an outcome in words.
 pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
     match question.choices.get((value - 1.0).max(0.0) as usize) {
@@ -135,7 +155,7 @@ pub fn goal_at(goal: &GoalPage) -> Option<String> {
         (Some(bound), Some(share)) => {
             let good = goal_amount(goal, bound / share);
             format!(
-                "{value} of {}, {} of the good play's {good}",
+                "{value} of {} ({} of the good play's {good})",
                 goal_amount(goal, bound),
                 percent(share, 1)
             )

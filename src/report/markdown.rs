@@ -96,7 +96,10 @@ fn chart_in_words(chart: &Chart) -> String {
     let mut parts = vec![format!("**{}.** {}", escaped(&chart.title), escaped(&chart.summary))];
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
-            curves.iter().map(|curve| (curve.name.clone(), trend_of(curve))).collect()
+            // Curves of one chart are read against each other: they have one scale.
+            let all: Vec<f64> = curves.iter().flat_map(|own| values_of(own)).collect();
+            let trend = |own: &Curve| trend_between(&values_of(own), extremes(&all));
+            curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
         }
         Plot::Stacks { parts, .. } => {
             parts.iter().map(|part| (part.name.clone(), trend(&part.values))).collect()
@@ -108,24 +111,36 @@ fn chart_in_words(chart: &Chart) -> String {
     parts.join("\n\n")
 }
 
-fn trend_of(curve: &Curve) -> String {
-    trend(&curve.points.iter().map(|point| point.1).collect::<Vec<f64>>())
+fn values_of(curve: &Curve) -> Vec<f64> {
+    curve.points.iter().map(|point| point.1).collect()
 }
 
 /// Values as bars of one row, from the lowest to the highest by size; costs count by what they took.
 fn trend(values: &[f64]) -> String {
+    let is_cost = values.iter().all(|own| *own <= 0.0);
+    let sizes: Vec<f64> = picked(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
+    trend_between(&sizes, extremes(&sizes))
+}
+
+/// As many of the values as a row has room for.
+fn picked(values: &[f64]) -> Vec<f64> {
     let count = values.len().min(TREND);
-    let picked: Vec<f64> = (0..count)
-        .map(|at| values[at * (values.len() - 1) / (count - 1).max(1)])
-        .map(|value| if values.iter().all(|own| *own <= 0.0) { -value } else { value })
-        .collect();
-    let least = picked.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = picked.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (0..count).map(|at| values[at * (values.len() - 1) / (count - 1).max(1)]).collect()
+}
+
+/// The least and the greatest value.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Values as bars of one row between two extremes.
+fn trend_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     let height = |value: &f64| match most > least {
         true => level((value - least) / (most - least)),
         false => LEVELS[3],
     };
-    picked.iter().map(height).collect()
+    picked(values).iter().map(height).collect()
 }
 
 /// Text that means itself in Markdown: on one line, without markup of its own.

@@ -257,7 +257,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
         match entry {
             JournalEntry::Call { tool, .. } => *counts.entry(tool.name()).or_default() += 1,
             JournalEntry::Advance { .. } => weeks += 1,
-            JournalEntry::Week { .. } => {}
+            JournalEntry::Parameter { .. } | JournalEntry::Week { .. } => {}
         }
     }
     let mut tools: Vec<(String, u32)> =

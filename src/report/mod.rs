@@ -59,7 +59,7 @@ use crate::session::Debrief;
 pub use logbook::Logbook;
 pub use story::Story;
 pub use week::WeekReport;
-pub use words::{cash_change_in_words, category_name, count, origin_in_words};
+pub use words::{cash_change_in_words, category_name, count, first_change_in_words, origin_in_words};
 
 /// The report of a run as Markdown.
 pub fn as_markdown(story: &Story) -> String {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
-use super::words::{category_name, money, number, whole};
+use super::words::{category_name, money, number, short_week_in_words, whole};
 use crate::notation::{compact, percent};
 use crate::session::{
     Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, WeekFigures,
@@ -51,6 +51,8 @@ impl Move {
 pub struct WeekReport {
     /// Its figures.
     pub week: WeekFigures,
+    /// Days that it and the week before have, where they are not as many: the last week of a run may be short.
+    pub short: Option<String>,
     /// What the change of cash consists of, by category of the ledger: income, then costs from the largest.
     pub parts: Vec<(&'static str, f64)>,
     /// What changed, the most unusual first.
@@ -152,6 +154,7 @@ impl WeekReport {
         let [customer_posts, comments, news_items] = sources.posts.map(count);
         Some(WeekReport {
             week,
+            short: short(sources.weeks),
             parts: parts(&week.booked),
             moves: moves(sources, &week),
             decided: decided(sources, first_day - 1..week.day),
@@ -173,6 +176,12 @@ impl WeekReport {
     pub fn is_of_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
+}
+
+/// The days of the last two weeks, where they are not as many.
+fn short(weeks: &[WeekFigures]) -> Option<String> {
+    let [.., before, own] = weeks else { return None };
+    short_week_in_words(own.days_run, before.days_run)
 }
 
 /// The day on which the program filed a week because the time for it was over.

@@ -1,11 +1,11 @@
 //! What would have been, in words and tables.
 
 use super::why::{signed, written};
-use super::words::count;
+use super::words::{count, first_change_in_words};
 use crate::notation::{compact, printable, short_dollars};
 use crate::session::{
     BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FigureUnit, Futures,
-    Kin, ParameterDifference, ToolId,
+    Kin, ParameterDifference,
 };
 use crate::statistics::Interval;
 
@@ -145,16 +145,26 @@ fn table_of(
 
 /// A value, and what it has more than the run as it was.
 pub fn cell(comparison: &BranchComparison, branch: &BranchFigures, figure: BranchFigure, day: u32) -> String {
-    let Some(value) = branch.value(figure, day) else { return "over".to_owned() };
+    let [value, more] = cell_in_two(comparison, branch, figure, day);
+    if more.is_empty() { value } else { format!("{value} {more}") }
+}
+
+/// The same in two lines, where there is little room: the value, and in brackets what it has more.
+pub fn cell_in_two(
+    comparison: &BranchComparison,
+    branch: &BranchFigures,
+    figure: BranchFigure,
+    day: u32,
+) -> [String; 2] {
+    let alone = |text: &str| [text.to_owned(), String::new()];
+    let Some(value) = branch.value(figure, day) else { return alone("over") };
     if value.is_nan() {
-        return "—".to_owned();
+        return alone("—");
     }
-    let shown = written(figure.unit(), value);
     let base = comparison.branches.first().filter(|_| !branch.edits.is_empty());
-    match base.and_then(|base| base.value(figure, day)).filter(|base| !base.is_nan()) {
-        Some(base) => format!("{shown} ({})", signed(figure.unit(), value - base)),
-        None => shown,
-    }
+    let base = base.and_then(|base| base.value(figure, day)).filter(|base| !base.is_nan());
+    let more = base.map_or(String::new(), |base| format!("({})", signed(figure.unit(), value - base)));
+    [written(figure.unit(), value), more]
 }
 
 /// How many futures were drawn, and from when on.
@@ -231,11 +241,9 @@ pub fn kin_line(kin: &Kin, own: &str) -> String {
     let run = &kin.run;
     let mark = if run.id == own { " (this run)" } else { "" };
     let left = kin.left_in_week.map_or(String::new(), |week| format!(" · left in week {week}"));
-    let change = match (kin.first_change, kin.left_in_week) {
-        (Some((day, tool)), Some(_)) => {
-            format!(", first call of its own {} on day {day}", ToolId::name(tool))
-        }
-        (None, Some(_)) => ", no call of its own".to_owned(),
+    let change = match (&kin.first_change, kin.left_in_week) {
+        (Some(change), Some(_)) => format!(", first change {}", first_change_in_words(change)),
+        (None, Some(_)) => ", decides as its parent".to_owned(),
         _ => String::new(),
     };
     let end = run.ended.map_or(String::new(), |ended| format!(", {}", ended.id()));
@@ -254,6 +262,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::session::ToolId;
 
     #[test]
     fn calls_that_differ_alike_are_told_together() {

@@ -1,7 +1,7 @@
 //! Why a figure changed, in words and numbers.
 
 use super::chapters::change_in_words;
-use super::words::{count, number, whole};
+use super::words::{count, number, short_week_in_words, whole};
 use crate::notation::{grouped, percent};
 use crate::session::{Detail, FigureUnit, InputDetail, Why};
 
@@ -40,10 +40,12 @@ pub fn equation(why: &Why) -> String {
     format!("{} {} = {}", why.quantity.name(), signed(why.quantity.unit(), why.change()), parts.join(" · "))
 }
 
-/// The figure in both weeks: `week 20: 195 → 1,137`.
+/// The figure in both weeks: `week 20: 195 → 1,137`; how many days they have where one is short.
 pub fn heading(why: &Why) -> String {
     let value = |value| written(why.quantity.unit(), value);
-    format!("{}, week {}: {} → {}", why.quantity.name(), why.week, value(why.before), value(why.after))
+    let [before, own] = why.days;
+    let short = short_week_in_words(own, before).map_or(String::new(), |short| format!(" ({short})"));
+    format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
 /// A value of a figure in a unit.
@@ -98,7 +100,7 @@ mod tests {
         let parts: Vec<WhyPart> = amounts.iter().map(part).collect();
         let quantity = WeekQuantity::of_company(figure).expect("a figure of the company");
         let rest = after - before - parts.iter().map(|part| part.amount).sum::<f64>();
-        Why { week: 20, quantity, before, after, parts, rest, simulations: 4 }
+        Why { week: 20, quantity, days: [7, 7], before, after, parts, rest, simulations: 4 }
     }
 
     #[test]
@@ -111,6 +113,8 @@ mod tests {
             "cancellations +942 = price +938 · rivals +3.5 · composition and chance +0.5"
         );
         assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
+        let short = Why { days: [7, 3], ..told };
+        assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
         let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
         assert_eq!(
             equation(&told),

@@ -1,7 +1,7 @@
 //! How reports write figures and name what they are.
 
 use crate::notation::{compact, grouped, signed_dollars};
-use crate::session::{BranchOrigin, Category, Observation};
+use crate::session::{BranchOrigin, Category, FirstChange, Observation};
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {
@@ -24,8 +24,19 @@ pub fn origin_in_words(origin: &BranchOrigin) -> String {
     let BranchOrigin { run, week, first_change } = origin;
     let change = first_change
         .as_ref()
-        .map_or(String::new(), |(day, what)| format!(", first change {what} on day {day}"));
+        .map_or(String::new(), |change| format!(", first change {}", first_change_in_words(change)));
     format!("branch of {run} from week {week}{change}")
+}
+
+/// The decision by which a branch parted from its parent: `set_prices on day 28`, `no set_prices on day 28`.
+pub fn first_change_in_words(change: &FirstChange) -> String {
+    let FirstChange { day, what, is_left_out } = change;
+    format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
+}
+
+/// How many days two weeks have that are held against each other, where they are not as long: `of 3 days, the week before of 7`.
+pub fn short_week_in_words(days: u32, before: u32) -> Option<String> {
+    (days != before).then(|| format!("of {}, the week before of {before}", count(days, "day")))
 }
 
 /// Name of a category of the ledger, as every screen and report writes it.

@@ -38,7 +38,7 @@ pub use class::handout::Handout;
 pub use class::reference::{ClassReference, ranked_goal, share_of_good};
 pub use counterfactual::last_read::{LastRead, OfRecord};
 pub use counterfactual::one_each::unless_stopped;
-pub use counterfactual::script::PastCall;
+pub use counterfactual::script::{PastCall, PastDecision};
 pub use curve::access::CurveLook;
 pub use curve::example::example_curve;
 pub use curve::explorer::{
@@ -147,8 +147,8 @@ pub use trajectory::{
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
-    FORMS, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference, WhatIf,
-    branches_of, origin_of, sets_amounts,
+    FORMS, FirstChange, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference,
+    WhatIf, branches_of, origin_of, sets_amounts,
 };
 pub use why::{
     Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,

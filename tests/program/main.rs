@@ -23,6 +23,7 @@ mod lessons;
 mod looking;
 mod own_runs;
 mod plain;
+mod planted;
 mod preparation;
 mod scenarios;
 mod studies;

@@ -12,9 +12,8 @@ use crate::console::request::{LessonRequest, Request};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
-use crate::console::widgets::field::parse_number;
 use crate::console::widgets::{Field, Scroll};
-use crate::report::lesson::is_share;
+use crate::report::lesson::typed_guess;
 use crate::session::{LessonPage, LessonQuestion};
 
 /// Widest page that reads well.
@@ -72,12 +71,15 @@ impl LessonDialog {
     fn answered(&mut self, question: &LessonQuestion) -> Outcome {
         let Some(answer) = &mut self.answer else { return Outcome::stay() };
         let value = match question.choices.is_empty() {
-            false => Some(answer.choice as f64 + 1.0),
-            true => number(question, answer.number.text()),
+            false => Ok(answer.choice as f64 + 1.0),
+            true => typed_guess(question, answer.number.text()),
         };
-        let Some(value) = value else {
-            answer.problem = Some("type a number".to_owned());
-            return Outcome::stay();
+        let value = match value {
+            Ok(value) => value,
+            Err(problem) => {
+                answer.problem = Some(problem);
+                return Outcome::stay();
+            }
         };
         self.answer = None;
         let effects = vec![Effect::Request(Request::Lesson(LessonRequest::Guess(value)))];
@@ -155,15 +157,6 @@ impl LessonDialog {
             canvas.text(row, &format!("! {problem}"), Role::Bad);
         }
         canvas.pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
-    }
-}
-
-/// A number as people type it; what is asked for as a share from 0 to 1 may be typed in hundredths.
-fn number(question: &LessonQuestion, text: &str) -> Option<f64> {
-    match text.trim().strip_suffix('%') {
-        Some(bare) if is_share(question) => parse_number(bare).map(|value| value / 100.0),
-        Some(bare) => parse_number(bare),
-        None => parse_number(text),
     }
 }
 

@@ -153,7 +153,7 @@ impl Report {
         let parts: [Section<'a>; 5] = [
             head,
             decided,
-            with_heading(canvas, "Most unusual changes", moves),
+            with_heading(canvas, &heading_of_moves(told), moves),
             news.into_iter().chain(notice_lines(canvas, look.company, width, left.min(8))).collect(),
             with_heading(canvas, "What comes next", coming),
         ];
@@ -235,8 +235,16 @@ impl Report {
     }
 }
 
-fn with_heading<'a>(canvas: &Canvas<'_>, heading: &'static str, lines: Section<'a>) -> Section<'a> {
-    std::iter::once(Line::from(canvas.span(heading, Role::Header))).chain(lines).collect()
+/// What the changes are against, where the two weeks are not as long.
+fn heading_of_moves(told: &WeekReport) -> String {
+    match &told.short {
+        Some(short) => format!("Most unusual changes · a week {short}"),
+        None => "Most unusual changes".to_owned(),
+    }
+}
+
+fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> Section<'a> {
+    std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
 /// What was said of the week's last day, and what came. `of_limit` says that nobody said it: the program filed it.

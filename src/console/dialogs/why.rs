@@ -230,6 +230,7 @@ mod tests {
         Why {
             week: 20,
             quantity: cancellations(),
+            days: [7, 7],
             before: 195.0,
             after: 1137.0,
             parts: vec![

@@ -164,28 +164,10 @@ fn in_a_number(letter: char) -> bool {
         || matches!(letter, '.' | ',' | '_' | '-' | '+' | '$' | 'e' | 'E' | 'k' | 'K' | 'm' | 'M')
 }
 
-/// Reads a number as people type it: `1,200`, `$3.5k`, `2M`, `1_000`.
-pub fn parse_number(text: &str) -> Option<f64> {
-    let cleaned: String =
-        text.trim().chars().filter(|letter| !matches!(letter, ',' | '_' | '$' | ' ')).collect();
-    let (digits, factor) = match cleaned.chars().last()? {
-        'k' | 'K' => (&cleaned[..cleaned.len() - 1], 1e3),
-        'm' | 'M' => (&cleaned[..cleaned.len() - 1], 1e6),
-        _ => (cleaned.as_str(), 1.0),
-    };
-    if digits.is_empty()
-        || !digits
-            .chars()
-            .all(|letter| letter.is_ascii_digit() || matches!(letter, '.' | '-' | '+' | 'e' | 'E'))
-    {
-        return None;
-    }
-    digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::notation::parse_number;
 
     fn typed(keys: &[KeyCode]) -> Field {
         let mut field = Field::of("añ日");

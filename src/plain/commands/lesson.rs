@@ -6,7 +6,7 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::report::debrief::in_words;
-use crate::report::lesson::{is_share, page_in_words};
+use crate::report::lesson::{page_in_words, typed_guess};
 use crate::rules::answers_to_companies;
 use crate::session::{
     Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision,
@@ -47,16 +47,22 @@ impl Interpreter {
             return Err(problem(arguments, "guess takes one answer, for instance guess 12000"));
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
-        let bare = written.trim_start_matches('$').trim_end_matches('%').replace(',', "");
-        let number: f64 =
-            bare.parse().map_err(|_| problem(arguments, "a guess is a number, or the number of a choice"))?;
-        let question = self.session.lesson_page().and_then(|page| page.question);
-        let hundredths = written.ends_with('%') && question.is_some_and(|question| is_share(&question));
-        let value = if hundredths { number / 100.0 } else { number };
+        let value = match self.session.lesson_page().and_then(|page| page.question) {
+            Some(question) => typed_guess(&question, &written).map_err(|text| problem(arguments, &text))?,
+            None => return Ok(Answer::refused("guess", self.nothing_asked())),
+        };
         Ok(match self.session.guess_in_lesson(value) {
             Ok(()) => self.lesson_page("guess"),
             Err(refusal) => Answer::refused("guess", refusal),
         })
+    }
+
+    /// Why nothing can be answered now.
+    fn nothing_asked(&self) -> Refusal {
+        match self.session.lesson() {
+            Some(_) => Refusal::new("no_question", "no question of the lesson is open"),
+            None => no_lesson(),
+        }
     }
 
     /// `hint`

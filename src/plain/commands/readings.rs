@@ -170,6 +170,10 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &CompanyNames
             let words = deals_in_words(*tool, args, names).unwrap_or_else(|| args.to_string());
             format!("day {day:>3}  {tool}{remark} {words}")
         }
+        JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
+            let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
+            format!("day {day:>3}  set {key}: {old} → {new}{from}")
+        }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
             let naive = if filled_naively[0] { ", naive" } else { "" };
             let next = forecasts.first().map_or(String::new(), |first| dollars(first.point));

@@ -58,6 +58,7 @@ fn in_words(report: &WeekReport) -> String {
     let change = signed_dollars(week.cash_change);
     let mut lines =
         vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
+    lines.extend(report.short.iter().map(|short| format!("it is a week {short}")));
     if report.was_filed_at_limit() {
         lines.push("the time for this week was over: it was filed with the naive projection".to_owned());
     }

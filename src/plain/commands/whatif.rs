@@ -14,8 +14,8 @@ use crate::report::whatif::{
 };
 use crate::session::record::LeavingCause;
 use crate::session::{
-    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastCall, Refusal, Session, WhatIf,
-    branches_of, unless_stopped,
+    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastCall, PastDecision, Refusal,
+    Session, WhatIf, branches_of, unless_stopped,
 };
 
 /// Futures that are drawn where no number is named.
@@ -25,7 +25,7 @@ const MOST_FUTURES: u32 = 200;
 /// Largest file that holds a question, in bytes.
 const LARGEST_FILE: u64 = 64 << 10;
 /// How a question reads.
-const USAGE: &str = "for instance: whatif from 20: set_prices * 0.9";
+const USAGE: &str = "for instance: whatif from 2: set_prices * 0.9";
 
 /// A question, as it is written.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,29 +87,26 @@ impl Interpreter {
             Err(refusal) => return Answer::refused("whatif", refusal),
         };
         self.note_look("whatif", &[]);
-        let row = |call: &PastCall| {
-            let refused = if call.accepted { "" } else { "refused" };
-            vec![
-                call.seq.to_string(),
-                (call.day / days + 1).to_string(),
-                call.tool.name().to_owned(),
-                call.args.to_string(),
-                refused.to_owned(),
-            ]
-        };
-        let rows: Vec<Vec<String>> = calls.iter().map(row).collect();
-        let headers = ["line", "week", "call", "arguments", ""].map(str::to_owned);
+        let rows = decision_rows(&calls, days);
+        let headers = ["line", "week", "decision", "arguments", ""].map(str::to_owned);
         let text = match rows.is_empty() {
             true => format!("nothing was decided from week {week} on; {USAGE}"),
             false => format!("{}{USAGE}", aligned(&headers, &rows)),
         };
-        let one = |call: &PastCall| {
-            json!({
-                "line": call.seq, "week": call.day / days + 1, "day": call.day, "tool": call.tool.name(),
-                "args": call.args, "ok": call.accepted,
-            })
-        };
-        Answer::done("whatif", text, json!({ "calls": calls.iter().map(one).collect::<Vec<_>>() }))
+        let (mut made, mut set) = (Vec::new(), Vec::new());
+        for decision in &calls {
+            let week = decision.day() / days + 1;
+            match decision {
+                PastDecision::Call(call) => made.push(json!({
+                    "line": call.seq, "week": week, "day": call.day, "tool": call.tool.name(), "args": call.args,
+                    "ok": call.accepted,
+                })),
+                PastDecision::Parameter { seq, day, key, value, from_day } => set.push(json!({
+                    "line": seq, "week": week, "day": day, "key": key, "value": value, "from_day": from_day,
+                })),
+            }
+        }
+        Answer::done("whatif", text, json!({ "calls": made, "parameters": set }))
     }
 
     fn compare(&mut self, question: &Question) -> Answer {
@@ -226,13 +223,31 @@ impl Interpreter {
         let one = |kin: &crate::session::Kin| {
             json!({
                 "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.left_in_week,
-                "first_change": kin.first_change.map(|(day, tool)| json!({ "day": day, "tool": tool.name() })),
+                "first_change": kin.first_change,
                 "day": kin.run.day, "cash": kin.run.cash, "ended": kin.run.ended,
             })
         };
         let data: Vec<Value> = tree.iter().map(one).collect();
         Answer::done("branches", lines.join("\n"), json!({ "runs": data }))
     }
+}
+
+/// A row for each decision: its line, week, what it is, arguments or value, and whether it was refused.
+fn decision_rows(decisions: &[PastDecision], days: u32) -> Vec<Vec<String>> {
+    let row = |own: &PastDecision| {
+        let (what, arguments, remark) = match own {
+            PastDecision::Call(PastCall { tool, args, accepted, .. }) => {
+                let refused = if *accepted { "" } else { "refused" };
+                (tool.name().to_owned(), args.to_string(), refused.to_owned())
+            }
+            PastDecision::Parameter { key, value, from_day, .. } => {
+                let from = from_day.map_or(String::new(), |day| format!("from day {day} on"));
+                (format!("set {key}"), value.to_string(), from)
+            }
+        };
+        vec![own.seq().to_string(), (own.day() / days + 1).to_string(), what, arguments, remark]
+    };
+    decisions.iter().map(row).collect()
 }
 
 /// A file holds the words before the colon in its first line, and an alternative in each of the others.

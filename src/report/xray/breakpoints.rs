@@ -83,14 +83,17 @@ pub fn look_back_in_words(own: &LookBack) -> Vec<String> {
     settled(lines)
 }
 
-/// The days on which a condition became true.
+/// The days on which a condition became true, and those on which its figure began so.
 pub fn found_in_words(condition: &Condition, found: &[Judged], last_day: u32) -> Vec<String> {
     let days = count(last_day, "day");
-    let head = match found.len() {
+    let head = match found.iter().filter(|own| own.becomes_true()).count() {
         0 => format!("{condition} became true on none of {days}"),
         often => format!("{condition} became true on {often} of {days}"),
     };
-    let line = |own: &Judged| format!("  day {:<4} {}", own.day, sides(condition, own));
+    let line = |own: &Judged| {
+        let began = if own.begins { " · its first value" } else { "" };
+        format!("  day {:<4} {}{began}", own.day, sides(condition, own))
+    };
     settled(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 

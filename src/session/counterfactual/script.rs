@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::session::play::overrides::ParameterChange;
+use crate::session::play::overrides::{ParameterChange, json_of_value};
 use crate::session::trajectory::record::{Call, Outcome};
 use crate::session::trajectory::{Line, Record};
 use crate::tools::{Kind, ToolId};
@@ -33,6 +33,65 @@ pub struct PastCall {
     pub args: Value,
     /// Whether it was accepted.
     pub accepted: bool,
+}
+
+/// Something that was decided in the past.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PastDecision {
+    /// A call.
+    Call(PastCall),
+    /// A parameter that was set.
+    Parameter {
+        /// Its line.
+        seq: u64,
+        /// Decision day.
+        day: u32,
+        /// Full key.
+        key: String,
+        /// Value that it was set to.
+        value: Value,
+        /// First day that was simulated with it; none: it acted at once.
+        from_day: Option<u32>,
+    },
+}
+
+impl PastDecision {
+    /// Its line.
+    pub fn seq(&self) -> u64 {
+        match self {
+            PastDecision::Call(PastCall { seq, .. }) | PastDecision::Parameter { seq, .. } => *seq,
+        }
+    }
+
+    /// Decision day.
+    pub fn day(&self) -> u32 {
+        match self {
+            PastDecision::Call(PastCall { day, .. }) | PastDecision::Parameter { day, .. } => *day,
+        }
+    }
+
+    /// The call that it is.
+    pub fn call(&self) -> Option<&PastCall> {
+        match self {
+            PastDecision::Call(call) => Some(call),
+            PastDecision::Parameter { .. } => None,
+        }
+    }
+
+    /// What a move decided; none where days passed.
+    pub(in crate::session) fn of(step: &Move) -> Option<PastDecision> {
+        match step {
+            Move::Call(call) => Some(PastDecision::Call(call.clone())),
+            Move::Parameter(PastSetting { day, change }) => Some(PastDecision::Parameter {
+                seq: change.seq,
+                day: *day,
+                key: change.key.clone(),
+                value: json_of_value(&change.value),
+                from_day: change.from_day,
+            }),
+            Move::Days(_) => None,
+        }
+    }
 }
 
 /// A parameter that was set in the past.

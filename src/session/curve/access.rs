@@ -22,7 +22,7 @@ impl Session {
     /// the look is recorded, and of what studies have told in all others.
     ///
     /// # Errors
-    /// `group_not_discovered`, `not_saved`.
+    /// `group_not_discovered`, `guess_first`, `not_saved`.
     pub fn curve_explorer(&mut self, group: Group) -> Result<CurveExplorer, Refusal> {
         if !self.may_look_inside() {
             return self.estimated_curve(group);
@@ -50,11 +50,14 @@ impl Session {
         CurveExplorer::of(group, basis, self.on_offer(group), vec![market])
     }
 
-    /// The explorer of what studies have told of a group.
+    /// The explorer of what studies have told of a group. In a lesson it waits for the guess, which it would answer.
     ///
     /// # Errors
-    /// `group_not_discovered`.
+    /// `group_not_discovered`, `guess_first`.
     pub fn estimated_curve(&self, group: Group) -> Result<CurveExplorer, Refusal> {
+        if let Some(lesson) = self.lesson() {
+            lesson.refuse_before_guess(self.weeks_passed())?;
+        }
         let all = self.estimates();
         let Some(own) = all.iter().find(|own| own.group == group) else {
             let known: Vec<&str> = all.iter().map(|own| own.group.id()).collect();

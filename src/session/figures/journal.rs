@@ -25,6 +25,21 @@ pub enum JournalEntry {
         #[serde(flatten)]
         reversal: Option<Reversal>,
     },
+    /// A parameter of a debug run was set.
+    Parameter {
+        /// Its line in the trajectory.
+        seq: u64,
+        /// Decision day.
+        day: u32,
+        /// Full key.
+        key: String,
+        /// Value before.
+        old: Value,
+        /// Value from then on.
+        new: Value,
+        /// First day that is simulated with it; none: it acted at once.
+        from_day: Option<u32>,
+    },
     /// A week was let pass.
     Advance {
         /// Decision day.

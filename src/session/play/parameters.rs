@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::act::not_saved;
 use super::overrides::{ParameterChange, Taken, Unfit, json_of_value, value_of_json};
+use crate::session::figures::journal::JournalEntry;
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
@@ -98,7 +99,8 @@ impl Session {
         let Taken { now, changed } = overrides.take(&self.simulation.params, change).map_err(not_allowed)?;
         let new = json_of_value(&changed.value(key).map_err(unknown)?);
         let line = Override { key: key.to_owned(), old: old.clone(), new: new.clone(), from_day };
-        self.append(&Record::Override(line), Durability::Synced).map_err(not_saved)?;
+        self.append(&Record::Override(line.clone()), Durability::Synced).map_err(not_saved)?;
+        self.enter_parameter(self.position.seq, &line);
         self.simulation.overrides = overrides;
         self.simulation.use_params(now, self.projection.entries());
         self.renew_what_follows_from_parameters();
@@ -121,12 +123,22 @@ impl Session {
         if json_of_value(&held) != line.old {
             return Err(format!("{} was not {} before it", line.key, line.old));
         }
+        self.enter_parameter(seq, line);
         let change = ParameterChange::of(seq, line).ok_or("its value is none that a parameter can have")?;
         let taken = self.simulation.overrides.take(&self.simulation.params, change);
         let Taken { now, .. } = taken.map_err(|unfit| in_words(&unfit.error))?;
         self.simulation.use_params(now, self.projection.entries());
         self.renew_what_follows_from_parameters();
         Ok(())
+    }
+
+    /// Enters a parameter of a debug run into the journal: what a lesson sets by itself was not decided by whom it shows.
+    fn enter_parameter(&mut self, seq: u64, line: &Override) {
+        if self.manifest.mode == Mode::Debug {
+            let Override { key, old, new, from_day } = line.clone();
+            let day = self.simulation.world.day;
+            self.history.journal.push(JournalEntry::Parameter { seq, day, key, old, new, from_day });
+        }
     }
 
     /// The value of a parameter, or of a list or table of them, as it is in force.

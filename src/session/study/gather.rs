@@ -306,7 +306,9 @@ fn look(path: &Path, without: &Path, depth: usize, found: &mut Found) -> std::io
     }
     for entry in std::fs::read_dir(&path)? {
         let entry = entry?;
-        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let name = entry.file_name();
+        // What the program keeps for a person lies below `.local` where nothing else is said.
+        let is_hidden = name.to_string_lossy().starts_with('.') && name != ".local";
         if !is_hidden && !entry.file_type()?.is_symlink() {
             look(&entry.path(), without, depth - 1, found)?;
         }

@@ -152,7 +152,9 @@ impl SessionRules {
             Mode::Baseline => {
                 SessionRules { advice: false, calibration: false, results: ResultsShown::Own, ..open }
             }
-            Mode::Sandbox | Mode::Lesson | Mode::Debug => open,
+            // What is to be found out is not told beside it.
+            Mode::Lesson => SessionRules { advice: false, ..open },
+            Mode::Sandbox | Mode::Debug => open,
         }
     }
 

@@ -185,7 +185,7 @@ fn move_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
 }
 
 fn no_line(seq: u64) -> Refusal {
-    let message = format!("line {seq} is no call of the weeks of this what-if; whatif WEEK lists them");
+    let message = format!("line {seq} is no decision of the weeks of this what-if; whatif WEEK lists them");
     Refusal::at("line", "line_unknown", message)
 }
 

@@ -8,9 +8,8 @@ use serde_json::Value;
 use crate::session::figures::week::week_of;
 use crate::session::folder::derived::manifest_of;
 use crate::session::folder::runs::{RunSummary, list_runs, run_folder};
-use crate::session::trajectory::record::{Call, Parent};
+use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record, Trajectory};
-use crate::tools::ToolId;
 
 /// A run in the tree.
 #[derive(Debug, Clone)]
@@ -21,8 +20,8 @@ pub struct Kin {
     pub depth: usize,
     /// Week at whose start it left its parent; none for the root.
     pub left_in_week: Option<u32>,
-    /// The first call that was made in it and not in its parent at that place; none if there is none.
-    pub first_change: Option<(u32, ToolId)>,
+    /// The first decision that it, or its parent, made alone; none if there is none.
+    pub first_change: Option<FirstChange>,
 }
 
 /// Where a branch came from.
@@ -32,28 +31,58 @@ pub struct BranchOrigin {
     pub run: String,
     /// Week at whose start it left.
     pub week: u32,
-    /// Day, and tool or parameter, of the first call or setting that its parent did not make there; none if there is none, or
-    /// if the parent cannot be read.
-    pub first_change: Option<(u32, String)>,
+    /// The first decision that it, or its parent, made alone; none if there is none, or if the parent cannot be read.
+    pub first_change: Option<FirstChange>,
+}
+
+/// A decision by which a branch first parted from its parent.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FirstChange {
+    /// Decision day.
+    pub day: u32,
+    /// Tool, or parameter.
+    pub what: String,
+    /// Whether the parent decided it, and the branch leaves it out.
+    pub is_left_out: bool,
 }
 
 /// Where the run in a folder came from; none if it is no branch, or cannot be read.
 pub fn origin_of(folder: &Path) -> Option<BranchOrigin> {
     let parent = manifest_of(folder).ok()?.parent?;
+    let (week, first_change) = parting(folder, &parent)?;
+    Some(BranchOrigin { run: parent.run, week, first_change })
+}
+
+/// Week in which the run in a folder left its parent, and the first decision that only one of them made.
+fn parting(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)> {
     let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
     let own = lines(folder)?;
     let at = own.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
-    let first_change = lines(&folder.with_file_name(&parent.run)).and_then(|parents| {
-        let made = |line: &Line| {
-            let decided = decision(line)?;
-            let is_parents = |other: &&Line| other.day == line.day && other.seq > parent.seq;
-            let is_known =
-                parents.iter().filter(is_parents).any(|other| decision(other).as_ref() == Some(&decided));
-            (!is_known).then(|| (line.day, decided.0.to_owned()))
-        };
-        own[at..].iter().find_map(made)
-    });
-    Some(BranchOrigin { run: parent.run, week: week_of(own[at].day) + 1, first_change })
+    let week = week_of(own[at].day) + 1;
+    let parents = lines(&folder.with_file_name(&parent.run));
+    let change = parents.and_then(|parents| first_change(&own[at..], &parents, parent.seq));
+    Some((week, change))
+}
+
+/// The first decision of a branch that its parent did not make on that day, or the other way round, until the day to which both
+/// have come.
+fn first_change(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
+    let one = |line: &Line| decision(line).map(|(what, how)| (line.day, what.to_owned(), how));
+    let mine: Vec<_> = own.iter().filter_map(one).collect();
+    let theirs: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
+    let until = own.last()?.day;
+    let of = |(day, what, _): &(u32, String, Value), is_left_out| FirstChange {
+        day: *day,
+        what: what.clone(),
+        is_left_out,
+    };
+    let new = mine.iter().find(|one| !theirs.contains(one)).map(|one| of(one, false));
+    // On the day to which the branch has come it still can be decided.
+    let left_out = theirs.iter().find(|one| one.0 < until && !mine.contains(one)).map(|one| of(one, true));
+    match (new, left_out) {
+        (Some(new), Some(left_out)) if left_out.day < new.day => Some(left_out),
+        (new, left_out) => new.or(left_out),
+    }
 }
 
 /// What a line decides: tool or parameter, with arguments or value.
@@ -104,7 +133,7 @@ fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) 
     if tree.iter().any(|known| known.run.id == id) {
         return;
     }
-    let lines = own.parent.as_ref().and_then(|parent| left(runs, &own.run.id, parent));
+    let lines = own.parent.as_ref().and_then(|parent| parting(&run_folder(runs, &own.run.id), parent));
     let (left_in_week, first_change) = lines.map_or((None, None), |(week, change)| (Some(week), change));
     tree.push(Kin { run: own.run.clone(), depth, left_in_week, first_change });
     let mut branches: Vec<&Node> =
@@ -113,23 +142,4 @@ fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) 
     for branch in branches {
         grow(runs, all, &branch.run.id, depth + 1, tree);
     }
-}
-
-/// Week in which a branch left, and the day and tool of its first call that its parent did not make on that day.
-fn left(runs: &Path, id: &str, parent: &Parent) -> Option<(u32, Option<(u32, ToolId)>)> {
-    let read = |id: &str| Trajectory::read(&run_folder(runs, id).join("trajectory.jsonl")).ok();
-    let (trajectory, parents) = (read(id)?, read(&parent.run)?);
-    let is_parents = |day: u32, own: &Call| {
-        let later = parents.lines.iter().filter(|line| line.day == day && line.seq > parent.seq);
-        later
-            .filter_map(|line| line.record.accepted_call())
-            .any(|(call, _)| (call.tool, &call.args) == (own.tool, &own.args))
-    };
-    let at = trajectory.lines.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
-    let own = trajectory.lines[at..].iter().find_map(|line| {
-        let (call, _) = line.record.accepted_call()?;
-        let is_own = call.tool.spec().kind.acts() && !is_parents(line.day, call);
-        is_own.then_some((line.day, call.tool))
-    });
-    Some((week_of(trajectory.lines[at].day) + 1, own))
 }

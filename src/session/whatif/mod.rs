@@ -23,7 +23,7 @@ pub use comparison::{BranchComparison, BranchFigures, DecisionDifference, Parame
 pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
 pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures};
-pub use kin::{BranchOrigin, Kin, branches_of, origin_of};
+pub use kin::{BranchOrigin, FirstChange, Kin, branches_of, origin_of};
 
 use self::lesson_limits::{lesson_of, refuse_locked};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
@@ -33,7 +33,7 @@ use super::counterfactual::kept_state::KeptState;
 use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::one_each::one_each;
 use super::counterfactual::past::Past;
-use super::counterfactual::script::{Move, PastCall};
+use super::counterfactual::script::{Move, PastDecision};
 use super::why::{Sight, not_readable, sight};
 use crate::session::folder::mode::Mode;
 use crate::session::lesson::standing::LessonStanding;
@@ -134,15 +134,14 @@ impl WhatIf {
     ///
     /// # Errors
     /// `week_unknown`, and `guess_first` while the question of a lesson is open.
-    pub fn decisions(&self, week: u32) -> Result<Vec<PastCall>, Refusal> {
+    pub fn decisions(&self, week: u32) -> Result<Vec<PastDecision>, Refusal> {
         self.refuse_before_guess()?;
         let from = self.day_of(week)?;
         let moves = self.past.between(from, self.past.manifest.days);
-        let calls = moves.iter().filter_map(|step| match step {
-            Move::Call(call) => Some(call.clone()),
-            Move::Parameter(_) | Move::Days(_) => None,
-        });
-        Ok(calls.collect())
+        // What a lesson sets by itself is no decision of the student's.
+        let sets_parameters = self.past.manifest.mode == Mode::Debug;
+        let decided = moves.iter().filter_map(PastDecision::of);
+        Ok(decided.filter(|own| sets_parameters || matches!(own, PastDecision::Call(_))).collect())
     }
 
     /// The branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] where a number of futures is asked for. None if it

@@ -117,7 +117,8 @@ fn what_is_refused_now_and_what_is_not_any_more_is_told() {
     let session = run(runs.path(), Mode::Debug);
     let own = of(&session);
     let decided = own.decisions(8).expect("decisions");
-    let projects: Vec<_> = decided.iter().filter(|call| call.tool == ToolId::StartResearchProject).collect();
+    let calls = decided.iter().filter_map(PastDecision::call);
+    let projects: Vec<_> = calls.filter(|call| call.tool == ToolId::StartResearchProject).collect();
     let [first, second] = projects[..] else { panic!("{decided:?}") };
     assert_eq!((first.accepted, second.accepted), (true, false));
     let drop = format!("drop {}", first.seq);
@@ -249,7 +250,8 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
     let other = branch.branch_with_decisions(2, &[], Mode::Debug, &mut |_| ControlFlow::Continue(()));
     let other = other.expect("a branch").session;
     let origin = origin_of(branch.folder().expect("a folder")).expect("it is a branch");
-    let first_change = Some((28, "set_prices".to_owned()));
+    let change = |day, what: &str, is_left_out| Some(FirstChange { day, what: what.to_owned(), is_left_out });
+    let first_change = change(28, "set_prices", false);
     assert_eq!(origin, BranchOrigin { run: session.manifest().id.clone(), week: 5, first_change });
     let origin = origin_of(other.folder().expect("a folder")).expect("it is a branch");
     assert_eq!((origin.week, origin.first_change), (2, None));
@@ -258,17 +260,29 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
         let tree = branches_of(runs.path(), id);
         let told: Vec<_> = tree
             .iter()
-            .map(|kin| (kin.run.id.clone(), kin.depth, kin.left_in_week, kin.first_change))
+            .map(|kin| (kin.run.id.clone(), kin.depth, kin.left_in_week, kin.first_change.clone()))
             .collect();
         assert_eq!(
             told,
             [
                 (session.manifest().id.clone(), 0, None, None),
-                (branch.manifest().id.clone(), 1, Some(5), Some((28, ToolId::SetPrices))),
+                (branch.manifest().id.clone(), 1, Some(5), change(28, "set_prices", false)),
                 (other.manifest().id.clone(), 2, Some(2), None),
             ]
         );
     }
+}
+
+#[test]
+fn the_tree_names_a_decision_that_a_branch_leaves_out() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = run(runs.path(), Mode::Debug);
+    let decided = of(&session).decisions(5).expect("decisions");
+    let call = decided[0].call().expect("a call");
+    let branch = adopted(&session, 5, &[&format!("drop {}", call.seq)]);
+    let origin = origin_of(branch.folder().expect("a folder")).expect("it is a branch");
+    let left_out = FirstChange { day: call.day, what: call.tool.name().to_owned(), is_left_out: true };
+    assert_eq!(origin.first_change, Some(left_out));
 }
 
 fn adopted(session: &Session, week: u32, alternative: &[&str]) -> Session {
@@ -289,7 +303,9 @@ fn a_parameter_is_set_as_a_run_sets_it() {
     let recorded: Vec<_> = of(&session).decisions(5).expect("decisions");
     for week in 5..=session.day() / 7 {
         let today = by_hand.day();
-        for call in recorded.iter().filter(|call| call.day == today && call.accepted) {
+        for call in
+            recorded.iter().filter_map(PastDecision::call).filter(|call| call.day == today && call.accepted)
+        {
             by_hand.call(call.tool.name(), &call.args, Via::Plain).expect("as in the run");
         }
         match week {

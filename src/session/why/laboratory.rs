@@ -108,6 +108,11 @@ impl Laboratory {
         self.week
     }
 
+    /// Days of the week before, and of its week.
+    pub(super) fn days(&self) -> [u32; 2] {
+        [&self.before, &self.after].map(|outcome| outcome.days.len() as u32)
+    }
+
     /// Figures of the week before.
     pub(super) fn week_before(&self) -> &SimulatedWeek {
         &self.week_before

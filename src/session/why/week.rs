@@ -19,6 +19,8 @@ pub struct Why {
     pub week: u32,
     /// The figure.
     pub quantity: WeekQuantity,
+    /// Days of the week before, and of the week: the last one of a run may be short.
+    pub days: [u32; 2],
     /// Its value the week before.
     pub before: f64,
     /// Its value.
@@ -84,7 +86,8 @@ impl Laboratory {
         let rest = read(quantity, self.without(all_calls)) - values.0;
         let simulations = self.simulated();
         let (before, after) = values;
-        Ok(Some(Why { week: self.week(), quantity, before, after, parts, rest, simulations }))
+        let (week, days) = (self.week(), self.days());
+        Ok(Some(Why { week, quantity, days, before, after, parts, rest, simulations }))
     }
 
     /// Inputs as far as they may be told apart.

@@ -8,15 +8,18 @@ use crate::console::canvas::{Canvas, Click, fit, rows_of};
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
-use crate::session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastCall};
+use crate::session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastCall, PastDecision};
+
+/// Said where a parameter that the run sets is to be edited.
+const PARAMETER_IS_SET_ANEW: &str = "leave it out, and decide otherwise with set KEY VALUE";
 
 /// A row of the list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Row {
     /// An edit of the alternative that concerns no single call, by its place.
     Edit(usize),
-    /// A call of the run, by its place.
-    Call(usize),
+    /// A decision of the run, by its place.
+    Past(usize),
 }
 
 /// What is typed.
@@ -32,7 +35,7 @@ pub(super) struct Decisions {
     last_week: u32,
     days_per_week: u32,
     /// None until they were read.
-    calls: Option<Vec<PastCall>>,
+    past: Option<Vec<PastDecision>>,
     /// They are not told.
     is_refused: bool,
     alternatives: Vec<Vec<DecisionEdit>>,
@@ -48,7 +51,7 @@ impl Decisions {
             week,
             last_week,
             days_per_week: 1,
-            calls: None,
+            past: None,
             is_refused: false,
             alternatives: vec![Vec::new()],
             shown: 0,
@@ -65,13 +68,13 @@ impl Decisions {
         self.days_per_week
     }
 
-    pub(super) fn take(&mut self, calls: Vec<PastCall>, days_per_week: u32) {
-        (self.calls, self.days_per_week) = (Some(calls), days_per_week);
+    pub(super) fn take(&mut self, past: Vec<PastDecision>, days_per_week: u32) {
+        (self.past, self.days_per_week) = (Some(past), days_per_week);
     }
 
-    /// The calls are not told: nothing is waited for.
+    /// They are not told: nothing is waited for.
     pub(super) fn refuse(&mut self) {
-        self.is_refused = self.calls.is_none();
+        self.is_refused = self.past.is_none();
     }
 
     /// The alternatives that decide something otherwise.
@@ -91,17 +94,17 @@ impl Decisions {
         &mut self.alternatives[self.shown]
     }
 
-    fn calls(&self) -> &[PastCall] {
-        self.calls.as_deref().unwrap_or_default()
+    fn past(&self) -> &[PastDecision] {
+        self.past.as_deref().unwrap_or_default()
     }
 
-    /// Edits first, then the calls from the week on.
+    /// Edits first, then the decisions of the run from the week on.
     fn rows(&self) -> Vec<Row> {
         let edits = self.alternatives[self.shown].iter().enumerate();
         let free = edits.filter(|(_, edit)| line_of(edit).is_none()).map(|(at, _)| Row::Edit(at));
         let from = (self.week - 1) * self.days_per_week;
-        let calls = self.calls().iter().enumerate().filter(|(_, call)| call.day >= from);
-        free.chain(calls.map(|(at, _)| Row::Call(at))).collect()
+        let past = self.past().iter().enumerate().filter(|(_, own)| own.day() >= from);
+        free.chain(past.map(|(at, _)| Row::Past(at))).collect()
     }
 
     fn edit_of(&self, line: u64) -> Option<usize> {
@@ -130,18 +133,18 @@ impl Decisions {
             Action::NextAlternative => self.next_alternative()?,
             Action::AddDecision => self.typing = Some(TypedDecision { field: Field::default(), line: None }),
             Action::DropDecision => self.drop_selected(),
-            Action::Open => self.edit_selected(),
+            Action::Open => return self.edit_selected(),
             _ => {}
         }
         Ok(())
     }
 
-    /// Lets branches part at the start of another week; edits of earlier calls are given up.
+    /// Lets branches part at the start of another week; edits of earlier decisions are given up.
     fn begin_in(&mut self, week: u32) {
         self.week = week.clamp(1, self.last_week);
         let from = (self.week - 1) * self.days_per_week;
-        let calls = self.calls.as_deref().unwrap_or_default();
-        let later = |line: u64| calls.iter().any(|call| call.seq == line && call.day >= from);
+        let past = self.past.as_deref().unwrap_or_default();
+        let later = |line: u64| past.iter().any(|own| own.seq() == line && own.day() >= from);
         for edits in &mut self.alternatives {
             edits.retain(|edit| line_of(edit).is_none_or(later));
         }
@@ -163,12 +166,12 @@ impl Decisions {
         }
     }
 
-    /// Leaves the selected call out, or makes it as it was; takes a selected edit back.
+    /// Leaves the selected decision out, or makes it as it was; takes a selected edit back.
     fn drop_selected(&mut self) {
         match self.rows().get(self.selected) {
             Some(Row::Edit(at)) => drop(self.edits().remove(*at)),
-            Some(Row::Call(at)) => {
-                let line = self.calls()[*at].seq;
+            Some(Row::Past(at)) => {
+                let line = self.past()[*at].seq();
                 match self.edit_of(line) {
                     Some(edit) => drop(self.edits().remove(edit)),
                     None => self.edits().push(DecisionEdit::Drop(line)),
@@ -179,14 +182,16 @@ impl Decisions {
         self.select(self.selected);
     }
 
-    fn edit_selected(&mut self) {
+    fn edit_selected(&mut self) -> Result<(), String> {
         let (text, line) = match self.rows().get(self.selected) {
             Some(Row::Edit(at)) => {
                 let edit = self.edits().remove(*at);
                 (edit.to_string(), None)
             }
-            Some(Row::Call(at)) => {
-                let call = &self.calls()[*at];
+            Some(Row::Past(at)) => {
+                let PastDecision::Call(call) = &self.past()[*at] else {
+                    return Err(PARAMETER_IS_SET_ANEW.to_owned());
+                };
                 let changed = self.edit_of(call.seq).map(|edit| self.alternatives[self.shown][edit].clone());
                 let args = match changed {
                     Some(DecisionEdit::Change { args, .. }) => args,
@@ -194,9 +199,10 @@ impl Decisions {
                 };
                 (args.to_string(), Some(call.seq))
             }
-            None => return,
+            None => return Ok(()),
         };
         self.typing = Some(TypedDecision { field: Field::of(text), line });
+        Ok(())
     }
 
     fn commit(&mut self) -> Result<(), String> {
@@ -230,7 +236,7 @@ impl Decisions {
         let below = 2.min(area.height);
         let list = Rect { height: area.height - below, ..area };
         let rows = self.rows();
-        match (&self.calls, rows.is_empty()) {
+        match (&self.past, rows.is_empty()) {
             (None, _) if self.is_refused => {}
             (None, _) => canvas.text(list, "reading the record …", Role::Warning),
             (Some(_), true) => canvas.text(list, "nothing was decided in these weeks", Role::Dim),
@@ -266,22 +272,31 @@ impl Decisions {
     fn written(&self, row: Row) -> (String, Role) {
         let at = match row {
             Row::Edit(at) => return (format!("+ {}", self.alternatives[self.shown][at]), Role::Strong),
-            Row::Call(at) => at,
+            Row::Past(at) => at,
         };
-        let call = &self.calls()[at];
-        let week = call.day / self.days_per_week + 1;
-        let edit = self.edit_of(call.seq).map(|edit| &self.alternatives[self.shown][edit]);
+        let own = &self.past()[at];
+        let week = own.day() / self.days_per_week + 1;
+        let edit = self.edit_of(own.seq()).map(|edit| &self.alternatives[self.shown][edit]);
         let (sign, rest, role) = match edit {
             Some(DecisionEdit::Drop(_)) => ("×", " · is not made".to_owned(), Role::Bad),
             Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
-            _ if !call.accepted => (" ", " · refused".to_owned(), Role::Dim),
+            _ if matches!(own, PastDecision::Call(PastCall { accepted: false, .. })) => {
+                (" ", " · refused".to_owned(), Role::Dim)
+            }
             _ => (" ", String::new(), Role::Text),
         };
-        (format!("{sign} week {week:>2}  {} {}{rest}", call.tool.name(), call.args), role)
+        let decided = match own {
+            PastDecision::Call(call) => format!("{} {}", call.tool.name(), call.args),
+            PastDecision::Parameter { key, value, from_day, .. } => {
+                let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
+                format!("set {key} {value}{from}")
+            }
+        };
+        (format!("{sign} week {week:>2}  {decided}{rest}"), role)
     }
 }
 
-/// The line of the call that an edit concerns.
+/// The line of the decision that an edit concerns.
 fn line_of(edit: &DecisionEdit) -> Option<u64> {
     match edit {
         DecisionEdit::Drop(line) | DecisionEdit::Change { seq: line, .. } => Some(*line),

@@ -8,8 +8,8 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::chart;
 use crate::console::widgets::{Axis, Line, Side, Unit};
 use crate::report::whatif::{
-    branch_line, cell, decisions, difference_line, ended_early, futures_cell, futures_cell_in_two,
-    futures_heading, heading,
+    branch_line, cell, cell_in_two, decisions, difference_line, ended_early, futures_cell,
+    futures_cell_in_two, futures_heading, heading,
 };
 use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
@@ -95,8 +95,8 @@ impl Figures {
 
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let mut rest = area;
-        let milestones =
-            self.comparison.milestones(self.days_per_week).len() * self.lines_of_a_row(area.width);
+        let lines = self.lines_of_a_row(area);
+        let milestones = self.comparison.milestones(self.days_per_week).len() * lines;
         let table = milestones as u16 + 1;
         // In a small window figures go before what is known from the title.
         if area.height > table + self.comparison.branches.len() as u16 {
@@ -110,7 +110,7 @@ impl Figures {
             let height = room.saturating_sub(room / 3).min(MOST_CHART);
             self.draw_chart(canvas, take(&mut rest, height));
         }
-        self.draw_table(canvas, take(&mut rest, table));
+        self.draw_table(canvas, take(&mut rest, table), lines);
         let told = self.told();
         for (row, line) in rows_of(rest).zip(&told) {
             canvas.text(row, &fit(line, row.width as usize), Role::Dim);
@@ -160,7 +160,7 @@ impl Figures {
     }
 
     /// The figure at each milestone, in each branch.
-    fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, lines: usize) {
         let figure = self.shown();
         let days = self.comparison.milestones(self.days_per_week);
         let first = FIRST_COLUMN.min(area.width);
@@ -173,7 +173,6 @@ impl Figures {
         for number in 0..self.comparison.branches.len() {
             canvas.text(place(header, number), &format!(" {number}"), Role::Header);
         }
-        let lines = self.lines_of_a_row(area.width);
         for day in days {
             let rows: Vec<Rect> = rows.by_ref().take(lines).collect();
             let Some(first_row) = rows.first() else { return };
@@ -192,20 +191,26 @@ impl Figures {
         match &self.futures {
             Some(futures) if lines > 1 => futures_cell_in_two(futures, number, figure, day).into(),
             Some(futures) => vec![futures_cell(futures, number, figure, day)],
-            None => vec![cell(&self.comparison, &self.comparison.branches[number], figure, day)],
+            None => {
+                let (comparison, branch) = (&self.comparison, &self.comparison.branches[number]);
+                match lines > 1 {
+                    true => cell_in_two(comparison, branch, figure, day).into(),
+                    false => vec![cell(comparison, branch, figure, day)],
+                }
+            }
         }
     }
 
-    /// Lines that a milestone takes: two where a figure over futures does not fit into one.
-    fn lines_of_a_row(&self, table_width: u16) -> usize {
-        let Some(futures) = &self.futures else { return 1 };
-        let width = table_width.saturating_sub(FIRST_COLUMN) / self.comparison.branches.len().max(1) as u16;
+    /// Lines that a milestone takes: two where a figure does not fit into one.
+    fn lines_of_a_row(&self, area: Rect) -> usize {
+        let width = area.width.saturating_sub(FIRST_COLUMN) / self.comparison.branches.len().max(1) as u16;
         let days = self.comparison.milestones(self.days_per_week);
         let cells = (0..self.comparison.branches.len())
             .flat_map(|number| days.iter().map(move |day| (number, *day)))
-            .map(|(number, day)| futures_cell(futures, number, self.shown(), day).chars().count());
+            .map(|(number, day)| self.cell(number, self.shown(), day, 1).concat().chars().count());
         let is_cut = cells.max().is_some_and(|longest| longest >= usize::from(width));
-        if is_cut { 2 } else { 1 }
+        let has_room = usize::from(area.height) > 2 * days.len() + self.comparison.branches.len();
+        if is_cut && (has_room || self.futures.is_some()) { 2 } else { 1 }
     }
 
     /// How sure a difference is, and what the selected branch decides otherwise.

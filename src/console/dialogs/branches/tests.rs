@@ -5,12 +5,12 @@ use serde_json::json;
 use super::*;
 use crate::console::keys::Keys;
 use crate::console::test_kit::{company, dialog_picture, in_dialog};
-use crate::session::{DecisionEdit, PastCall, ToolId};
+use crate::session::{DecisionEdit, PastCall, PastDecision, ToolId};
 
 const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
-fn call(seq: u64, day: u32, accepted: bool) -> PastCall {
-    PastCall { seq, day, tool: ToolId::SetPrices, args: json!({"B": 30}), accepted }
+fn call(seq: u64, day: u32, accepted: bool) -> PastDecision {
+    PastDecision::Call(PastCall { seq, day, tool: ToolId::SetPrices, args: json!({"B": 30}), accepted })
 }
 
 fn page() -> BranchesPage {

@@ -52,6 +52,10 @@ impl CurvePage {
             Ok(explorer) => {
                 let (explorer, plans) = (explorer.clone(), explorer.plans);
                 let outcome = explorer.outcome(&plans);
+                // Plans that are one product at one price move together.
+                if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
+                    self.chosen = None;
+                }
                 Ok(ExploredCurve { explorer, plans, outcome })
             }
             Err(refusal) => Err(refusal.clone()),

@@ -18,9 +18,10 @@ use crate::console::request::Request;
 use crate::console::screens::Look;
 use crate::console::text::number;
 use crate::console::theme::Role;
-use crate::console::widgets::field::{ONLY_NUMBERS, parse_number};
+use crate::console::widgets::field::ONLY_NUMBERS;
 use crate::console::widgets::{Editor, Field};
 use crate::notation::grouped;
+use crate::notation::parse_number;
 use crate::session::Forecasts;
 use crate::tools::{Forecast, ToolId};
 

@@ -1,4 +1,4 @@
-//! The tree of branches in which the run stands: where each left, its first call of its own, where it stands now.
+//! The tree of branches in which the run stands: where each left, its first change, where it stands now.
 
 use ratatui::layout::Rect;
 
@@ -13,8 +13,8 @@ use crate::console::text::{short_dollars, wrapped};
 use crate::console::theme::Role;
 use crate::console::widgets::{Cell, Column, Table};
 use crate::report::whatif::kin_line;
+use crate::report::first_change_in_words;
 use crate::session::Kin;
-use crate::tools::ToolId;
 
 /// The tree.
 pub struct BranchesPane;
@@ -29,7 +29,7 @@ pub fn table() -> Table {
     Table::new(vec![
         Column::words("run"),
         Column::numbers("left in").at_least(7),
-        Column::words("first call of its own").at_least(12),
+        Column::words("first change").at_least(12),
         Column::numbers("day"),
         Column::numbers("cash"),
         Column::words("end"),
@@ -48,8 +48,8 @@ fn row(kin: &Kin, own: &str) -> Vec<Cell> {
         Some(week) => Cell::number(week.into(), format!("week {week}")),
         None => Cell::words(""),
     };
-    let change = match (kin.first_change, kin.left_in_week) {
-        (Some((day, tool)), Some(_)) => Cell::words(format!("{} on day {day}", ToolId::name(tool))),
+    let change = match (&kin.first_change, kin.left_in_week) {
+        (Some(change), Some(_)) => Cell::words(first_change_in_words(change)),
         (None, Some(_)) => Cell::words("none").role(Role::Dim),
         (_, None) => Cell::words(""),
     };

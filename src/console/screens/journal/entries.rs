@@ -56,6 +56,9 @@ pub fn lines(company: &Company) -> Vec<JournalLine> {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
             JournalEntry::Call { .. } => last.calls.extend(of_call(entry, &mut settings, &undone, &company.names)),
+            JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
+                last.calls.push(of_parameter(*day, key, [old, new], *from_day));
+            }
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
                 last.filed = Some(FiledWeek { day: *day, rationale, forecasts, filled_naively });
             }
@@ -233,6 +236,20 @@ fn of_call(
         term: spec.name(),
         sql: kept_in(spec, *day),
     })
+}
+
+/// A parameter that was set, as a line.
+fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
+    let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
+    JournalLine {
+        day,
+        text: format!("  set {key}: {old} → {new}{from}"),
+        role: Role::Text,
+        title: format!("{key} · day {day}"),
+        whole: format!("set {key}{from}\n\nbefore: {old}\nthen: {new}"),
+        term: "",
+        sql: None,
+    }
 }
 
 /// Where the database keeps what a call has set.

@@ -9,8 +9,8 @@ use crate::console::request::Request;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
-use crate::console::widgets::field::parse_number;
 use crate::notation::dollars;
+use crate::notation::parse_number;
 use crate::session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
 
 /// Fields of a new run.

@@ -10,6 +10,7 @@ use crate::console::effect::Effect;
 use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::widgets::Table;
+use crate::session::week_of;
 
 /// The figures with their changes.
 pub struct WeekPane;
@@ -44,7 +45,7 @@ impl Pane<Overview> for WeekPane {
     fn border(&self, overview: &Overview, _: Rect, look: &Look<'_>) -> Border {
         let note = match overview.week.note() {
             note if note.is_empty() => match &look.company.seen.last_week {
-                Some(week) => format!("week {} · to day {}", look.company.seen.week, week.day),
+                Some(week) => format!("week {} · to day {}", week_of(week.day), week.day),
                 None => "no week yet".to_owned(),
             },
             note => note,

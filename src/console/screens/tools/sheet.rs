@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use crate::console::company::Company;
 use crate::console::text::number;
 use crate::console::widgets::Field;
-use crate::console::widgets::field::parse_number;
+use crate::notation::parse_number;
 use crate::notation::json_number;
 use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use crate::world::identifiers::{Channel, Plan};

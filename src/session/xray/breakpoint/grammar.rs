@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::condition::{Condition, Direction, Relation, WorldEvent};
-use super::measure::{Measure, NoQuantity, Quantity};
+use super::measure::{Measure, MeasureKind, NoQuantity, Quantity};
 use crate::notation::nearest;
 use crate::world::identifiers::Group;
 
@@ -201,6 +201,7 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
     let group = words.group()?;
     let early = words.days()?;
     let judgement = judgement(words)?;
+    refuse_more_than_all(measure, &judgement, column)?;
     let days = match early {
         Some(days) => Some(days),
         None => words.days()?,
@@ -246,4 +247,19 @@ fn judgement(words: &mut Words<'_>) -> Result<Judgement, ConditionProblem> {
         }
     };
     words.number().map(|threshold| Judgement::Compared(relation, threshold))
+}
+
+/// A share is a number from 0 to 1: what is more was meant in hundredths.
+fn refuse_more_than_all(
+    measure: Measure,
+    judgement: &Judgement,
+    column: usize,
+) -> Result<(), ConditionProblem> {
+    match (measure.kind(), judgement) {
+        (MeasureKind::Share(_), Judgement::Compared(_, threshold)) if threshold.abs() > 1.0 => {
+            let message = format!("{} is a share from 0 to 1; write {threshold}%", measure.id());
+            Err(ConditionProblem { message, column })
+        }
+        _ => Ok(()),
+    }
 }

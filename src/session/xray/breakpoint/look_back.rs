@@ -54,13 +54,13 @@ impl Session {
         chosen.into_iter().map(|condition| self.look_back(condition)).collect()
     }
 
-    /// The days on which a condition became true. The look is recorded.
+    /// The days on which a condition became true, and those on which its figure began so. The look is recorded.
     ///
     /// # Errors
     /// As [`Session::look_back`].
     pub fn find_days(&mut self, condition: Condition) -> Result<Vec<Judged>, Refusal> {
         let all = self.judged_days("find", condition)?;
-        Ok(all.into_iter().filter(Judged::becomes_true).collect())
+        Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
     }
 
     /// How a condition stood on each day.

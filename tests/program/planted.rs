@@ -1,0 +1,91 @@
+//! The answers to the planted faults: every first difference and every figure on the page is what the program shows.
+
+use crate::support::home::{Home, Said};
+
+const WALK: &str = include_str!("../../docs/debugging-walkthrough.md");
+const ANSWERS: &str = include_str!("../../docs/debugging-answers.md");
+
+/// A row of the page: the number of the fault, its first difference, the commands that show it, and what they show.
+struct Row {
+    number: String,
+    first: String,
+    commands: Vec<String>,
+    shown: String,
+}
+
+fn rows() -> Vec<Row> {
+    let of = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, number, _, _, first, shows, _] = cells[..] else { panic!("{line}") };
+        let (asked, shown) = shows.split_once(": ").unwrap_or_else(|| panic!("{line}"));
+        Row {
+            number: number.to_owned(),
+            first: first.to_owned(),
+            commands: asked.split('`').skip(1).step_by(2).map(str::to_owned).collect(),
+            shown: shown.to_owned(),
+        }
+    };
+    let is_row = |line: &&str| line.trim_start_matches("| ").starts_with(|first: char| first.is_ascii_digit());
+    ANSWERS.lines().filter(is_row).map(of).collect()
+}
+
+/// The decisions that the walk-through lets play.
+fn decisions() -> String {
+    let from = WALK.find("set_prices {").expect("decisions");
+    WALK[from..].split("```").next().expect("their end").to_owned()
+}
+
+/// Figures with decimals in a text.
+fn figures(text: &str) -> Vec<&str> {
+    let words = text.split(|letter: char| letter.is_whitespace() || ",;:`()".contains(letter));
+    let clean = words.map(|word| word.trim_matches(|letter| "+-.$".contains(letter)));
+    let is_figure = |word: &&str| {
+        word.contains('.') && word.starts_with(|first: char| first.is_ascii_digit()) && word.parse::<f64>().is_ok()
+    };
+    clean.filter(is_figure).collect()
+}
+
+fn play(home: &Home, planted: Option<&str>) -> String {
+    let mut options = vec!["--seed", "7", "--mode", "debug", "--days", "200"];
+    options.extend(planted.into_iter().flat_map(|number| ["--planted", number]));
+    let said = home.play(&options, &decisions());
+    assert_eq!(said.code, 0, "{}", said.err);
+    // `run 02fe6680 · seed 7 · …`
+    said.out.split_whitespace().nth(1).expect("the name of the run").to_owned()
+}
+
+fn ask(home: &Home, run: &str, commands: &[String]) -> String {
+    let Said { out, err, .. } = home.play(&["--run", run], &commands.join("\n"));
+    assert!(!err.contains("refused") && !out.contains("did you mean"), "{commands:?}: {out}{err}");
+    out
+}
+
+#[test]
+fn the_page_of_answers_says_what_the_program_shows() {
+    let home = Home::new();
+    let sound = play(&home, None);
+    let all = rows();
+    assert_eq!(all.len(), 10);
+    for row in all {
+        let faulty = play(&home, Some(&row.number));
+        let diff = home.run(&["lab", "diff", &sound, &faulty]).out;
+        let (day, what) = row.first.split_once(',').unwrap_or((&row.first, ""));
+        match day.strip_prefix("day ") {
+            Some(day) => {
+                assert!(diff.starts_with(&format!("the runs differ from day {day} on")), "{}: {diff}", row.number);
+                let named = what.trim().split(' ').next().unwrap_or_default();
+                assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
+            }
+            None => assert!(diff.starts_with("the runs are alike on every day"), "{}: {diff}", row.number),
+        }
+        let shown = ask(&home, &faulty, &row.commands);
+        // What the sound run shows is told beside it; a row that moves on would move it on, too.
+        let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
+        let beside = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
+        let told = figures(&row.shown);
+        assert!(!told.is_empty(), "{}: {}", row.number, row.shown);
+        for figure in told {
+            assert!(shown.contains(figure) || beside.contains(figure), "{}: {figure} in {shown}", row.number);
+        }
+    }
+}

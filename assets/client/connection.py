@@ -52,6 +52,9 @@ def request(method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Di
 
     A connection that the server closed since the last request is opened again; a request that may have been received is
     never sent twice.
+
+    Raises:
+        NovamindError: no server answers, or it wants a token that was not given (code ``token``).
     """
     headers = {"Content-Type": "application/json"}
     token = os.environ.get("NOVAMIND_API_TOKEN")
@@ -64,14 +67,22 @@ def request(method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Di
         if connection.sock is not None and _closed_by_server(connection):
             connection.close()
         connection.request(method, path, payload, headers)
-        text = connection.getresponse().read()
+        response = connection.getresponse()
+        text = response.read()
     except OSError as error:
         _close()
         raise NovamindError(f"the server on port {port} does not answer: {error}", "no_server") from error
     try:
-        return json.loads(text)
+        answer = json.loads(text)
     except ValueError as error:
         raise NovamindError("the server answered something else than JSON", "no_json") from error
+    if response.status == 401:
+        said = answer.get("error") if isinstance(answer, dict) else None
+        raise NovamindError(
+            f"{said or 'the server wants a token'}; set NOVAMIND_API_TOKEN to the text of the file named by --token",
+            "token",
+        )
+    return answer
 
 
 def _closed_by_server(connection: HTTPConnection) -> bool:

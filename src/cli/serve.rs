@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::which_run::WhichRun;
 use super::{Context, Failure, print};
-use crate::server::{HttpOptions, serve_http, write_client};
+use crate::server::{HeldPort, HttpOptions, serve_http, write_client};
 
 /// Options of `serve`.
 #[derive(Debug, Args)]
@@ -34,11 +34,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             return Ok(());
         }
     }
+    let held = HeldPort::take(options.port)?;
     let session = options.which.open(context)?;
-    let http = HttpOptions { port: options.port, token: options.token.clone() };
+    let http = HttpOptions { token: options.token.clone() };
     let mut told = Ok(());
     serve_http(
         session,
+        held,
         &http,
         |ready| told = print(&format!("{}\n", json!(ready))),
         |words| eprintln!("{words}"),

@@ -196,7 +196,11 @@ fn say_goal(lines: &mut Lines, goal: &GoalPage) {
     let Some(at) = goal_at(goal) else { return };
     let room = lines.width.saturating_sub(at.chars().count() + 1).min(16);
     match goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0 && room > 3) {
-        Some((value, bound)) => lines.say(&format!("{} {at}", bar(value / bound, room)), Role::Text),
+        Some((value, bound)) => {
+            // A bar is full where the goal is reached, and nowhere else.
+            let most = if goal.met == Some(true) || value >= bound { 1.0 } else { 1.0 - 1.0 / room as f64 };
+            lines.say(&format!("{} {at}", bar((value / bound).min(most), room)), Role::Text);
+        }
         None => lines.say(&at, Role::Text),
     }
 }

@@ -8,12 +8,10 @@ use crate::world::customers::curve::{Curve, required_quality};
 use crate::world::identifiers::Group;
 use crate::world::params::{GroupParams, Params};
 
-/// Steps from a price of 0 to beyond the budget.
+/// Steps from a price of 0 to the budget.
 const STEPS: u32 = 100;
 /// Every so many prices of the sample are a row.
 const ROW_EVERY: usize = 5;
-/// How far beyond the budget the figure goes.
-const BEYOND: f64 = 1.1;
 
 /// The customer with the mean traits of a group.
 fn mean_customer(own: &GroupParams, params: &Params) -> Curve {
@@ -103,9 +101,10 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
     let caption = "Quality that the mean customer requires, and that shares of the customers require at most";
     let mut table = Tabulation::new("curve", caption, columns);
     for point in sample.iter().step_by(ROW_EVERY) {
+        let of_mean = (point.price <= curve.c_max).then(|| required_quality(point.price, &curve, params));
         table.rows.push(vec![
             Datum::number(point.price),
-            Datum::number(required_quality(point.price, &curve, params)),
+            Datum::number(of_mean),
             Datum::number(point.tenth),
             Datum::number(point.median),
             Datum::number(point.ninetieth),
@@ -116,7 +115,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
         name: name.to_owned(),
         points: sample.iter().map(|point| (point.price, of(point))).filter(|(_, y)| y.is_finite()).collect(),
     };
-    let fine = (0..=STEPS).map(|step| BEYOND * curve.c_max * f64::from(step) / f64::from(STEPS));
+    let fine = (0..=STEPS).map(|step| curve.c_max * f64::from(step) / f64::from(STEPS));
     let mean = fine.map(|price| (price, required_quality(price, &curve, params))).collect();
     exhibit.graphs.push(Graph {
         title: format!("{}: quality required by price", group.id()),

@@ -2,15 +2,18 @@
 
 use serde_json::Value;
 
+use super::deals::deals_in_words;
 use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_words};
 use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
 use super::words::{count, money};
 use crate::glossary::{Term, terms};
 use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FigureUnit, FirstDifference,
-    JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, WeekFigure,
+    CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FigureUnit,
+    FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, ToolId,
+    WeekFigure,
 };
+use crate::world::params::Params;
 
 /// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;
@@ -29,8 +32,13 @@ pub fn headline(own: &Debrief) -> String {
     let other = |curve: &Option<ReferenceCurve>, name: &str| {
         curve.as_ref().map(|curve| format!("the {name} play {}", last(&curve.cash_by_day)))
     };
-    let others: Vec<String> =
-        [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect();
+    let cash_of = |curve: &Option<ReferenceCurve>| curve.as_ref().map(|curve| last(&curve.cash_by_day));
+    let others: Vec<String> = match cash_of(&own.good) {
+        Some(cash) if cash_of(&own.bad).as_ref() == Some(&cash) => {
+            vec![format!("the good and the bad play both {cash}")]
+        }
+        _ => [other(&own.good, "good"), other(&own.bad, "bad")].into_iter().flatten().collect(),
+    };
     let cash = match others.is_empty() {
         true => format!("{end}."),
         false => format!("{end}; {}.", others.join(", ")),
@@ -108,9 +116,9 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
                 "Week {}, day {}, is the first in which you decided otherwise:",
                 parting.week, parting.day
             ));
-            lines.extend(
-                parting.decisions.iter().map(|decision| format!("  {}", decision_in_words(decision))),
-            );
+            // No lesson gives companies other names than those of its seed.
+            let names = CompanyNames::new(own.seed, &Params::shipped().personas.email);
+            lines.extend(parting.decisions.iter().map(|one| format!("  {}", decision_in_words(one, &names))));
             lines.push(effect_in_words(parting, own));
             lines
         }
@@ -118,7 +126,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
 }
 
 /// What one tool did in both plays.
-fn decision_in_words(decision: &PartedDecision) -> String {
+fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String {
     let said = match &decision.difference {
         DecisionContrast::Settings(all) => {
             let one = |(name, own, good): &(String, Value, Value)| {
@@ -131,7 +139,8 @@ fn decision_in_words(decision: &PartedDecision) -> String {
             all.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
         DecisionContrast::Calls(own, good) => {
-            format!("{}; the good play: {}", calls_in_words(own), calls_in_words(good))
+            let told = |calls| calls_in_words(decision.tool, calls, names);
+            format!("{}; the good play: {}", told(own), told(good))
         }
     };
     format!("{}: {said}", decision.tool.name())
@@ -150,8 +159,11 @@ fn written(value: &Value) -> String {
 }
 
 /// Calls of one tool by their arguments.
-fn calls_in_words(calls: &[Value]) -> String {
+fn calls_in_words(tool: ToolId, calls: &[Value], names: &CompanyNames) -> String {
     let one = |call: &Value| {
+        if let Some(words) = deals_in_words(tool, call, names) {
+            return words;
+        }
         let of = |(name, value): (&String, &Value)| format!("{name} {}", written(value));
         call.as_object()
             .map_or_else(|| written(call), |own| own.iter().map(of).collect::<Vec<_>>().join(", "))

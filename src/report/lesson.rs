@@ -155,13 +155,13 @@ pub fn goal_at(goal: &GoalPage) -> Option<String> {
         (Some(bound), Some(share)) => {
             let good = goal_amount(goal, bound / share);
             format!(
-                "{value} of {} ({} of the good play's {good})",
+                "{value}, at least {} ({} of the good play's {good})",
                 goal_amount(goal, bound),
                 percent(share, 1)
             )
         }
         (Some(bound), None) if goal.wants_least => format!("{value}, at most {}", goal_amount(goal, bound)),
-        (Some(bound), None) => format!("{value} of {}", goal_amount(goal, bound)),
+        (Some(bound), None) => format!("{value}, at least {}", goal_amount(goal, bound)),
     })
 }
 

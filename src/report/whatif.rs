@@ -157,7 +157,10 @@ pub fn cell_in_two(
     day: u32,
 ) -> [String; 2] {
     let alone = |text: &str| [text.to_owned(), String::new()];
-    let Some(value) = branch.value(figure, day) else { return alone("over") };
+    let Some(value) = branch.value(figure, day) else {
+        let last = branch.last_day().map_or(String::new(), |day| format!("(day {day})"));
+        return ["over".to_owned(), last];
+    };
     if value.is_nan() {
         return alone("—");
     }
@@ -176,13 +179,12 @@ pub fn futures_heading(futures: &Futures) -> String {
     )
 }
 
-/// How many futures of a branch end early, and what is counted of them; none where all go to the end.
-pub fn ended_early(futures: &Futures, branch: usize) -> Option<String> {
-    let ended = futures.ended_early(branch);
+/// How many futures of a branch end in bankruptcy, and what is counted of them; none where all go to the end.
+pub fn bankrupt(futures: &Futures, branch: usize) -> Option<String> {
+    let ended = futures.bankrupt(branch);
     (ended > 0).then(|| {
         format!(
-            "{branch}: {ended} of {} end in bankruptcy before the last day; from then on their cash stays, and they have \
-             no subscribers",
+            "{branch}: {ended} of {} end in bankruptcy; from then on their cash stays, and they have no subscribers",
             count(futures.count, "future")
         )
     })

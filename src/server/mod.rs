@@ -19,7 +19,7 @@ mod transcript;
 
 pub use announcement::Announcement;
 pub use client::write_client;
-pub use http::{HttpOptions, serve_http};
+pub use http::{HeldPort, HttpOptions, serve_http};
 pub use mcp::serve_mcp;
 pub use page::{PageOf, page, write_documents};
 pub use remote::{Remote, Reply};

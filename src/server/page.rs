@@ -19,6 +19,9 @@ const PAGE: &str = include_str!("../../assets/agent/page.md");
 const SHELL: &str = include_str!("../../assets/agent/shell.md");
 const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 
+/// The heading of the page before which goal, calendar and rules stand.
+const HOW_TO_CALL: &str = "## How to call";
+
 /// Name of the page.
 const PAGE_FILE: &str = "AGENT.md";
 
@@ -47,6 +50,12 @@ pub fn page(of: &PageOf<'_>) -> String {
         ("{errors}", ERRORS.trim_end().to_owned()),
     ];
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
+}
+
+/// Goal, calendar and rules of the page alone, for those who are shown the tools elsewhere.
+pub fn goal_and_rules(of: &PageOf<'_>) -> String {
+    let whole = page(of);
+    whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
 }
 
 /// Writes page and documentation into a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
@@ -129,6 +138,8 @@ mod tests {
         for spec in specs() {
             assert!(text.contains(&format!("`{}`", spec.name())), "{}", spec.name());
         }
+        let goal = goal_and_rules(&PageOf { days: 77, cash: 250_000.0, numbers: &numbers });
+        assert!(text.starts_with(&goal) && goal.contains("## Rules") && !goal.contains("## How"), "{goal}");
         for table in tables() {
             assert!(text.contains(&format!("`{}`", table.name)), "{}", table.name);
         }

@@ -25,7 +25,8 @@ fn rows() -> Vec<Row> {
             shown: shown.to_owned(),
         }
     };
-    let is_row = |line: &&str| line.trim_start_matches("| ").starts_with(|first: char| first.is_ascii_digit());
+    let is_row =
+        |line: &&str| line.trim_start_matches("| ").starts_with(|first: char| first.is_ascii_digit());
     ANSWERS.lines().filter(is_row).map(of).collect()
 }
 
@@ -40,7 +41,9 @@ fn figures(text: &str) -> Vec<&str> {
     let words = text.split(|letter: char| letter.is_whitespace() || ",;:`()".contains(letter));
     let clean = words.map(|word| word.trim_matches(|letter| "+-.$".contains(letter)));
     let is_figure = |word: &&str| {
-        word.contains('.') && word.starts_with(|first: char| first.is_ascii_digit()) && word.parse::<f64>().is_ok()
+        word.contains('.')
+            && word.starts_with(|first: char| first.is_ascii_digit())
+            && word.parse::<f64>().is_ok()
     };
     clean.filter(is_figure).collect()
 }
@@ -72,7 +75,11 @@ fn the_page_of_answers_says_what_the_program_shows() {
         let (day, what) = row.first.split_once(',').unwrap_or((&row.first, ""));
         match day.strip_prefix("day ") {
             Some(day) => {
-                assert!(diff.starts_with(&format!("the runs differ from day {day} on")), "{}: {diff}", row.number);
+                assert!(
+                    diff.starts_with(&format!("the runs differ from day {day} on")),
+                    "{}: {diff}",
+                    row.number
+                );
                 let named = what.trim().split(' ').next().unwrap_or_default();
                 assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
             }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, keep_a_large_company};
-use crate::server::{HttpOptions, Remote, serve_http};
+use crate::server::{HeldPort, HttpOptions, Remote, serve_http};
 use crate::session::{Access, Session, run_folder};
 
 /// Requests of a kind for each repetition.
@@ -30,11 +30,12 @@ fn http(bench: &Bench) -> Result<Samples, BenchError> {
     let folder = run_folder(&bench.scratch, &run);
     let session = Session::open(&folder, Access::Write, true)?;
     let (ready, waits) = channel();
+    let held = HeldPort::take(None)?;
     let server = std::thread::spawn(move || {
         let announce = |_: &_| {
             let _ = ready.send(());
         };
-        serve_http(session, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
+        serve_http(session, held, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
     });
     let there = waits.recv().ok().and_then(|()| Remote::find(&folder, &run));
     let samples =

@@ -1,5 +1,7 @@
 //! Runs that a command reads, one after the other.
 
+use std::collections::BTreeMap;
+
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
 use crate::session::{Access, Session, Trajectory, find_run_to_read};
@@ -7,7 +9,7 @@ use crate::session::{Access, Session, Trajectory, find_run_to_read};
 /// What is read of each run that was named; that it is read is recorded with the run.
 ///
 /// # Errors
-/// A run is missing, damaged, or may not be looked at.
+/// A run is missing, damaged, may not be looked at, or is named twice.
 pub fn of_runs<T>(
     names: &[String],
     command: &str,
@@ -17,8 +19,14 @@ pub fn of_runs<T>(
     let folder = context.runs()?;
     let progress = progress_bar(names.len() as u64, "runs");
     let mut read = Vec::new();
+    let mut known = BTreeMap::new();
     for name in names {
         let own = find_run_to_read(&folder, name)?;
+        if let Some(before) = known.insert(own.clone(), name) {
+            let message =
+                format!("{before} and {name} are one run, which would count twice; name each run once");
+            return Err(Failure::usage(message));
+        }
         context.look(&own, command, &names.join(" "))?;
         let session = Session::open(&own, Access::Read, true)?;
         read.push(of(&session, &Trajectory::read(&own.join("trajectory.jsonl"))?));

@@ -116,6 +116,17 @@ impl App {
             let text = format!("{title} begins: {}, {weeks}. Run its first week?", page.step_title);
             return self.open(Confirm::new(title, text, vec![week]));
         }
+        let waiting = run.company.seen.waiting.len() as u32;
+        if run.here != ScreenId::Inbox && waiting > 0 && run.screens.inbox.has_sent_rules() {
+            let who = match waiting {
+                1 => "A company waits".to_owned(),
+                many => format!("{} wait", count(many, "company")),
+            };
+            let text = format!(
+                "{who} for an answer. In Inbox the rules that you sent last answer once more. Run the week without?"
+            );
+            return self.open(Confirm::new("Next week", text, vec![week]));
+        }
         let answers = match run.here {
             ScreenId::Inbox => run.screens.inbox.answers_of_before(&run.company),
             _ => None,

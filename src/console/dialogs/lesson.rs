@@ -243,6 +243,7 @@ impl Dialog for LessonDialog {
                     _ => {}
                 }
             }
+            KeyCode::Char('%') if count == 0 => answer.number.insert("%"),
             _ => {
                 if count == 0 && !answer.number.number_key(key) {
                     answer.problem = Some("type a number".to_owned());

@@ -270,22 +270,39 @@ impl Plot<'_> {
         }
     }
 
-    /// Names beside the last points, each in the nearest free row.
+    /// Names beside the last points, in the order in which those stand above each other.
     fn draw_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &Frame) {
         let of_line = |line: &Line| {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
-            Some((line.name, frame.row(last.1), line.role))
+            Some((line.name, last.1, line.role))
         };
-        let of_band = |band: &Band| Some((band.name, frame.row(band.ends.last()?.2), Role::Text));
-        let mut taken: Vec<u16> = Vec::new();
+        let of_band = |band: &Band| Some((band.name, band.ends.last()?.2, Role::Text));
         let lines = self.lines.iter().rev().filter_map(of_line);
-        for (name, wanted, role) in lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()) {
-            let free = (place.top()..place.bottom()).filter(|row| !taken.contains(row));
-            let Some(y) = free.min_by_key(|row| row.abs_diff(wanted)) else { return };
-            taken.push(y);
+        let mut names: Vec<(&str, f64, Role)> =
+            lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()).collect();
+        names.truncate(usize::from(place.height));
+        names.sort_by(|one, other| other.1.total_cmp(&one.1));
+        let wanted: Vec<u16> = names.iter().map(|own| frame.row(own.1)).collect();
+        for ((name, _, role), y) in names.into_iter().zip(rows_apart(&wanted, place)) {
             canvas.text(Rect { y, height: 1, ..place }, name, role);
         }
     }
+}
+
+/// A row of its own for each of the rows that are wanted, from above, as near to it as their order allows.
+fn rows_apart(wanted: &[u16], place: Rect) -> Vec<u16> {
+    let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
+    for row in wanted {
+        let least = rows.last().map_or(place.top(), |above| above + 1);
+        rows.push((*row).max(least));
+    }
+    let mut most = place.bottom();
+    for row in rows.iter_mut().rev() {
+        most = most.saturating_sub(1);
+        *row = (*row).min(most);
+        most = *row;
+    }
+    rows
 }
 
 fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {

@@ -79,7 +79,7 @@ fn wrong_studies_name_line_and_key() {
         (
             "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..18446744073709551615\"\n".to_owned(),
             Some(3),
-            ["seeds", "1000000 runs"],
+            ["seeds", "1,000,000 are played"],
         ),
         (format!("{begin}days = 3\n"), Some(4), ["days", "between 7"]),
         (format!("{begin}days = \"long\"\n"), Some(4), ["days", "long"]),

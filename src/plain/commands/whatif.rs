@@ -9,13 +9,13 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, Phase, count, problem};
 use crate::database::text::aligned;
 use crate::report::whatif::{
-    branch_line, decisions, difference_line, ended_early, futures_heading, futures_table, heading, kin_line,
+    bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
     name, table,
 };
 use crate::session::record::LeavingCause;
 use crate::session::{
-    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastCall, PastDecision, Refusal,
-    Session, WhatIf, branches_of, unless_stopped,
+    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastDecision, Refusal, Session,
+    WhatIf, branches_of, unless_stopped,
 };
 
 /// Futures that are drawn where no number is named.
@@ -192,8 +192,12 @@ impl Interpreter {
             .refused
             .iter()
             .map(|(day, what, refusal)| format!("\nday {day}: {what} was refused: {}", refusal.message));
+        let stands = match self.session.ended() {
+            Some(ended) => format!("run {run} ended on day {day}: {}, ", ended.id()),
+            None => format!("run {run} stands on day {day} "),
+        };
         let text = format!(
-            "run {run} stands on day {day} with the decisions of its parent · {mode} · {}{}",
+            "{stands}with the decisions of its parent · {mode} · {}{}",
             name(decided),
             told.collect::<String>()
         );
@@ -235,17 +239,11 @@ impl Interpreter {
 /// A row for each decision: its line, week, what it is, arguments or value, and whether it was refused.
 fn decision_rows(decisions: &[PastDecision], days: u32) -> Vec<Vec<String>> {
     let row = |own: &PastDecision| {
-        let (what, arguments, remark) = match own {
-            PastDecision::Call(PastCall { tool, args, accepted, .. }) => {
-                let refused = if *accepted { "" } else { "refused" };
-                (tool.name().to_owned(), args.to_string(), refused.to_owned())
-            }
-            PastDecision::Parameter { key, value, from_day, .. } => {
-                let from = from_day.map_or(String::new(), |day| format!("from day {day} on"));
-                (format!("set {key}"), value.to_string(), from)
-            }
+        let (what, arguments) = match own {
+            PastDecision::Call(call) => (call.tool.name().to_owned(), call.args.to_string()),
+            PastDecision::Parameter { key, value, .. } => (format!("set {key}"), value.to_string()),
         };
-        vec![own.seq().to_string(), (own.day() / days + 1).to_string(), what, arguments, remark]
+        vec![own.seq().to_string(), (own.day() / days + 1).to_string(), what, arguments, own.remark()]
     };
     decisions.iter().map(row).collect()
 }
@@ -314,8 +312,7 @@ fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
     let Some(futures) = futures else { return text };
     let (headers, rows) = futures_table(comparison, futures, days);
     text += &format!("\n{}\n{}", futures_heading(futures), aligned(&headers, &rows));
-    let early: Vec<String> =
-        (0..comparison.branches.len()).filter_map(|at| ended_early(futures, at)).collect();
+    let early: Vec<String> = (0..comparison.branches.len()).filter_map(|at| bankrupt(futures, at)).collect();
     text += &early.join("\n");
     for number in 1..comparison.branches.len() {
         text += &format!(

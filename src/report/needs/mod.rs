@@ -202,7 +202,8 @@ pub fn needs(session: &Session) -> Vec<Need> {
     found.extend(service::backlog(&situation));
     found.extend(people::churn(&situation));
     let moved = situation.revenue_ahead() + situation.commitments_ahead();
-    found.retain(|need| need.at_risk >= SMALL * moved);
+    // Somebody who waits is named, however little they pay.
+    found.retain(|need| need.problem == Problem::Threads || need.at_risk >= SMALL * moved);
     // Nobody is sent to a form that the lesson keeps shut.
     let is_locked = |tool: ToolId| session.lesson().is_some_and(|own| !own.has_tool(tool));
     found.retain(|need| !matches!(need.place, Place::Call(tool, _) if is_locked(tool)));

@@ -34,18 +34,42 @@ const LAST_REQUESTS: Duration = Duration::from_secs(60);
 /// How a run is served.
 #[derive(Debug, Clone, Default)]
 pub struct HttpOptions {
-    /// Port; any free one if none.
-    pub port: Option<u16>,
     /// Requests must carry the token in this file.
     pub token: Option<PathBuf>,
 }
 
-/// Serves a run until a signal asks to stop. `ready` is told where, once requests are taken; `on_defect` hears of defects of ours.
+/// A port that is held before there is a run to serve on it: a run that cannot be served is not begun.
+#[derive(Debug)]
+pub struct HeldPort(std::net::TcpListener);
+
+impl HeldPort {
+    /// Takes a port of 127.0.0.1; any free one if none is named.
+    ///
+    /// # Errors
+    /// It is taken.
+    pub fn take(port: Option<u16>) -> Result<HeldPort, RunError> {
+        let address = (Ipv4Addr::LOCALHOST, port.unwrap_or(0));
+        let bound = std::net::TcpListener::bind(address).and_then(|listener| {
+            listener.set_nonblocking(true)?;
+            Ok(listener)
+        });
+        match bound {
+            Ok(listener) => Ok(HeldPort(listener)),
+            Err(error) => Err(RunError::NotPossible(format!(
+                "port {} of 127.0.0.1 cannot be used ({error}); name another one, or none for any free one",
+                address.1
+            ))),
+        }
+    }
+}
+
+/// Serves a run on a port until a signal asks to stop. `ready` is told where, once requests are taken; `on_defect` hears of defects of ours.
 ///
 /// # Errors
-/// The port is taken; the file of the token cannot be read; the disk did not take the end of the record.
+/// The file of the token cannot be read; the disk did not take the end of the record.
 pub fn serve_http(
     session: Session,
+    held: HeldPort,
     options: &HttpOptions,
     ready: impl FnOnce(&Announcement),
     on_defect: OnDefect,
@@ -58,10 +82,8 @@ pub fn serve_http(
     let runtime = runtime.map_err(RunError::io(Path::new("the network")))?;
     let (owner, handle) = Owner::start(session, Door { via: Via::Http, interface: "http", on_defect });
     let served = runtime.block_on(async {
-        let address = (Ipv4Addr::LOCALHOST, options.port.unwrap_or(0));
-        let shown = format!("port {}", address.1);
-        let failed = || RunError::io(Path::new(&shown));
-        let listener = TcpListener::bind(address).await.map_err(failed())?;
+        let failed = || RunError::io(Path::new("the port"));
+        let listener = TcpListener::from_std(held.0).map_err(failed())?;
         let port = listener.local_addr().map_err(failed())?.port();
         let file = options.token.as_deref().map(|file| std::path::absolute(file).unwrap_or(file.to_owned()));
         let announcement =

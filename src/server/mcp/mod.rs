@@ -20,12 +20,13 @@ use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
 use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
+use super::page::{PageOf, goal_and_rules};
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
 
 /// What a client is told first.
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
-     with next_week. Read the resource novamind://manual first.";
+     with next_week. Read the resources novamind://goal and novamind://manual first.";
 
 /// Serves a run on standard input and output until the input ends; `on_defect` hears of defects of ours.
 ///
@@ -34,7 +35,9 @@ const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every t
 pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> {
     let numbers = session.numbers();
     let folder = session.folder().map(PathBuf::from);
-    let run = session.manifest().id.clone();
+    let manifest = session.manifest();
+    let goal = goal_and_rules(&PageOf { days: manifest.days, cash: manifest.cash, numbers: &numbers });
+    let run = manifest.id.clone();
     if let Some(folder) = &folder {
         Announcement { run, port: None, pid: std::process::id(), token: None }.put_up(folder)?;
     }
@@ -42,7 +45,7 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
     let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
     let served = runtime.block_on(async {
-        let running = McpDoor { handle, numbers }.serve(stdio()).await.map_err(io::Error::other)?;
+        let running = McpDoor { handle, numbers, goal }.serve(stdio()).await.map_err(io::Error::other)?;
         running.waiting().await.map_err(io::Error::other)
     });
     // Reading standard input cannot be cancelled, and nothing is waited for any more.
@@ -59,6 +62,8 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
 struct McpDoor {
     handle: Handle,
     numbers: Arc<Numbers>,
+    /// Goal, calendar and rules of the run.
+    goal: String,
 }
 
 impl ServerHandler for McpDoor {
@@ -103,6 +108,6 @@ impl ServerHandler for McpDoor {
         request: ReadResourceRequestParams,
         _: RequestContext<RoleServer>,
     ) -> Result<ReadResourceResponse, ErrorData> {
-        resources::read(&request.uri, &self.handle, &self.numbers).await.map(Into::into)
+        resources::read(&request.uri, &self.handle, (&self.goal, &self.numbers)).await.map(Into::into)
     }
 }

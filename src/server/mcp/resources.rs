@@ -1,4 +1,4 @@
-//! What a client can read without calling a tool: the dashboard, the manual of tools, the tables, the notes.
+//! What a client can read without calling a tool: the goal, the dashboard, the manual of tools, the tables, the notes.
 
 use rmcp::ErrorData;
 use rmcp::model::{ReadResourceResult, Resource, ResourceContents};
@@ -9,6 +9,7 @@ use crate::server::request::Request;
 use crate::tools::describe::manual;
 use crate::tools::{CATALOGUE, Numbers};
 
+const GOAL: &str = "novamind://goal";
 const DASHBOARD: &str = "novamind://dashboard";
 const MANUAL: &str = "novamind://manual";
 const TABLES: &str = "novamind://tables";
@@ -20,6 +21,7 @@ pub fn all() -> Vec<Resource> {
         Resource::new(uri, name).with_title(title).with_mime_type("text/plain")
     };
     vec![
+        one(GOAL, "goal", "What the run is about: goal, calendar, rules"),
         one(DASHBOARD, "dashboard", "The dashboard of the last week"),
         one(MANUAL, "manual", "Every tool: arguments, effect, cost, refusals, result"),
         one(TABLES, "tables", "Every table that can be queried, and its columns"),
@@ -31,8 +33,13 @@ pub fn all() -> Vec<Resource> {
 ///
 /// # Errors
 /// There is none of that name.
-pub async fn read(uri: &str, handle: &Handle, numbers: &Numbers) -> Result<ReadResourceResult, ErrorData> {
+pub async fn read(
+    uri: &str,
+    handle: &Handle,
+    (goal, numbers): (&str, &Numbers),
+) -> Result<ReadResourceResult, ErrorData> {
     let text = match uri {
+        GOAL => goal.to_owned(),
         DASHBOARD => text_of(handle, Request::Dashboard, "/dashboard").await,
         MEMO => text_of(handle, Request::Memo, "/data/text").await,
         MANUAL => {

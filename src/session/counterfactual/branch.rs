@@ -332,9 +332,9 @@ impl<'a> OpenBranch<'a> {
         }
         if edits.capacity_follows_usage
             && self.week.days_run == 0
-            && let Some(week) = self.weeks.last()
+            && let Some(busiest) = self.weeks.last().map(|week| week.busiest_day).or(edits.busiest_before)
         {
-            let tier = covering_tier(week.busiest_day, &self.simulation.params);
+            let tier = covering_tier(busiest, &self.simulation.params);
             if tier != self.simulation.world.settings.core.capacity_tier {
                 let args = json!({ "tier": tier });
                 self.try_new(ToolId::SetCapacityTier, &args);

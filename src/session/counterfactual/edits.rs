@@ -25,6 +25,8 @@ pub(in crate::session) struct Edits {
     pub set: Vec<AddedSetting>,
     /// At the start of every week the smallest capacity tier is set that covers the busiest day of the week before.
     pub capacity_follows_usage: bool,
+    /// Usage on the busiest day of the week before all of it, units; none where no week is before it, or it does not matter.
+    pub busiest_before: Option<u64>,
     /// Which customers the calls mean by their numbers; none where numbers are the same in every branch.
     pub meant: Option<Arc<CustomerNumbers>>,
     /// Inputs of the world that are held.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::session::play::overrides::{ParameterChange, json_of_value};
-use crate::session::trajectory::record::{Call, Outcome};
+use crate::session::trajectory::record::{Call, Outcome, Reversal};
 use crate::session::trajectory::{Line, Record};
 use crate::tools::{Kind, ToolId};
 
@@ -33,6 +33,8 @@ pub struct PastCall {
     pub args: Value,
     /// Whether it was accepted.
     pub accepted: bool,
+    /// The call that it undid or redid; what it sets stays, whatever becomes of that one.
+    pub reversal: Option<Reversal>,
 }
 
 /// Something that was decided in the past.
@@ -75,6 +77,23 @@ impl PastDecision {
         match self {
             PastDecision::Call(call) => Some(call),
             PastDecision::Parameter { .. } => None,
+        }
+    }
+
+    /// What is to be said of it: that it was refused, what it undid, or since when it acts; nothing of most.
+    pub fn remark(&self) -> String {
+        match self {
+            PastDecision::Call(PastCall { accepted: false, .. }) => "refused".to_owned(),
+            PastDecision::Call(PastCall { reversal: Some(Reversal::Undoes(line)), .. }) => {
+                format!("undoes line {line}")
+            }
+            PastDecision::Call(PastCall { reversal: Some(Reversal::Redoes(line)), .. }) => {
+                format!("redoes line {line}")
+            }
+            PastDecision::Call(_) => String::new(),
+            PastDecision::Parameter { from_day, .. } => {
+                from_day.map_or(String::new(), |day| format!("from day {day} on"))
+            }
         }
     }
 
@@ -128,11 +147,12 @@ fn move_of(line: &Line) -> Option<Move> {
         let change = ParameterChange::of(line.seq, setting)?;
         return Some(Move::Parameter(PastSetting { day: line.day, change }));
     }
-    let Record::Call(Call { tool, args, outcome, .. }) = &line.record else { return None };
+    let Record::Call(Call { tool, args, outcome, reversal, .. }) = &line.record else { return None };
     let kind = tool.tool().spec().kind;
     (kind.acts() && kind != Kind::Time).then(|| {
         let accepted = matches!(outcome, Outcome::Accepted(_));
-        Move::Call(PastCall { seq: line.seq, day: line.day, tool: *tool, args: args.clone(), accepted })
+        let (tool, args, reversal) = (*tool, args.clone(), *reversal);
+        Move::Call(PastCall { seq: line.seq, day: line.day, tool, args, accepted, reversal })
     })
 }
 

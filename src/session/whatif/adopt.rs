@@ -4,13 +4,15 @@ use std::ops::ControlFlow;
 
 use serde_json::json;
 
-use super::decision_edit::{DecisionEdit, Opening, edits};
+use super::decision_edit::{DecisionEdit, Opening, drop_all, edits};
 use super::lesson_limits::refuse_locked;
 use crate::session::counterfactual::branch::covering_tier;
 use crate::session::counterfactual::companies::{CallHere, in_other_numbers};
 use crate::session::counterfactual::edits::Edits;
 use crate::session::counterfactual::script::{Move, PastCall, moves};
 use crate::session::folder::mode::Mode;
+use crate::session::lesson::definition::CapacityMover;
+use crate::session::lesson::standing::LessonStanding;
 use crate::session::resume::branch::not_saved;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
@@ -62,7 +64,13 @@ impl Session {
         let session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
         let (settings, params) = (session.settings(), session.params());
         let opening = Opening { day: from, settings, params, mode };
-        let edits = edits(decided, &opening, &known, until.max(from + 1))?;
+        let mut edits = edits(decided, &opening, &known, until.max(from + 1))?;
+        let part = self.lesson.as_deref().map(LessonStanding::own_part);
+        if part.is_some_and(|part| part.capacity == CapacityMover::FollowsUsage) && !decided.is_empty() {
+            // The branch is no lesson: what that does by itself is done for it as long as it is played.
+            edits.capacity_follows_usage = true;
+            drop_all(ToolId::SetCapacityTier, &mut edits, &known);
+        }
         let mut adopted =
             Adopting { session, refused: Vec::new(), meant: &self.simulation.world.customers.numbers };
         adopted.play(&later, &edits, progress);

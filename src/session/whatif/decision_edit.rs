@@ -169,7 +169,8 @@ fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
     })
 }
 
-fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
+/// Makes no call of a tool.
+pub(super) fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
     edits.dropped.extend(calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
 }
 

@@ -56,7 +56,7 @@ impl BranchFigure {
             BranchFigure::Subscribers => "subscribers",
             BranchFigure::Seats => "enterprise seats",
             BranchFigure::Churn => "churn of 30 days",
-            BranchFigure::Leads => "leads a week",
+            BranchFigure::Leads => "individual leads a week",
             BranchFigure::NewSubscribers => "new subscribers a week",
             BranchFigure::Cancellations => "cancellations a week",
             BranchFigure::Satisfaction => "satisfaction",

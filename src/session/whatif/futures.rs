@@ -10,7 +10,7 @@ pub struct Futures {
     pub count: u32,
     /// Luck is the run's own up to this day.
     pub redrawn_after: u32,
-    /// Last days of weeks, from the day on which the branches part.
+    /// Last days of all weeks, from the day on which the branches part: whatever became of the futures.
     days: Vec<u32>,
     /// Figures by branch, future and week; a future that ended in bankruptcy has fewer weeks.
     branches: Vec<Vec<Vec<Values>>>,
@@ -54,10 +54,12 @@ impl Futures {
         PairedDifference::of(pairs)
     }
 
-    /// Futures of a branch that end before the last day.
-    pub fn ended_early(&self, branch: usize) -> u32 {
+    /// Futures of a branch that end in bankruptcy: in the last week, or before it.
+    pub fn bankrupt(&self, branch: usize) -> u32 {
         let own = self.branches.get(branch).into_iter().flatten();
-        own.filter(|weeks| weeks.len() < self.days.len()).count() as u32
+        let is_broke =
+            |weeks: &Vec<Values>| weeks.last().is_some_and(|last| last[BranchFigure::Cash as usize] < 0.0);
+        own.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
     }
 
     /// A figure in each future; not a number where it has none.
@@ -117,7 +119,9 @@ mod tests {
             values
         };
         let futures = Futures::of(0, vec![7, 14], vec![vec![vec![week(-5.0)], vec![week(1.0), week(3.0)]]]);
-        assert_eq!(futures.ended_early(0), 1);
+        assert_eq!(futures.bankrupt(0), 1);
+        let in_the_last_week = Futures::of(0, vec![7], vec![vec![vec![week(-5.0)], vec![week(1.0)]]]);
+        assert_eq!(in_the_last_week.bankrupt(0), 1);
         assert_eq!(futures.values(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
         assert_eq!(futures.values(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
         assert!(futures.values(0, BranchFigure::Churn, 14)[0].is_nan());

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::decision_edit::DecisionEdit;
 use crate::session::counterfactual::past::Past;
 use crate::session::counterfactual::script::Move;
+use crate::session::lesson::definition::CapacityMover;
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::trajectory::Trajectory;
@@ -23,6 +24,17 @@ pub(super) fn lesson_of(folder: &Path, past: &Past) -> Result<Option<LessonStand
         Trajectory::read(&folder.join("trajectory.jsonl")).map_err(|error| not_readable(&error))?;
     let part = (stamp.part as usize).clamp(1, lesson.plan.parts.len().max(1)) - 1;
     Ok(Some(LessonStanding::of(lesson.into(), part, &trajectory.lines)))
+}
+
+/// Whether the capacity follows usage by itself in the lesson of a run, be it over or not.
+///
+/// # Errors
+/// `not_readable`.
+pub(super) fn follows_usage(folder: &Path, past: &Past) -> Result<bool, Refusal> {
+    let Some(stamp) = past.manifest.lesson.as_ref() else { return Ok(false) };
+    let lesson = Lesson::of_run(folder, &stamp.name).map_err(|error| not_readable(&error))?;
+    let part = lesson.plan.parts.get((stamp.part as usize).saturating_sub(1));
+    Ok(part.is_some_and(|part| part.capacity == CapacityMover::FollowsUsage))
 }
 
 /// Refuses to decide otherwise what the student could not decide.

@@ -11,6 +11,8 @@ mod futures;
 mod kin;
 pub(in crate::session) mod lesson_limits;
 #[cfg(test)]
+mod lesson_tests;
+#[cfg(test)]
 mod tests;
 
 use std::ops::ControlFlow;
@@ -25,7 +27,7 @@ pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures};
 pub use kin::{BranchOrigin, FirstChange, Kin, branches_of, origin_of};
 
-use self::lesson_limits::{lesson_of, refuse_locked};
+use self::lesson_limits::{follows_usage, lesson_of, refuse_locked};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
 use super::counterfactual::companies::highest_named;
 use super::counterfactual::edits::{Edits, Redrawn};
@@ -38,7 +40,7 @@ use super::why::{Sight, not_readable, sight};
 use crate::session::folder::mode::Mode;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::state::Session;
-use crate::tools::Refusal;
+use crate::tools::{Refusal, ToolId};
 use crate::world::events::DayFigures;
 
 /// Alternatives that stand side by side, at most.
@@ -60,6 +62,8 @@ pub struct WhatIf {
     tells_hidden: bool,
     /// The unfinished lesson that the run belongs to.
     lesson: Option<LessonStanding>,
+    /// The lesson of the run moves the capacity by itself: it does so in every branch.
+    follows_usage: bool,
 }
 
 /// Days of a run from which branches part.
@@ -77,8 +81,8 @@ impl OfRecord for WhatIf {
     fn read(folder: &Path) -> Result<WhatIf, Refusal> {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
-        let lesson = lesson_of(folder, &past)?;
-        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson })
+        let (lesson, follows_usage) = (lesson_of(folder, &past)?, follows_usage(folder, &past)?);
+        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson, follows_usage })
     }
 
     fn renew(&mut self) -> Result<(), Refusal> {
@@ -121,6 +125,14 @@ impl WhatIf {
             alternatives.iter().try_for_each(|own| refuse_locked(lesson, own, &parting.moves))?;
         }
         let (all, mut edits) = all_edits(alternatives, parting, self.past.manifest.mode)?;
+        let busiest = parting.busiest_before(self.past.days_per_week());
+        for (own, decided) in edits.iter_mut().zip(&all) {
+            own.busiest_before = busiest;
+            own.capacity_follows_usage |= self.follows_usage;
+            if self.follows_usage && !decided.is_empty() {
+                decision_edit::drop_all(ToolId::SetCapacityTier, own, &parting.moves);
+            }
+        }
         let Some(day) = parting.last_meeting(&edits) else { return Ok(Some((all, edits))) };
         let day = self.past.last_end(day);
         let met = self.past.moment(day, &mut |simulated| progress(simulated as usize, day as usize));
@@ -251,8 +263,7 @@ impl WhatIf {
         let drawn: Vec<Edits> =
             edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
         let Some(outcomes) = parting.simulate(&drawn, progress)? else { return Ok(None) };
-        let longest = outcomes.iter().max_by_key(|outcome| outcome.weeks.len());
-        let days = longest.map_or(Vec::new(), |one| one.weeks.iter().map(|week| week.day).collect());
+        let days = parting.week_ends(self.past.days_per_week());
         let valued: Vec<_> =
             outcomes.iter().map(|outcome| figure::values(&parting.earlier, outcome)).collect();
         let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
@@ -279,6 +290,20 @@ impl WhatIf {
         }
     }
 
+    /// The last day that is simulated, and what ends with it. In an unfinished lesson that is its step: the next one may ask for
+    /// what comes of it.
+    fn horizon(&self) -> (u32, &'static str) {
+        let (days, last) = (self.past.days_per_week(), self.past.manifest.days);
+        let step_end = self.lesson.as_ref().and_then(|lesson| {
+            let part = lesson.own_part();
+            part.step_after(self.past.last_day() / days).map(|step| part.weeks_of(step).1 * days)
+        });
+        match step_end {
+            Some(end) if end < last => (end, "the step of the lesson"),
+            _ => (last, "the run"),
+        }
+    }
+
     fn parting(
         &mut self,
         week: u32,
@@ -287,11 +312,11 @@ impl WhatIf {
     ) -> Result<Option<Parting>, Refusal> {
         self.refuse_before_guess()?;
         let from = self.day_of(week)?;
-        let (days, horizon) = (self.past.days_per_week(), self.past.manifest.days);
+        let (days, (horizon, ends)) = (self.past.days_per_week(), self.horizon());
         let until = match until_week {
             Some(last) if last > horizon.div_ceil(days) => {
                 let message =
-                    format!("week {last} is after the last week of the run, {}", horizon.div_ceil(days));
+                    format!("week {last} is after the last week of {ends}, {}", horizon.div_ceil(days));
                 return Err(Refusal::at("until", "week_unknown", message));
             }
             Some(last) if last >= week => last.saturating_mul(days).min(horizon),
@@ -321,6 +346,19 @@ impl WhatIf {
 }
 
 impl Parting {
+    /// The last days of its weeks.
+    fn week_ends(&self, days_per_week: u32) -> Vec<u32> {
+        let from = self.start.world.day;
+        let weeks = (self.until - from).div_ceil(days_per_week);
+        (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
+    }
+
+    /// Usage on the busiest day of the week before the branches part.
+    fn busiest_before(&self, days_per_week: u32) -> Option<u64> {
+        let week = self.earlier.iter().rev().take(days_per_week as usize);
+        week.map(|day| day.total_usage).max()
+    }
+
     /// The last day of the run on which a call names a customer who came after the branches part; such customers have other
     /// numbers in a branch into which more or fewer came.
     fn last_meeting(&self, edits: &[Edits]) -> Option<u32> {

@@ -12,6 +12,8 @@ pub enum Cause {
     Parameters,
     /// Several tools whose calls did least.
     OtherCalls,
+    /// What was bought in the week before, and was paid then.
+    EarlierPurchases,
     /// Everything about the market that the player cannot see.
     Market,
     /// Moves of rivals.
@@ -39,6 +41,7 @@ impl Cause {
             Cause::Calls(tool) => name_of_calls(tool),
             Cause::Parameters => "parameters",
             Cause::OtherCalls => "other decisions",
+            Cause::EarlierPurchases => "last week's purchases",
             Cause::Market => "market",
             Cause::Rivals => "rivals",
             Cause::Drift => "drift",
@@ -53,7 +56,7 @@ impl Cause {
 
     /// Whether it is something the player decided.
     pub fn is_own(self) -> bool {
-        matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls)
+        matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls | Cause::EarlierPurchases)
     }
 }
 

@@ -8,6 +8,10 @@ use crate::session::xray::measured_group::MeasuredGroup;
 use crate::world::events::Category;
 use crate::world::identifiers::{ByGroup, Group};
 
+/// What is paid at once, and for nothing that goes on.
+const PURCHASES: [Category; 3] =
+    [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
+
 /// A group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct GroupOfWeek {
@@ -52,6 +56,17 @@ impl SimulatedWeek {
                 subscribers_before: before.world.customers.groups[group].active(),
             }),
         }
+    }
+
+    /// The same week, had nothing been bought in it: what was paid at once, and comes back in no other week.
+    pub(super) fn without_purchases(&self) -> SimulatedWeek {
+        let mut figures = self.figures;
+        for category in PURCHASES {
+            let paid = figures.booked.of(category);
+            figures.booked.add(category, -paid);
+            figures.cash_change -= paid;
+        }
+        SimulatedWeek { figures, ..*self }
     }
 
     /// A week of which only the figures of the company are known.

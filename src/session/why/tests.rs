@@ -370,3 +370,25 @@ fn asking_leaves_the_run_as_it_is() {
     why(&session, company(WeekFigure::Payments));
     assert_eq!((bytes(), session.state_hash()), (before, hash));
 }
+
+#[test]
+fn what_was_paid_once_the_week_before_is_a_cause_and_no_luck() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let project = Some(("start_research_project", json!({"tier": 1})));
+    let mut session = played(runs.path(), Mode::Sandbox, 3, project);
+    let forecasts = session.naive_forecasts();
+    session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    let paid = -session.weeks()[WEEKS as usize].booked.of(crate::world::events::Category::ResearchProject);
+    assert!(paid > 0.0);
+    let earlier = |why: &Why| {
+        let part = why.parts.iter().find(|part| part.cause == Cause::EarlierPurchases);
+        part.map(|part| part.amount)
+    };
+    let of_research = why(&session, company(WeekFigure::Research));
+    assert_eq!((earlier(&of_research), of_research.rest), (Some(-paid), 0.0), "{of_research:?}");
+    let of_cash = why(&session, company(WeekFigure::CashChange));
+    assert_whole(&of_cash);
+    let found = earlier(&of_cash).expect("a cause");
+    assert!((found - paid).abs() < 1e-6 * paid, "{of_cash:?}");
+    assert_eq!(earlier(&why(&session, company(WeekFigure::Leads))), None);
+}

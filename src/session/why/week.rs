@@ -79,11 +79,18 @@ impl Laboratory {
         }
         let (mut calls, mut inputs) = (groups(&self.calls), self.groups_of_inputs());
         let joined = self.join_least(quantity, &mut calls, &mut inputs, progress);
-        let Some(parts) = joined.and_then(|()| self.value(quantity, &calls, &inputs, progress)) else {
+        let Some(mut parts) = joined.and_then(|()| self.value(quantity, &calls, &inputs, progress)) else {
             return Ok(None);
         };
         let all_calls = Without { calls: union(&calls), inputs: union(&inputs) };
-        let rest = read(quantity, self.without(all_calls)) - values.0;
+        // What was paid once in the week before is missing in this one, whatever is done in it.
+        let earlier = read(quantity, &self.week_before().without_purchases()) - values.0;
+        if earlier != 0.0 {
+            let cause = Cause::EarlierPurchases;
+            parts.push(WhyPart { cause, amount: earlier, details: Vec::new() });
+        }
+        parts.sort_by(|left, right| right.amount.abs().total_cmp(&left.amount.abs()));
+        let rest = read(quantity, self.without(all_calls)) - values.0 - earlier;
         let simulations = self.simulated();
         let (before, after) = values;
         let (week, days) = (self.week(), self.days());
@@ -138,7 +145,7 @@ impl Laboratory {
         Some(())
     }
 
-    /// What each cause contributes, the largest first.
+    /// What each cause contributes.
     fn value(
         &mut self,
         quantity: WeekQuantity,
@@ -156,11 +163,12 @@ impl Laboratory {
         let values_of_calls = shapley(calls.len(), |set| read(quantity, self.without(of_calls(set))));
         let values_of_inputs = shapley(inputs.len(), |set| read(quantity, self.without(of_inputs(set))));
         let groups = calls.iter().zip(values_of_calls).chain(inputs.iter().zip(values_of_inputs));
-        let mut parts: Vec<WhyPart> = groups
-            .map(|(group, amount)| WhyPart { cause: group.cause, amount, details: group.details.clone() })
-            .collect();
-        parts.sort_by(|left, right| right.amount.abs().total_cmp(&left.amount.abs()));
-        Some(parts)
+        let part = |(group, amount): (&Group, f64)| WhyPart {
+            cause: group.cause,
+            amount,
+            details: group.details.clone(),
+        };
+        Some(groups.map(part).collect())
     }
 }
 

@@ -8,7 +8,7 @@ use crate::console::canvas::{Canvas, Click, fit, rows_of};
 use crate::console::theme::Role;
 use crate::console::widgets::Field;
 use crate::console::widgets::table::first_row;
-use crate::session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastCall, PastDecision};
+use crate::session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
 
 /// Said where a parameter that the run sets is to be edited.
 const PARAMETER_IS_SET_ANEW: &str = "leave it out, and decide otherwise with set KEY VALUE";
@@ -280,17 +280,16 @@ impl Decisions {
         let (sign, rest, role) = match edit {
             Some(DecisionEdit::Drop(_)) => ("×", " · is not made".to_owned(), Role::Bad),
             Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
-            _ if matches!(own, PastDecision::Call(PastCall { accepted: false, .. })) => {
-                (" ", " · refused".to_owned(), Role::Dim)
+            _ => {
+                let is_refused = own.call().is_some_and(|call| !call.accepted);
+                let remark = own.remark();
+                let remark = if remark.is_empty() { remark } else { format!(" · {remark}") };
+                (" ", remark, if is_refused { Role::Dim } else { Role::Text })
             }
-            _ => (" ", String::new(), Role::Text),
         };
         let decided = match own {
             PastDecision::Call(call) => format!("{} {}", call.tool.name(), call.args),
-            PastDecision::Parameter { key, value, from_day, .. } => {
-                let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
-                format!("set {key} {value}{from}")
-            }
+            PastDecision::Parameter { key, value, .. } => format!("set {key} {value}"),
         };
         (format!("{sign} week {week:>2}  {decided}{rest}"), role)
     }

@@ -8,8 +8,8 @@ use crate::console::theme::Role;
 use crate::console::widgets::chart::chart;
 use crate::console::widgets::{Axis, Line, Side, Unit};
 use crate::report::whatif::{
-    branch_line, cell, cell_in_two, decisions, difference_line, ended_early, futures_cell,
-    futures_cell_in_two, futures_heading, heading,
+    bankrupt, branch_line, cell, cell_in_two, decisions, difference_line, futures_cell, futures_cell_in_two,
+    futures_heading, heading,
 };
 use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
@@ -220,7 +220,7 @@ impl Figures {
         if let Some(futures) = &self.futures {
             told.push(futures_heading(futures));
             told.extend(self.sure.iter().map(|line| format!("at the end: {line}")));
-            told.extend((0..self.comparison.branches.len()).filter_map(|at| ended_early(futures, at)));
+            told.extend((0..self.comparison.branches.len()).filter_map(|at| bankrupt(futures, at)));
         }
         told.extend(decisions(branch, self.days_per_week));
         told

@@ -10,7 +10,14 @@ use crate::session::{DecisionEdit, PastCall, PastDecision, ToolId};
 const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
 fn call(seq: u64, day: u32, accepted: bool) -> PastDecision {
-    PastDecision::Call(PastCall { seq, day, tool: ToolId::SetPrices, args: json!({"B": 30}), accepted })
+    PastDecision::Call(PastCall {
+        seq,
+        day,
+        tool: ToolId::SetPrices,
+        args: json!({"B": 30}),
+        accepted,
+        reversal: None,
+    })
 }
 
 fn page() -> BranchesPage {

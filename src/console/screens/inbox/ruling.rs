@@ -125,6 +125,11 @@ impl Inbox {
         vec![Effect::ConfirmCalls { calls, text }]
     }
 
+    /// Whether rules were sent before.
+    pub fn has_sent_rules(&self) -> bool {
+        self.last_rules.is_some()
+    }
+
     /// What the rules that were sent last answer to those who wait now, call by call, and the same in words; none where they
     /// send nothing.
     pub fn answers_of_before(&self, company: &Company) -> Option<(Vec<(ToolId, Value)>, String)> {

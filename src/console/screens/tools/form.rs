@@ -85,9 +85,10 @@ impl Form {
         self.keep_inside();
     }
 
-    /// Forgets the drafts.
+    /// Forgets the drafts, and begins at the first cell: who comes again fills it in from the top.
     pub fn reset(&mut self, company: &Company) {
         self.sheet = Sheet::of(self.spec, company);
+        self.at = CellPlace::default();
         (self.typing, self.left, self.adding, self.preview) = (None, None, None, None);
         self.dropped.clear();
         self.keep_inside();

@@ -24,6 +24,8 @@ mod looking;
 mod own_runs;
 mod plain;
 mod preparation;
+#[cfg(unix)]
+mod python_scripts;
 mod scenarios;
 mod studies;
 #[path = "../support/mod.rs"]

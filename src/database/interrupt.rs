@@ -75,6 +75,11 @@ impl Interrupt {
         self.0.stopped.fetch_max(self.0.drawn.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
+    /// Whether what has this ticket was asked to end.
+    pub fn has_stopped(&self, ticket: Ticket) -> bool {
+        self.0.stopped.load(Ordering::Relaxed) >= ticket.0
+    }
+
     /// Begins a query, or a script, with this much time and so many steps.
     pub(super) fn begin(&self, ticket: Ticket, time: Duration, steps: Option<u64>) {
         self.0.running.store(ticket.0, Ordering::Relaxed);

@@ -359,7 +359,7 @@ impl Interpreter {
     }
 
     fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
-        match self.session.call(tool, arguments, Via::Plain) {
+        match self.call_stoppable(tool, arguments) {
             Ok(data) => {
                 let shown = groups::with_ranges(&self.session, &data);
                 let answer = Answer::call_shown(tool.name(), data.to_json(), shown);

@@ -64,9 +64,10 @@ impl ForeignTranscript {
         }
     }
 
-    /// Makes the calls in a run. `progress` is told of each.
+    /// Makes the calls in a run, and starts no programs that they hold. `progress` is told of each.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
+        session.keep_python_out();
         for call in &self.calls {
             let said = answer(session, request(&call.tool, call.arguments.clone()), Via::Script);
             let accepted = said.succeeded();
@@ -206,6 +207,16 @@ mod tests {
             assert_eq!((played.made, played.otherwise.len(), session.day()), (3, 1, 7), "{played:?}");
             assert_eq!((played.otherwise[0].0, played.otherwise[0].1.as_str()), (place, "set_prices"));
         }
+    }
+
+    #[test]
+    fn programs_in_a_transcript_are_not_started() {
+        let script = json!({"tool": "python_exec", "args": {"code": "# python\nprint(1)"}, "success": true});
+        let read = ForeignTranscript::read(&script.to_string()).expect("a transcript");
+        let new = NewRun { days: Some(28), ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let played = read.play(&mut session, &mut |_| {});
+        assert!(played.otherwise[0].2.contains("Python is not started here"), "{played:?}");
     }
 
     #[test]

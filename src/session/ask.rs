@@ -46,15 +46,29 @@ impl Session {
     /// The `sql_` codes.
     pub fn query_as(&mut self, ticket: Ticket, sql: &str, via: QuerySource) -> Result<Rows, Refusal> {
         let started = Instant::now();
-        let limits = limits(self);
-        let answer =
-            self.connection()
-                .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
-                .map_err(|refusal| {
-                    if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal }
-                });
+        let answer = self.answer_within(ticket, sql, limits(self));
         self.note_query(sql, answer.as_ref(), started.elapsed(), via);
         answer
+    }
+
+    /// Answers a statement under these limits, and leaves recording it to the caller.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub(in crate::session) fn answer_within(
+        &mut self,
+        ticket: Ticket,
+        sql: &str,
+        limits: Limits,
+    ) -> Result<Rows, Refusal> {
+        let answer = self
+            .connection()
+            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from));
+        answer.map_err(
+            |refusal| {
+                if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal }
+            },
+        )
     }
 
     /// Answers a statement of the program's own, which is not recorded: what a person did not ask.
@@ -110,10 +124,9 @@ impl Session {
         took: Duration,
         via: QuerySource,
     ) {
-        self.remember_query(sql);
         let rows = answer.ok();
         let refusal = answer.err();
-        self.note(Record::Query(Query {
+        let query = Query {
             sql: sql.to_owned(),
             rows: rows.map(|rows| rows.rows.len() as u64),
             truncated: rows.is_some_and(|rows| rows.truncated),
@@ -122,7 +135,9 @@ impl Session {
             stopped: refusal.is_some_and(|refusal| refusal.message.starts_with(CANCELLED)),
             via: Some(via),
             took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
-        }));
+        };
+        self.remember_query(&query);
+        self.note(Record::Query(query));
     }
 
     /// The last statements the database was asked in this run, each once, the newest last.
@@ -130,10 +145,14 @@ impl Session {
         &self.history.asked
     }
 
-    pub(super) fn remember_query(&mut self, sql: &str) {
+    /// Keeps a statement for whoever asks again; those of scripts stand in their code.
+    pub(super) fn remember_query(&mut self, Query { sql, via, .. }: &Query) {
         const KEPT: usize = 100;
+        if *via == Some(QuerySource::Script) {
+            return;
+        }
         self.history.asked.retain(|known| known != sql);
-        self.history.asked.push(sql.to_owned());
+        self.history.asked.push(sql.clone());
         let surplus = self.history.asked.len().saturating_sub(KEPT);
         self.history.asked.drain(..surplus);
     }

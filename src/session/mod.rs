@@ -16,6 +16,7 @@ mod folder;
 mod lesson;
 mod play;
 mod playback;
+mod python;
 mod resume;
 mod same_world;
 mod state;

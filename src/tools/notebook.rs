@@ -1,6 +1,6 @@
 //! What a player keeps with a run: calculations for the dashboard, and scripts.
 //!
-//! Both are names for SQL statements. Nothing of it reaches the world.
+//! Both are names for code: SQL statements, or Python. Nothing of it reaches the world.
 
 use serde::{Deserialize, Serialize};
 

@@ -174,8 +174,8 @@ mod tests {
         ),
         ("get_group_insights", &["S1", "level of knowledge, 1", "0 to 1"]),
         ("set_capacity_tier", &["0 to 7"]),
-        ("python_exec", &["600 if left out", "0: every", "first 5,000", "first 2,000"]),
-        ("run_script", &["0: every", "first 5,000", "first 2,000"]),
+        ("python_exec", &["600 if left out", "0: the", "first 5,000", "first 2,000"]),
+        ("run_script", &["0: the", "first 5,000", "first 2,000"]),
         ("query", &["19 visible tables"]),
     ];
 

@@ -29,25 +29,25 @@ pub enum Reply<A> {
     Known(A),
     /// Made from what was drawn.
     Drawn(Teller<A>),
-    /// Made from what statements say that the session runs.
+    /// Made from what a script says that the session runs.
     Output(Script, Box<dyn FnOnce(ScriptOutput) -> A>),
 }
 
-/// Statements to run.
+/// A script to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// The statements.
+    /// Statements, or Python.
     pub code: String,
-    /// Time for all of them, seconds.
+    /// Time for all of it, seconds.
     pub seconds: f64,
 }
 
-/// What statements said.
+/// What a script said.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ScriptOutput {
-    /// 0: every statement was answered.
+    /// 0: it ran to its end.
     pub returncode: i32,
-    /// The results as tables.
+    /// The results as tables, or what was printed.
     pub stdout: String,
     /// Warnings and hints.
     pub stderr: String,
@@ -93,7 +93,7 @@ impl<A> Planned<A> {
 }
 
 impl Planned<ScriptOutput> {
-    /// A call that runs statements.
+    /// A call that runs a script.
     pub fn running(script: Script) -> Planned<ScriptOutput> {
         Planned::new(Command::None, Reply::Output(script, Box::new(|output| output)))
     }
@@ -115,10 +115,10 @@ impl<A: 'static> Planned<A> {
 }
 
 impl<A> Reply<A> {
-    /// The answer, given what was drawn and somebody who runs statements.
+    /// The answer, given what was drawn and somebody who runs scripts.
     ///
     /// # Errors
-    /// What speaks against the statements.
+    /// What speaks against the script.
     pub fn tell(
         self,
         resolved: &ResolvedCommand,
@@ -131,9 +131,9 @@ impl<A> Reply<A> {
         }
     }
 
-    /// The answer, where no statements are run for it.
+    /// The answer, where no script is run for it.
     pub fn without_running(self, resolved: &ResolvedCommand) -> Option<A> {
-        let refuse = |_: &Script| Err(Refusal::new("script_failed", "statements are not run here"));
+        let refuse = |_: &Script| Err(Refusal::new("script_failed", "scripts are not run here"));
         self.tell(resolved, refuse).ok()
     }
 }

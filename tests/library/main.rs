@@ -14,6 +14,8 @@ mod lesson_gates;
 mod lessons;
 mod notebook;
 mod overrides;
+#[cfg(unix)]
+mod python_scripts;
 mod queries;
 mod session;
 #[path = "../support/mod.rs"]

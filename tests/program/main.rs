@@ -25,6 +25,8 @@ mod own_runs;
 mod plain;
 mod planted;
 mod preparation;
+#[cfg(unix)]
+mod python_scripts;
 mod scenarios;
 mod studies;
 #[path = "../support/mod.rs"]

@@ -4,9 +4,11 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
+use super::super::signals::Phase;
 use super::{Interpreter, problem};
-use crate::session::QuerySource;
 use crate::session::library::NamedQuery;
+use crate::session::{QuerySource, Refusal, Via};
+use crate::tools::{self, ToolId};
 
 impl Interpreter {
     /// `queries`
@@ -35,5 +37,21 @@ impl Interpreter {
         };
         let sql = query.sql.clone();
         Ok(self.query(&sql, QuerySource::Library))
+    }
+
+    /// Calls a tool; a script that runs long is stopped as a query is.
+    pub(super) fn call_stoppable(
+        &mut self,
+        tool: ToolId,
+        arguments: &Value,
+    ) -> Result<tools::Answer, Refusal> {
+        if matches!(tool, ToolId::PythonExec | ToolId::RunScript)
+            && let Ok(interrupt) = self.session.interrupt()
+        {
+            self.watch.enter_query(interrupt);
+        }
+        let answer = self.session.call(tool, arguments, Via::Plain);
+        self.watch.enter(Phase::Working);
+        answer
     }
 }

@@ -22,7 +22,8 @@ pub use told::Surroundings;
 
 use crate::session::record::{End, FiledForecast, Outcome, RefusalRecord};
 use crate::session::{
-    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, Record, RunError, Session, ToolId, rows_as_json,
+    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, QuerySource, Record, RunError, Session, ToolId,
+    rows_as_json,
 };
 
 /// A run, action by action.
@@ -148,6 +149,10 @@ impl Transcript {
                     Outcome::Refused(refusal) => Err(refusal.clone()),
                 };
                 Deed::Call { tool: call.tool, args: call.args.clone(), answer, extra }
+            }
+            // What a script asked is part of its call.
+            Record::Query(query) if query.via == Some(QuerySource::Script) => {
+                return self.asides.push(told::aside(line));
             }
             Record::Query(query) => {
                 let extra = told::source(query.via, query.took_ms, query.stopped);

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use crate::tools::{ToolId, find};
+use crate::tools::{Language, ToolId, find};
 
 /// A call as the file of a lesson writes it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -29,6 +29,10 @@ impl TryFrom<String> for LessonCall {
             rest => serde_json::from_str(rest)
                 .map_err(|error| format!("the arguments of {name} are no JSON: {error}"))?,
         };
+        // Whoever plays a lesson would run a program of whoever wrote it.
+        if args["code"].as_str().is_some_and(|code| Language::of(code) == Language::Python) {
+            return Err(format!("{name} in a lesson takes SQL statements, no Python"));
+        }
         Ok(LessonCall::Tool(tool.spec().id, args))
     }
 }
@@ -45,5 +49,6 @@ mod tests {
         assert_eq!(read("rules: reject rest").expect("rules"), LessonCall::Rules("reject rest".to_owned()));
         assert!(read("set_price {}").expect_err("no tool").contains("set_price"));
         assert!(read("set_prices {A}").expect_err("no JSON").contains("no JSON"));
+        assert!(read(r##"python_exec {"code": "# python"}"##).expect_err("no SQL").contains("no Python"));
     }
 }

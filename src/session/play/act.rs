@@ -134,7 +134,7 @@ impl Session {
             if change.is_some() {
                 self.refuse_if_only_read()?;
             }
-            let answer = reply.tell(&resolved, |script| self.run_statements(script))?;
+            let answer = reply.tell(&resolved, |script| self.run_script(script, via))?;
             Ok((given, Accepted { resolved, change, row }, answer))
         });
         let took_ms = started.elapsed().as_secs_f64() * 1e3;

@@ -118,7 +118,7 @@ impl Session {
             }
         };
         self.prepare_week_of_lesson()?;
-        let calculated = self.run_calculations();
+        let calculated = self.run_calculations(via);
         let filed = Advance {
             rationale: text.clone(),
             forecasts: forecasts.filed(),

@@ -48,7 +48,7 @@ impl Session {
     /// Statements that were kept, and nothing else: the company is as it ended.
     fn keep_again(&mut self, line: &Line) {
         match &line.record {
-            Record::Query(query) => self.remember_query(&query.sql),
+            Record::Query(query) => self.remember_query(query),
             record => {
                 if let Some((call, answer)) = record.accepted_call() {
                     let _ = self.replay_call(call, answer);

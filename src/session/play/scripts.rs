@@ -1,29 +1,33 @@
 //! What is kept with a run besides its company: calculations and scripts, and running them.
 //!
-//! Both are read-only SQL under the guard and the limits of a query. What is kept follows from the calls of the
-//! trajectory; what calculations said before a week stands in its `advance` line, so a resumed run shows the same
-//! dashboard.
+//! Both are read-only SQL under the guard and the limits of a query, or Python that asks such queries. What is kept follows
+//! from the calls of the trajectory; what calculations said before a week stands in its `advance` line, so a resumed run
+//! shows the same dashboard, and runs nothing for it.
 
 use std::time::Duration;
 
 use super::surroundings::Calculated;
 use crate::database::{self, text};
+use crate::session::python::refuse_unless_played;
 use crate::session::state::Session;
-use crate::tools::{Kept, Notebook, NotebookChange, Refusal, Script, ScriptOutput};
+use crate::session::trajectory::record::Via;
+use crate::tools::{Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python};
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;
 /// Characters of warnings and hints that a script may give.
 const MOST_REMARKS: usize = 2000;
 
-/// What statements said.
+/// What code said.
 #[derive(Debug, Default)]
-struct Output {
-    results: String,
-    remarks: String,
+pub(in crate::session) struct Said {
+    /// Results as tables, or what was printed.
+    pub results: String,
+    /// Warnings and hints.
+    pub remarks: String,
 }
 
-impl Output {
+impl Said {
     fn add(&mut self, rows: &database::Rows) {
         if self.results.len() <= 4 * MOST_OUTPUT {
             self.results += &text::columns(rows);
@@ -52,49 +56,91 @@ impl Session {
         &self.history.calculated
     }
 
-    /// The answer of a tool that runs statements.
+    /// From here on no Python is started: what is called was decided elsewhere.
+    pub fn keep_python_out(&mut self) {
+        self.surroundings.keeps_python_out = true;
+    }
+
+    /// The answer of a tool that runs a script.
     ///
     /// # Errors
-    /// `script_failed`, `script_timeout`, naming the statement.
-    pub(in crate::session) fn run_statements(&mut self, script: &Script) -> Result<ScriptOutput, Refusal> {
-        let output = self.output_of(&script.code, Duration::from_secs_f64(script.seconds))?;
+    /// `script_failed`, `script_timeout`, saying where.
+    pub(in crate::session) fn run_script(
+        &mut self,
+        script: &Script,
+        via: Via,
+    ) -> Result<ScriptOutput, Refusal> {
+        let time = Duration::from_secs_f64(script.seconds);
+        let said = match Language::of(&script.code) {
+            Language::Sql => self.run_statements(&script.code, time)?,
+            Language::Python => {
+                self.refuse_python(via)?;
+                self.run_python(&script.code, time, true)?
+            }
+        };
         Ok(ScriptOutput {
             returncode: 0,
-            stdout: first(&output.results, MOST_OUTPUT),
-            stderr: first(&output.remarks, MOST_REMARKS),
+            stdout: first(&said.results, MOST_OUTPUT),
+            stderr: first(&said.remarks, MOST_REMARKS),
         })
     }
 
-    fn output_of(&mut self, code: &str, time: Duration) -> Result<Output, Refusal> {
+    /// Refuses Python where nobody plays.
+    fn refuse_python(&self, via: Via) -> Result<(), Refusal> {
+        let is_played = !matches!(via, Via::Policy | Via::Branch | Via::Lesson);
+        refuse_unless_played(is_played && !self.surroundings.keeps_python_out)
+    }
+
+    fn run_statements(&mut self, code: &str, time: Duration) -> Result<Said, Refusal> {
         let limits = self.query_limits();
         let connection =
             self.connection().map_err(|refusal| Refusal::new("script_failed", refusal.message))?;
-        let mut output = Output::default();
-        match connection.run_script(code, limits, time, |rows| output.add(&rows)) {
-            Ok(()) => Ok(output),
+        let mut said = Said::default();
+        match connection.run_script(code, limits, time, |rows| said.add(&rows)) {
+            Ok(()) => Ok(said),
             Err(stopped) => {
                 let refusal = Refusal::from(stopped.error);
-                let code = if refusal.code == "sql_timeout" { "script_timeout" } else { "script_failed" };
+                let kind = if refusal.code == "sql_timeout" { "script_timeout" } else { "script_failed" };
                 let (number, why) = (stopped.statement, refusal.message);
-                let message = format!("statement {number}: {why}; the ones before it changed nothing either");
-                Err(Refusal::at("code", code, message))
+                let hint = hint_at_python(code).map(|hint| format!("; {hint}")).unwrap_or_default();
+                let message =
+                    format!("statement {number}: {why}; the ones before it changed nothing either{hint}");
+                Err(Refusal::at("code", kind, message))
             }
         }
     }
 
     /// Runs all calculations on the company as it is. One that fails says why and does not keep the week.
-    pub(in crate::session) fn run_calculations(&mut self) -> Vec<Calculated> {
+    pub(in crate::session) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
         let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
         let time = self.query_limits().time;
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
-            let output = match self.output_of(&code, time) {
-                Ok(output) => output.results,
+            let said = match Language::of(&code) {
+                Language::Sql => self.run_statements(&code, time),
+                // Nobody asks what it asks.
+                Language::Python => {
+                    self.refuse_python(via).and_then(|()| self.run_python(&code, time, false))
+                }
+            };
+            let output = match said {
+                Ok(said) => said.results,
                 Err(refusal) => format!("failed: {}", refusal.message),
             };
             Calculated { name, output: first(&output, shown) }
         };
         entries.into_iter().map(run).collect()
+    }
+
+    /// Names the calculations in Python to whoever goes on with a run: somebody else may have registered them.
+    pub(in crate::session) fn name_python_calculations(&mut self) {
+        let kept = self.surroundings.notebook.statements(Kept::Calculation).entries();
+        let python = kept.iter().filter(|(_, code)| Language::of(code) == Language::Python);
+        let names: Vec<&str> = python.map(|(name, _)| name.as_str()).collect();
+        if !names.is_empty() && self.recorder.is_some() && self.history.ended.is_none() {
+            let remark = format!("Calculations in Python run before each week: {}.", names.join(", "));
+            self.remarks.push(remark);
+        }
     }
 
     /// Keeps or forgets what an accepted call asks for.

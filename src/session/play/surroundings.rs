@@ -12,6 +12,8 @@ use crate::world::events::Reading;
 pub(in crate::session) struct RunSurroundings {
     /// Calculations and scripts.
     pub notebook: Notebook,
+    /// Nobody plays: what is called was decided elsewhere, and starts no programs.
+    pub keeps_python_out: bool,
 }
 
 impl Surroundings for RunSurroundings {

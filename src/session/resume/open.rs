@@ -116,6 +116,7 @@ impl Session {
         session.resume_lesson(folder, &trajectory.lines)?;
         session.finish_week(&trajectory);
         session.finish_beginning(&trajectory.lines)?;
+        session.name_python_calculations();
         Ok(session)
     }
 
@@ -135,7 +136,7 @@ impl Session {
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
-        let surroundings = RunSurroundings { notebook };
+        let surroundings = RunSurroundings { notebook, ..RunSurroundings::default() };
         let session = Session::assemble(manifest, own, simulation, Projection::default());
         (Session { history, surroundings, position, ..session }, seen)
     }
@@ -212,7 +213,7 @@ impl Session {
                 self.commit_projection();
             }
             Record::Override(change) => self.replay_override(line.seq, change)?,
-            Record::Query(query) => self.remember_query(&query.sql),
+            Record::Query(query) => self.remember_query(query),
             Record::Activity(_)
             | Record::Memo(_)
             | Record::Note(_)

@@ -1,4 +1,4 @@
-//! Calculations: named SQL statements that run before every week, for the dashboard.
+//! Calculations: named SQL statements or Python that run before every week, for the dashboard.
 
 mod list_daily_calculations;
 mod register_daily_calculation;

@@ -1,5 +1,6 @@
 use super::super::arguments::{Arguments, text};
 use super::super::keeping::{KeptCode, NamedCode};
+use super::super::scripts::CODE;
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
@@ -22,19 +23,12 @@ static SPEC: Spec = Spec {
             unit: "",
             doc: "name of the calculation",
         },
-        Argument {
-            name: "code",
-            alias: None,
-            kind: ArgumentKind::Text,
-            required: true,
-            unit: "",
-            doc: "read-only SQL statements, separated by ;",
-        },
+        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
     ],
     own_unknown: false,
     whole: None,
     when: When::NextDay,
-    effect: "From the next week on, the statements run before each week, on the company as it is then. The \
+    effect: "From the next week on, the code runs before each week, on the company as it is then. The \
              dashboard shows the first {limits.dashboard_calculation_max_chars} characters of the output. A calculation of the same name is \
              replaced.",
     cost: "nothing",

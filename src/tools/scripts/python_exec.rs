@@ -3,9 +3,9 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Script, ScriptOutput, Spec, Tool,
     ToolId, View, When,
 };
-use super::LONGEST_SECONDS;
+use super::{CODE, LONGEST_SECONDS};
 
-/// Runs statements at once.
+/// Runs a script at once.
 pub struct PythonExec;
 
 static SPEC: Spec = Spec {
@@ -13,23 +13,16 @@ static SPEC: Spec = Spec {
     code: "PYX",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Run SQL statements over the visible tables; named after the tool with which agents run Python",
+    summary: "Run SQL statements or Python over the visible tables",
     arguments: &[
-        Argument {
-            name: "code",
-            alias: None,
-            kind: ArgumentKind::Text,
-            required: true,
-            unit: "",
-            doc: "read-only SQL statements, separated by ;",
-        },
+        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
         Argument {
             name: "timeout_seconds",
             alias: None,
             kind: ArgumentKind::Number(Range { above: true, ..Range::between(0.0, LONGEST_SECONDS) }),
             required: false,
             unit: "s",
-            doc: "time for all statements together; 600 if left out",
+            doc: "time for the whole script; 600 if left out",
         },
     ],
     own_unknown: false,
@@ -40,8 +33,12 @@ static SPEC: Spec = Spec {
     writes: &[],
     refusals: &["script_failed", "script_timeout"],
     returns: &[
-        Output { name: "returncode", kind: "integer", doc: "0: every statement was answered" },
-        Output { name: "stdout", kind: "text", doc: "the results as tables, the first 5,000 characters" },
+        Output { name: "returncode", kind: "integer", doc: "0: the script ran to its end" },
+        Output {
+            name: "stdout",
+            kind: "text",
+            doc: "results as tables, or what Python printed; the first 5,000 characters",
+        },
         Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
     ],
     example: r#"{"code": "SELECT COUNT(*) AS n FROM customers"}"#,

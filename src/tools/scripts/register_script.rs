@@ -3,6 +3,7 @@ use super::super::keeping::{KeptCode, NamedCode};
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
+use super::CODE;
 
 /// Stores a script.
 pub struct RegisterScript;
@@ -12,7 +13,7 @@ static SPEC: Spec = Spec {
     code: "SCR",
     module: Module::Time,
     kind: Kind::Engine,
-    summary: "Store a named script of SQL statements",
+    summary: "Store a named script of SQL statements or Python",
     arguments: &[
         Argument {
             name: "name",
@@ -22,14 +23,7 @@ static SPEC: Spec = Spec {
             unit: "",
             doc: "name of the script",
         },
-        Argument {
-            name: "code",
-            alias: None,
-            kind: ArgumentKind::Text,
-            required: true,
-            unit: "",
-            doc: "read-only SQL statements, separated by ;",
-        },
+        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
     ],
     own_unknown: false,
     whole: None,

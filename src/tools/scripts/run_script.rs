@@ -30,8 +30,12 @@ static SPEC: Spec = Spec {
     writes: &[],
     refusals: &["script_not_found", "script_failed", "script_timeout"],
     returns: &[
-        Output { name: "returncode", kind: "integer", doc: "0: every statement was answered" },
-        Output { name: "stdout", kind: "text", doc: "the results as tables, the first 5,000 characters" },
+        Output { name: "returncode", kind: "integer", doc: "0: the script ran to its end" },
+        Output {
+            name: "stdout",
+            kind: "text",
+            doc: "results as tables, or what Python printed; the first 5,000 characters",
+        },
         Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
     ],
     example: r#"{"name": "churn"}"#,

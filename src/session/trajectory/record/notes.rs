@@ -38,7 +38,7 @@ pub enum QuerySource {
     DrillDown,
     /// The program made it of a result: counts, pivots.
     Derived,
-    /// A stored script.
+    /// A script in Python.
     Script,
     /// A program, over HTTP or the Model Context Protocol.
     Program,

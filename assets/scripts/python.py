@@ -1,0 +1,244 @@
+"""Runs one script of a player: the program starts it, answers what it asks, and waits for its end.
+
+Standard input is a socket to the program, line by line as JSON. Its first line holds the code and the limits; after it a
+request goes up and its answer comes down. The script sees only the functions below.
+"""
+import json
+import linecache
+import os
+import sys
+import traceback
+import types
+
+#: Bytes of a request, at most.
+MOST_REQUEST = 1 << 20
+
+#: Where landlock allows to read: the libraries that a script may import, and what the C library looks at.
+SYSTEM = (
+    "/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64", "/nix/store",
+    "/usr/share/zoneinfo", "/etc/localtime", "/etc/ld.so.cache", "/dev/null", "/dev/zero", "/dev/urandom",
+)
+
+#: System calls that are refused, by machine: new processes and programs, sockets, signals to others, a look into others'
+#: memory, keys, and rights of files.
+REFUSED = {
+    "x86_64": (0xC000003E, (
+        41, 56, 57, 58, 59, 62, 90, 91, 92, 93, 94, 101, 129, 200, 234, 250, 260, 268, 297, 298, 310, 311, 321, 322, 323,
+        424, 425, 434, 435, 438, 452,
+    )),
+    "aarch64": (0xC00000B7, (
+        52, 53, 54, 55, 117, 129, 130, 131, 138, 198, 219, 220, 221, 240, 241, 270, 271, 280, 281, 282, 424, 425, 434,
+        435, 438, 452,
+    )),
+}
+
+
+class NovamindError(Exception):
+    """A refusal. Its text says what is wrong, ``code`` is for programs."""
+
+    def __init__(self, code, message):
+        super().__init__(code + ": " + message)
+        self.code = code
+
+
+class Channel:
+    """What asks the program."""
+
+    def __init__(self):
+        self.up = os.dup(0)
+        self.down = os.fdopen(os.dup(0), "rb")
+        # Whoever reads standard input finds its end.
+        nothing = os.open(os.devnull, os.O_RDONLY)
+        os.dup2(nothing, 0)
+        os.close(nothing)
+
+    def receive(self):
+        line = self.down.readline()
+        if not line.endswith(b"\n"):
+            raise EOFError
+        return json.loads(line)
+
+    def ask(self, request):
+        text = json.dumps(request).encode() + b"\n"
+        if len(text) > MOST_REQUEST:
+            raise NovamindError("sql_error", "a statement of a script may have 1 MiB")
+        try:
+            while text:
+                text = text[os.write(self.up, text):]
+            answer = self.receive()
+        except (EOFError, OSError, ValueError):
+            raise NovamindError("script_failed", "the run does not answer any more") from None
+        if "error" in answer:
+            raise NovamindError(answer["error"]["code"], answer["error"]["message"])
+        return answer
+
+
+def functions(channel):
+    """The module that a script finds."""
+    module = types.ModuleType("novamind_script", "What a script may ask the run.")
+
+    def query(sql):
+        """The rows of one read-only SQL statement over the visible tables, as a list of dicts.
+
+        Rules and limits are those of the tool query: at most 5,000 rows; warnings and hints go to standard error.
+        """
+        if not isinstance(sql, str):
+            raise TypeError("query takes one SQL statement as a text")
+        answer = channel.ask({"ask": "query", "sql": sql})
+        for remark in ("warning", "hint"):
+            if remark in answer:
+                print(answer[remark], file=sys.stderr)
+        return answer["rows"]
+
+    def get_vars():
+        """Where the run stands: current_day, the last day that was simulated."""
+        return channel.ask({"ask": "vars"})
+
+    for own in (query, get_vars, NovamindError):
+        own.__module__ = module.__name__
+        setattr(module, own.__name__, own)
+    return module
+
+
+def limit(seconds, memory):
+    """Bounds what the process may take of the machine; what a system does not know is left out."""
+    try:
+        import resource
+    except ImportError:
+        return
+    wanted = {
+        "RLIMIT_AS": memory, "RLIMIT_CPU": int(seconds) + 2, "RLIMIT_FSIZE": 0, "RLIMIT_CORE": 0, "RLIMIT_NPROC": 0,
+        "RLIMIT_NOFILE": 64,
+    }
+    for name, most in wanted.items():
+        try:
+            which = getattr(resource, name)
+            hard = resource.getrlimit(which)[1]
+            most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+            resource.setrlimit(which, (most, most))
+        except (AttributeError, OSError, ValueError):
+            pass
+
+
+def enclose():
+    """On Linux, takes away what a script has no business with; each part where the kernel has it."""
+    if not sys.platform.startswith("linux"):
+        return
+    try:
+        import ctypes
+        libc = ctypes.CDLL(None, use_errno=True)
+    except (ImportError, OSError):
+        return
+
+    def call(function, *values):
+        return function(*(each if each is None or isinstance(each, ctypes._Pointer) else ctypes.c_long(each) for each in values))
+
+    # It ends with the program, and gains no rights: without that, nothing below is allowed.
+    call(libc.prctl, 1, 9, 0, 0, 0)
+    call(libc.prctl, 38, 1, 0, 0, 0)
+    # A user and a network of its own.
+    if hasattr(libc, "unshare"):
+        call(libc.unshare, 0x10000000 | 0x40000000)
+    for part in (fence_files, refuse_calls):
+        try:
+            part(ctypes, libc, call)
+        except (AttributeError, OSError, ValueError):
+            pass
+
+
+def fence_files(ctypes, libc, call):
+    """Landlock: libraries and the empty folder of work can be read; nothing can be changed or started."""
+
+    class Ruleset(ctypes.Structure):
+        _fields_ = [("files", ctypes.c_uint64), ("network", ctypes.c_uint64), ("scope", ctypes.c_uint64)]
+
+    class Beneath(ctypes.Structure):
+        _pack_ = 1
+        _fields_ = [("rights", ctypes.c_uint64), ("place", ctypes.c_int32)]
+
+    version = call(libc.syscall, 444, None, 0, 1)
+    if version < 1:
+        return
+    files = (1 << 13) - 1
+    for since, right in ((2, 13), (3, 14), (5, 15)):
+        if version >= since:
+            files |= 1 << right
+    rules = Ruleset(files, 3 if version >= 4 else 0, 3 if version >= 6 else 0)
+    size = 24 if version >= 6 else 16 if version >= 4 else 8
+    fence = call(libc.syscall, 444, ctypes.pointer(rules), size, 0)
+    if fence < 0:
+        return
+    own = [os.path.join(prefix, name) for prefix in (sys.prefix, sys.base_prefix, sys.exec_prefix) for name in ("lib", "lib64")]
+    for path in dict.fromkeys([*SYSTEM, *own, *sys.path, os.getcwd()]):
+        try:
+            place = os.open(path or ".", os.O_PATH | os.O_CLOEXEC)
+        except OSError:
+            continue
+        rights = (1 << 2 | 1 << 3) if os.path.isdir(path or ".") else 1 << 2
+        call(libc.syscall, 445, fence, 1, ctypes.pointer(Beneath(rights, place)), 0)
+        os.close(place)
+    call(libc.syscall, 446, fence, 0)
+    os.close(fence)
+
+
+def refuse_calls(ctypes, libc, call):
+    """Seccomp: calls of the kernel that answer with an error, whatever the script does."""
+
+    class Step(ctypes.Structure):
+        _fields_ = [("code", ctypes.c_uint16), ("yes", ctypes.c_uint8), ("no", ctypes.c_uint8), ("value", ctypes.c_uint32)]
+
+    class Filter(ctypes.Structure):
+        _fields_ = [("length", ctypes.c_uint16), ("steps", ctypes.POINTER(Step))]
+
+    machine = os.uname().machine
+    if machine not in REFUSED or sys.maxsize < 1 << 32:
+        return
+    architecture, numbers = REFUSED[machine]
+    load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
+    steps = [(load, 0, 0, 4), (equal, 1, 0, architecture), (answer, 0, 0, 0x80000000), (load, 0, 0, 0)]
+    # Another numbering of the same machine.
+    steps.append((at_least, len(numbers) + 1, 0, 0x40000000))
+    steps.extend((equal, len(numbers) - at, 0, number) for at, number in enumerate(numbers))
+    steps.extend([(answer, 0, 0, 0x7FFF0000), (answer, 0, 0, 0x00050001)])
+    program = (Step * len(steps))(*(Step(*step) for step in steps))
+    call(libc.prctl, 22, 2, ctypes.pointer(Filter(len(steps), ctypes.cast(program, ctypes.POINTER(Step)))), 0, 0)
+
+
+def run(code, module):
+    """Runs the code; returns its exit code. A traceback goes to standard error, without the frames that lead to it."""
+    lines = code.splitlines(keepends=True)
+    linecache.cache["<script>"] = (len(code), None, lines, "<script>")
+    script = types.ModuleType("__main__")
+    for name in ("query", "get_vars", "NovamindError"):
+        setattr(script, name, getattr(module, name))
+    sys.modules.update({"__main__": script, module.__name__: module})
+    sys.argv = ["<script>"]
+    # Without it, nothing could be said once memory is full.
+    reserve = [bytearray(16 << 20)]
+    try:
+        exec(compile(code, "<script>", "exec", dont_inherit=True), script.__dict__)
+        sys.stdout.flush()
+    except SystemExit as leaving:
+        if leaving.code is None or isinstance(leaving.code, int):
+            return leaving.code or 0
+        print(leaving.code, file=sys.stderr)
+        return 1
+    except BaseException as error:
+        reserve.clear()
+        frames = error.__traceback__ and error.__traceback__.tb_next
+        traceback.print_exception(type(error), error, frames)
+        return 1
+    return 0
+
+
+def main():
+    channel = Channel()
+    given = channel.receive()
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace", line_buffering=True)
+    limit(given["seconds"], given["memory"])
+    enclose()
+    sys.exit(run(given["code"], functions(channel)) & 0xFF)
+
+
+main()

@@ -1,0 +1,61 @@
+//! Scripts in Python: a process of their own, which asks the session while it runs and changes nothing
+//! (docs/interfaces/tools.md#scripts-in-python).
+//!
+//! The process gets its code and the answers to its questions over a socket, line by line as JSON; the session waits for it and
+//! answers, so no server has to run and no thread waits for another. What a script says is recorded with the call, or with the
+//! week: whatever reads a record starts no process.
+
+#[cfg(unix)]
+mod captured;
+#[cfg(unix)]
+mod channel;
+#[cfg(unix)]
+mod empty_folder;
+#[cfg(unix)]
+mod process;
+#[cfg(unix)]
+mod run;
+
+use crate::tools::Refusal;
+
+/// Says why a script in Python was not run, or not to its end.
+fn failed(message: impl Into<String>) -> Refusal {
+    Refusal::at("code", "script_failed", message)
+}
+
+/// Refuses where nobody plays: a record, a policy or a lesson must not start programs.
+///
+/// # Errors
+/// `script_failed`.
+pub(in crate::session) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
+    match is_played {
+        true => Ok(()),
+        false => Err(failed(
+            "Python is not started here: decisions are played that somebody else made, or a policy",
+        )),
+    }
+}
+
+#[cfg(not(unix))]
+mod run {
+    //! Systems on which a process cannot be held within bounds.
+
+    use std::time::Duration;
+
+    use super::failed;
+    use crate::session::play::scripts::Said;
+    use crate::session::state::Session;
+    use crate::tools::Refusal;
+
+    impl Session {
+        /// Refuses a script in Python.
+        pub(in crate::session) fn run_python(
+            &mut self,
+            _: &str,
+            _: Duration,
+            _: bool,
+        ) -> Result<Said, Refusal> {
+            Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The language in which a script or a calculation is written.
+
+/// A language of scripts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// Statements, separated by `;`.
+    Sql,
+    /// A program.
+    Python,
+}
+
+impl Language {
+    /// The language of some code. A first line with # is a comment of Python; no statement begins with it.
+    pub fn of(code: &str) -> Language {
+        match code.trim_start_matches('\u{feff}').trim_start().starts_with('#') {
+            true => Language::Python,
+            false => Language::Sql,
+        }
+    }
+}
+
+/// Says how Python is marked, where code that is taken for SQL looks like it.
+pub fn hint_at_python(code: &str) -> Option<&'static str> {
+    let is_python = |line: &str| {
+        let begins = ["import ", "def ", "class ", "print("].iter().any(|word| line.starts_with(word));
+        let takes_from = line.starts_with("from ") && line.contains(" import ");
+        let is_block = line.starts_with("for ") && line.trim_end().ends_with(':');
+        begins || takes_from || is_block || line.contains("query(\"") || line.contains("query('")
+    };
+    let looks_like_it =
+        Language::of(code) == Language::Sql && code.lines().map(str::trim_start).any(is_python);
+    looks_like_it.then_some("this looks like Python: let its first line be `# python`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_sign_tells_the_language() {
+        for code in ["# python\nprint(1)", "#!/usr/bin/env python3", "\n  # x", "\u{feff}#"] {
+            assert_eq!(Language::of(code), Language::Python, "{code}");
+            assert_eq!(hint_at_python(code), None, "{code}");
+        }
+        for code in ["SELECT 1", "", "-- # python\nSELECT 1", "print(1)\n# python"] {
+            assert_eq!(Language::of(code), Language::Sql, "{code}");
+        }
+    }
+
+    #[test]
+    fn what_looks_like_python_is_told_how_to_say_so() {
+        for code in [
+            "print('hello')",
+            "import math",
+            "x = 1\nfrom math import sqrt",
+            "def f():\n    return 1",
+            "for row in rows:\n  pass",
+            "rows = query(\"SELECT 1\")",
+        ] {
+            assert!(hint_at_python(code).is_some(), "{code}");
+        }
+        for code in
+            ["SELECT 1", "SELECT day\nfrom ledger -- import", "SELECT 1 AS import_", "SELECT 'for all':"]
+        {
+            assert_eq!(hint_at_python(code), None, "{code}");
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! Scripts in Python: what they are answered, what they may not, how they end, and that no record runs them again.
+
+use std::ops::ControlFlow;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use novamind::session::{
+    Access, Configuration, Mode, NewRun, QuerySource, Record, Refusal, Session, Storage, Trajectory, Via,
+    verify,
+};
+use serde_json::{Value, json};
+
+use crate::support::company::{call, week};
+
+/// A run, where there is a python3 to try; elsewhere there is nothing to test.
+fn run_with_python(storage: Storage) -> Option<Session> {
+    let tried = Command::new("python3").args(["-c", ""]).output();
+    if !tried.is_ok_and(|done| done.status.success()) {
+        return None;
+    }
+    let new = NewRun { seed: Some(7), days: Some(28), storage, ..NewRun::default() };
+    Some(Session::create(new, &Configuration::shipped()).expect("the run begins"))
+}
+
+fn run(session: &mut Session, code: &str) -> Value {
+    call(session, "python_exec", json!({ "code": format!("# python\n{code}") }))
+}
+
+#[track_caller]
+fn refusal(session: &mut Session, code: &str, seconds: f64) -> Refusal {
+    let given = json!({ "code": format!("# python\n{code}"), "timeout_seconds": seconds });
+    let refusal = session.call("python_exec", &given, Via::Script).expect_err(code);
+    assert_eq!(refusal.field.as_deref(), Some("code"), "{refusal}");
+    refusal
+}
+
+#[track_caller]
+fn assert_fails(session: &mut Session, code: &str, parts: &[&str]) {
+    let refusal = refusal(session, code, 60.0);
+    assert_eq!(refusal.code, "script_failed", "{code}: {refusal}");
+    for part in parts {
+        assert!(refusal.message.contains(part), "{code}: {part} is not in\n{}", refusal.message);
+    }
+}
+
+#[test]
+fn a_script_asks_and_prints() {
+    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let hash = session.state_hash();
+    let asked = session.asked().to_vec();
+    let said = run(
+        &mut session,
+        "rows = query('SELECT day, category, amount FROM ledger')\nprint(rows, get_vars())\n\
+         print(sum(row['amount'] for row in rows))",
+    );
+    let first =
+        "[{'day': 0, 'category': 'initial_funding', 'amount': 1000000.0}] {'current_day': 0}\n1000000.0\n";
+    assert_eq!(said, json!({ "returncode": 0, "stdout": first, "stderr": "" }));
+    let said = run(
+        &mut session,
+        "from novamind_script import query as ask\nimport statistics, sys\n\
+         print(ask(\"SELECT * FROM subscriptions WHERE status = 'active'\"), statistics.mean([1, 3]))\nsys.exit(0)",
+    );
+    assert_eq!(said["stdout"], "[] 2\n");
+    assert!(said["stderr"].as_str().is_some_and(|text| text.contains("status is never 'active'")), "{said}");
+    call(
+        &mut session,
+        "register_script",
+        json!({ "name": "day", "code": "#!/usr/bin/env python3\nprint(get_vars())" }),
+    );
+    week(&mut session);
+    assert_eq!(call(&mut session, "run_script", json!({ "name": "day" }))["stdout"], "{'current_day': 7}\n");
+    assert_ne!(session.state_hash(), hash, "a week has passed");
+    assert_eq!(session.asked(), asked, "what a script asks is no history of a person");
+}
+
+#[test]
+fn what_fails_says_why_and_changes_nothing() {
+    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let hash = session.state_hash();
+    let code = "print('so far')\ndef half(x):\n    return x / 0\nhalf(1)";
+    assert_fails(
+        &mut session,
+        code,
+        &[
+            "ZeroDivisionError: division by zero; python3 ended with code 1\n",
+            "line 4, in half",
+            "before that it printed:\nso far",
+        ],
+    );
+    assert_fails(&mut session, "import sys\nsys.exit(3)", &["python3 ended with code 3"]);
+    assert_fails(&mut session, "def f(:", &["SyntaxError", "line 2"]);
+    assert_fails(&mut session, "set_prices(A=1)", &["NameError"]);
+    assert_fails(&mut session, "import os\nos._exit(4)", &["python3 ended with code 4"]);
+    let unmarked =
+        session.call("python_exec", &json!({ "code": "print('hello')" }), Via::Script).expect_err("SQL");
+    assert!(
+        unmarked.message.ends_with("this looks like Python: let its first line be `# python`"),
+        "{unmarked}"
+    );
+    assert_eq!(session.state_hash(), hash);
+}
+
+#[test]
+fn what_a_query_may_not_a_script_may_not_ask() {
+    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    for (sql, part) in [
+        ("SELECT c_max FROM customers", "there is no column c_max"),
+        ("SELECT * FROM customer_state", "table customer_state is not accessible"),
+        ("DELETE FROM ledger", "only reading is allowed"),
+        ("SELECT 1; SELECT 2", "one statement at a time"),
+        ("SELECT * FROM hidden.customers", "there is no table hidden.customers"),
+        ("PRAGMA query_only = 0", "sql_schema"),
+    ] {
+        assert_fails(&mut session, &format!("query({sql:?})"), &["NovamindError", part]);
+    }
+    let caught = "try:\n    query('SELECT nothing')\nexcept NovamindError as error:\n    print(error.code)";
+    assert_eq!(run(&mut session, caught)["stdout"], "sql_error\n");
+    assert_fails(&mut session, "query(5)", &["TypeError"]);
+    assert_fails(
+        &mut session,
+        "query('SELECT 1 -- ' + 'x' * (2 << 20))",
+        &["a statement of a script may have 1 MiB"],
+    );
+    assert_fails(
+        &mut session,
+        "for _ in range(10001): query('SELECT 1')",
+        &["a script may ask 10,000 times"],
+    );
+    let endless =
+        "query('WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n')";
+    let begun = Instant::now();
+    let stopped = refusal(&mut session, endless, 1.0);
+    assert!(begun.elapsed() < Duration::from_secs(20), "{stopped}");
+}
+
+#[test]
+fn nothing_a_script_does_holds_the_run_up() {
+    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    for code in [
+        "print('begun')\nwhile True: pass",
+        "print('begun')\nimport time\ntime.sleep(600)",
+        "print('begun')\nimport signal, os\nfor number in range(1, 32):\n    try: signal.signal(number, signal.SIG_IGN)\n    \
+         except (OSError, ValueError): pass\nwhile True: pass",
+        "print('begun')\nimport os\nfor place in range(3, 64):\n    try: os.close(place)\n    except OSError: pass\nwhile True: pass",
+        "print('begun')\nwhile True: print('x' * 4000)",
+    ] {
+        let begun = Instant::now();
+        let refusal = refusal(&mut session, code, 1.5);
+        assert_eq!(refusal.code, "script_timeout", "{code}: {refusal}");
+        assert!(refusal.message.starts_with("it did not end in 1.5 s"), "{refusal}");
+        assert!(begun.elapsed() < Duration::from_secs(20), "{code}");
+        assert!(code.contains('x') || refusal.message.ends_with("printed:\nbegun"), "{refusal}");
+    }
+    let flood =
+        "import sys\nfor _ in range(20000):\n    print('x' * 999)\n    print('é' * 999, file=sys.stderr)";
+    let said = run(&mut session, flood);
+    let length = |field: &str| said[field].as_str().map_or(0, |text| text.chars().count());
+    assert_eq!((length("stdout"), length("stderr")), (5000, 2000));
+    // What comes over the socket and is no request.
+    let noise = "import os\nfor place in range(3, 64):\n    try: os.write(place, b'{}\\n\\xff\\n' * 100)\n    except OSError: pass\nprint('over')";
+    assert_eq!(run(&mut session, noise)["stdout"], "over\n");
+    assert_eq!(run(&mut session, "print(get_vars())")["stdout"], "{'current_day': 0}\n");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn on_linux_a_script_is_fenced_in() {
+    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let begun = Instant::now();
+    assert_fails(&mut session, "hog = []\nwhile True: hog.append(bytearray(50 << 20))", &["MemoryError"]);
+    assert!(begun.elapsed() < Duration::from_secs(30));
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "kept").expect("a file");
+    let file = file.display().to_string();
+    // Only where the kernel has Landlock.
+    let fence = "import ctypes\nprint(ctypes.CDLL(None).syscall(444, None, 0, 1))";
+    let has_fence = run(&mut session, fence)["stdout"].as_str().is_some_and(|text| !text.starts_with('-'));
+    let mut forbidden = vec![
+        format!("open({file:?}, 'a').write('x' * 100000)"),
+        "import os\nos.fork()".to_owned(),
+        "import subprocess\nsubprocess.run(['true'])".to_owned(),
+        "import socket\nsocket.create_connection(('127.0.0.1', 80))".to_owned(),
+        "import os\nos.kill(os.getppid(), 0)".to_owned(),
+        format!("import os\nos.chmod({file:?}, 0)"),
+    ];
+    if has_fence {
+        forbidden.extend([
+            format!("open({file:?})"),
+            format!("import os\nos.remove({file:?})"),
+            "open('file', 'w')".to_owned(),
+            "open(f'/proc/{__import__(\"os\").getppid()}/mem', 'rb')".to_owned(),
+        ]);
+    }
+    for code in forbidden {
+        assert_fails(&mut session, &code, &["Error: "]);
+    }
+    assert_eq!(std::fs::read_to_string(&file).expect("the file"), "kept");
+    let empty = "import os\nprint(os.listdir('.'), sorted(set(os.environ) - {'PATH', 'LC_CTYPE'}))";
+    let said = run(&mut session, empty)["stdout"].clone();
+    let said = said.as_str().unwrap_or_default();
+    assert!(said.starts_with("[] [") && !said.contains("NOVAMIND"), "{said}");
+}
+
+#[test]
+fn records_hold_what_was_said_and_run_nothing() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let Some(mut session) = run_with_python(Storage::Runs(runs.path().to_owned())) else { return };
+    let folder = session.folder().expect("a folder").to_owned();
+    // No two runs of it say the same.
+    let code = "# python\nimport time\nprint(query('SELECT count(*) AS n FROM ledger'), time.time_ns())";
+    call(&mut session, "register_daily_calculation", json!({ "name": "now", "code": code }));
+    call(&mut session, "register_daily_calculation", json!({ "name": "wrong", "code": "# python\n1 / 0" }));
+    call(&mut session, "python_exec", json!({ "code": code }));
+    let dashboard = week(&mut session).dashboard;
+    assert!(dashboard.contains("now:\n  [{'n': 1}] "), "{dashboard}");
+    assert!(
+        dashboard.contains("wrong:\n  failed: ZeroDivisionError: division by zero; python3 ended"),
+        "{dashboard}"
+    );
+    drop(session);
+    let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines").lines;
+    let asked = lines.iter().filter_map(|line| match &line.record {
+        Record::Query(query) => Some((query.via, query.rows)),
+        _ => None,
+    });
+    assert_eq!(
+        asked.collect::<Vec<_>>(),
+        [(Some(QuerySource::Script), Some(1))],
+        "calculations are no lines"
+    );
+    assert_eq!(verify(&folder).expect("it verifies").states, 1);
+    std::fs::remove_file(folder.join("snapshot.bin")).ok();
+    let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
+    assert_eq!(session.dashboard(), dashboard);
+    assert!(session.remarks().join(" ").contains("Calculations in Python run before each week: now, wrong."));
+    week(&mut session);
+
+    // Decisions that are played again start nothing, whatever was registered before them.
+    let again = session.branch_with_decisions(2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
+    let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
+    assert_eq!(branch.state_hash(), session.state_hash());
+    let said = &branch.calculated()[0].output;
+    assert!(said.starts_with("failed: Python is not started here"), "{said}");
+}

@@ -160,8 +160,13 @@ fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let after = trajectory
         .lines
         .iter()
-        .position(|line| !(line.day < day || (line.day == day && line.closes_days()) || line.seq == 0));
+        .position(|line| !(line.day < day || (line.day == day && ends_days(line)) || line.seq == 0));
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
+}
+
+/// Whether a line is written before anything is decided on its day.
+fn ends_days(line: &Line) -> bool {
+    line.closes_days() || matches!(line.record, Record::Voice(_))
 }
 
 /// Those lines that make a company what it is.
@@ -172,7 +177,10 @@ fn shared_lines(lines: &[Line]) -> Vec<&Line> {
 fn makes_company(line: &Line) -> bool {
     let record = &line.record;
     record.accepted_call().is_some()
-        || matches!(record, Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_))
+        || matches!(
+            record,
+            Record::Advance(_) | Record::Voice(_) | Record::Week(_) | Record::Step(_) | Record::Override(_)
+        )
 }
 
 /// Writes the files of a branch that shares some lines with its parent; nothing is opened.

@@ -31,3 +31,5 @@ mod support;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+#[cfg(feature = "server")]
+mod voice;

@@ -35,8 +35,8 @@ use clap::{Parser, Subcommand};
 pub use failure::Failure;
 
 use crate::session::{
-    Configuration, LabKey, Manifest, STUDY_FILE, SealKey, Study, Trajectory, lab_key_of,
-    list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_look,
+    Configuration, LabKey, Manifest, ModelSettings, RunError, STUDY_FILE, SealKey, Study, Trajectory,
+    lab_key_of, list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_look,
     record_refused_code, seal_key_of,
 };
 
@@ -193,6 +193,18 @@ impl Context {
             ))),
             _ => Ok(Context { participant: Some(label.to_owned()), ..self.clone() }),
         }
+    }
+
+    /// The same with the language model that a file names, if one is named.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is wrong: line and key.
+    pub fn with_voice(&self, file: Option<&Path>) -> Result<Context, Failure> {
+        let Some(file) = file else { return Ok(self.clone()) };
+        let text = std::fs::read_to_string(file).map_err(RunError::io(file))?;
+        let voice = ModelSettings::read(&file.display().to_string(), &text).map_err(RunError::from)?;
+        let configuration = Configuration { voice: Some(voice), ..self.configuration.clone() };
+        Ok(Context { configuration, ..self.clone() })
     }
 
     /// Checks that a participant who is named is the one whose runs these are.

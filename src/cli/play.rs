@@ -45,6 +45,9 @@ pub struct Options {
     /// Begin, or go on with, what a hand-out of a class holds, in the folder of runs of its student.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["run", "new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson", "watch"])]
     handout: Option<PathBuf>,
+    /// Let the language model that a file names lend its voice to the run.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["watch", "lesson", "handout"])]
+    voice: Option<PathBuf>,
     /// Theme of the console.
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
@@ -98,6 +101,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         let run = Some(handout.place(&context.base_of_runs()?)?);
         return self::run(Options { run, handout: None, ..options }, &own);
     }
+    let context = &context.with_voice(options.voice.as_deref())?;
     if let Some(id) = &options.run {
         context.check_play(&find_run(&context.runs()?, id)?)?;
     }
@@ -111,9 +115,9 @@ fn asks_for_lines(options: &Options) -> bool {
 
 /// Leads a participant through a study. What is played follows from its protocol, so no other option says so.
 pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
-    if options.run.is_some() || options.asks_for_new_run() {
+    if options.run.is_some() || options.voice.is_some() || options.asks_for_new_run() {
         return Err(Failure::usage(
-            "in a study the protocol says what is played: no --run, and no option of a new run",
+            "in a study the protocol says what is played: no --run, no --voice, and no option of a new run",
         ));
     }
     if let Some(label) = &context.participant {
@@ -138,8 +142,11 @@ pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), F
 fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
     match &options.run {
         Some(id) => {
-            let access = if options.watch { Access::Read } else { Access::Write };
-            Ok(Session::open(&find_run(&context.runs()?, id)?, access, true)?)
+            let folder = find_run(&context.runs()?, id)?;
+            Ok(match options.watch {
+                true => Session::open(&folder, Access::Read, true)?,
+                false => Session::open_to_play(&folder, &context.configuration)?,
+            })
         }
         None => create(options.new_run(context)?, context),
     }

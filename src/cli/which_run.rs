@@ -1,10 +1,12 @@
 //! The run that a program plays: one that is there, or a new one.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::new_run::NewRunOptions;
 use super::{Context, Failure};
-use crate::session::{Access, Mode, RunError, Session, find_run};
+use crate::session::{Mode, RunError, Session, find_run};
 
 /// The run that a program plays: one that is there, or a new one.
 #[derive(Debug, Args, Clone)]
@@ -12,6 +14,9 @@ pub struct WhichRun {
     /// Go on with a run; `latest` is the newest unfinished one. Without it a new run begins.
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
     run: Option<String>,
+    /// Let the language model that a file names lend its voice to the run.
+    #[arg(long, value_name = "FILE")]
+    voice: Option<PathBuf>,
     /// Begin a new run.
     #[arg(long)]
     new: bool,
@@ -30,10 +35,11 @@ impl WhichRun {
     /// # Errors
     /// It is missing, in use, or belongs to a study; the new run cannot begin.
     pub fn open(&self, context: &Context) -> Result<Session, Failure> {
+        let context = &context.with_voice(self.voice.as_deref())?;
         if let Some(id) = &self.run {
             let folder = find_run(&context.runs()?, id)?;
             context.check_play(&folder)?;
-            return Ok(Session::open(&folder, Access::Write, true)?);
+            return Ok(Session::open_to_play(&folder, &context.configuration)?);
         }
         begin(&self.made_of, context)
     }

@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn each_choice_is_kept_beside_the_others() {
         let folder = tempfile::tempdir().expect("a folder");
-        let configuration = Configuration { folder: Some(folder.path().join("not-yet")) };
+        let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
         assert_eq!(Preferences::of(&configuration), Preferences::default());
         let light = Preferences { theme: Some("light".to_owned()), marker: None };
         light.keep(&configuration).expect("kept");

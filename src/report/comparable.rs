@@ -25,6 +25,8 @@ pub struct RunTerms<'a> {
     pub scenario: &'a str,
     /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
     pub has_own_parameters: bool,
+    /// A language model judges the posts of the player.
+    pub judged_by_model: bool,
     /// It belongs to a lesson.
     pub is_lesson: bool,
 }
@@ -37,6 +39,7 @@ impl<'a> RunTerms<'a> {
             start_cash: seen.starting_cash,
             scenario: &seen.scenario,
             has_own_parameters: seen.has_own_parameters,
+            judged_by_model: seen.voice.as_ref().is_some_and(|model| model.judge),
             is_lesson: seen.mode == Mode::Lesson,
         }
     }
@@ -48,6 +51,7 @@ impl<'a> RunTerms<'a> {
             start_cash: run.starting_cash,
             scenario: &run.scenario,
             has_own_parameters: run.has_own_parameters,
+            judged_by_model: run.judged_by_model,
             is_lesson: run.mode == Some(Mode::Lesson),
         }
     }
@@ -59,6 +63,7 @@ impl<'a> RunTerms<'a> {
             start_cash: book.start_cash,
             scenario: &book.scenario,
             has_own_parameters: book.has_own_parameters,
+            judged_by_model: book.voice.as_ref().is_some_and(|model| model.judge),
             is_lesson: book.mode == Mode::Lesson,
         }
     }
@@ -81,6 +86,9 @@ impl<'a> RunTerms<'a> {
         if self.has_own_parameters {
             obstacles.push(Obstacle::Parameters);
         }
+        if self.judged_by_model {
+            obstacles.push(Obstacle::Judge);
+        }
         obstacles
     }
 }
@@ -98,6 +106,8 @@ pub enum Obstacle {
     Scenario(String),
     /// Parameters were changed.
     Parameters,
+    /// A language model judges the posts of the player: other readers are another game.
+    Judge,
 }
 
 impl Obstacle {
@@ -117,6 +127,7 @@ impl Obstacle {
             }
             Obstacle::Scenario(name) => format!("scenario {name}"),
             Obstacle::Parameters => "changed parameters".to_owned(),
+            Obstacle::Judge => "posts judged by a language model".to_owned(),
         }
     }
 
@@ -128,6 +139,7 @@ impl Obstacle {
             Obstacle::Start(_) => "another start",
             Obstacle::Scenario(_) => "another scenario",
             Obstacle::Parameters => "changed parameters",
+            Obstacle::Judge => "posts judged by a language model",
         }
     }
 }
@@ -177,6 +189,7 @@ mod tests {
         start_cash: 1_000_000.0,
         scenario: "default",
         has_own_parameters: false,
+        judged_by_model: false,
         is_lesson: false,
     };
 
@@ -190,6 +203,7 @@ mod tests {
             (RunTerms { days: 28, ..COMPARABLE }, "28 days instead of 500"),
             (RunTerms { start_cash: 2e6, ..COMPARABLE }, "$2M at the start instead of $1M"),
             (RunTerms { has_own_parameters: true, ..COMPARABLE }, "changed parameters"),
+            (RunTerms { judged_by_model: true, ..COMPARABLE }, "posts judged by a language model"),
             (
                 RunTerms { is_lesson: true, days: 14, ..COMPARABLE },
                 "part of a lesson, 14 days instead of 500",

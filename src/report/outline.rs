@@ -8,7 +8,7 @@ use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
 use super::words::{cash_change_in_words, count, money, origin_in_words, whole};
 use crate::notation::{capital, grouped, percent, signed_dollars};
-use crate::session::Ended;
+use crate::session::{Ended, ModelStamp};
 
 /// The page that tells a story.
 pub fn page_of(story: &Story) -> Page {
@@ -37,6 +37,7 @@ pub fn page_of(story: &Story) -> Page {
         format!("{} mode", seen.mode),
     ];
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
+    tags.extend(seen.voice.iter().map(ModelStamp::in_words));
     tags.extend(story.origin.iter().map(origin_in_words));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {

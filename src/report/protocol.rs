@@ -69,6 +69,13 @@ fn world(study: &Study, configuration: &Configuration) -> Result<String, RunErro
             if protocol.practice.offer == PracticeOffer::Required { "required" } else { "optional" };
         text += &format!("- Practice ({required}): {world}, seed {}.\n", protocol.practice.seed);
     }
+    if let Some(model) = &protocol.voice {
+        text += &format!(
+            "- Language model: {}; a week waits for it at most {} seconds, then the built-in voice speaks.\n",
+            model.stamp().in_words(),
+            model.seconds_a_week
+        );
+    }
     Ok(text)
 }
 

@@ -12,7 +12,7 @@ use tokio::sync::oneshot;
 use super::answering::answer;
 use super::request::{Answer, Request, Status};
 use crate::session::record::LeavingCause;
-use crate::session::{Access, Interface, RunError, Session, Via};
+use crate::session::{Access, Interface, ModelSettings, RunError, Session, Via};
 
 /// Hears of defects of ours.
 pub type OnDefect = fn(&str);
@@ -45,7 +45,8 @@ impl Owner {
         let (sender, receiver) = channel();
         let advancing = Arc::new(AtomicBool::new(false));
         let handle = Handle { sender, advancing: advancing.clone() };
-        let owned = Owned { folder: session.folder().map(PathBuf::from), session: Some(session), door };
+        let (folder, model) = (session.folder().map(PathBuf::from), session.model_settings().cloned());
+        let owned = Owned { folder, model, session: Some(session), door };
         let thread = std::thread::spawn(move || owned.work(&receiver, &advancing));
         (Owner { thread }, handle)
     }
@@ -94,6 +95,8 @@ struct Owned {
     /// None between a defect of ours and opening the run again.
     session: Option<Session>,
     folder: Option<PathBuf>,
+    /// The language model that speaks in it.
+    model: Option<ModelSettings>,
     door: Door,
 }
 
@@ -140,7 +143,8 @@ impl Owned {
             return Ok(());
         }
         let folder = self.folder.as_ref().ok_or("the run was not kept and cannot be opened again")?;
-        let session = Session::open(folder, Access::Write, true).map_err(|error| error.to_string())?;
+        let mut session = Session::open(folder, Access::Write, true).map_err(|error| error.to_string())?;
+        session.join_model(self.model.as_ref());
         self.session = Some(session);
         Ok(())
     }

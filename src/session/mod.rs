@@ -14,6 +14,7 @@ mod error;
 mod figures;
 mod folder;
 mod lesson;
+mod model_voice;
 mod play;
 mod playback;
 mod python;
@@ -189,6 +190,7 @@ pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ti
 pub use crate::tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
 pub use crate::voice::CompanyNames;
 pub use crate::voice::judge::Judgement;
+pub use crate::voice::model::settings::{ModelSettings, ModelStamp};
 pub use crate::world::enterprise::Answer as CompanyAnswer;
 pub use crate::world::events::{Category, EndCause, Severity, Source};
 pub use crate::world::fault::Fault;

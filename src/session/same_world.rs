@@ -70,6 +70,7 @@ impl SameWorld {
             study: None,
             lesson: None,
             handout: None,
+            voice: None,
             rules: Some(SessionRules::of_mode(Mode::Debug)),
             earlier: Vec::new(),
             ..self.manifest.clone()

@@ -15,6 +15,7 @@ use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::world_log::list_world;
 use crate::session::lesson::standing::LessonStanding;
+use crate::session::model_voice::speaker::ModelVoice;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
 use crate::session::play::projection::Projection;
@@ -79,6 +80,8 @@ pub struct Session {
     pub(super) hidden_tables: Option<HiddenTables>,
     /// The lesson that it belongs to, and how it went; none outside lessons.
     pub(super) lesson: Option<Box<LessonStanding>>,
+    /// Who speaks besides the built-in voice.
+    pub(super) voice: ModelVoice,
     /// How rules answer companies; none where nobody has said it.
     pub(super) company_answers: Option<AnswersCompanies>,
     /// Notes of a run without a folder.

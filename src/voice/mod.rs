@@ -5,6 +5,7 @@ pub(crate) mod address;
 mod company_names;
 mod grammar;
 pub(crate) mod judge;
+pub(crate) mod model;
 mod negotiation;
 pub(crate) mod notices;
 pub(crate) mod posts;

@@ -19,7 +19,7 @@ fn configuration(folder: &Path) -> Configuration {
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons").join(file);
         std::fs::copy(from, lessons.join(file)).expect("a copy");
     }
-    Configuration { folder: Some(folder.to_owned()) }
+    Configuration { folder: Some(folder.to_owned()), voice: None }
 }
 
 /// A person who has a lesson of that plan.

@@ -235,7 +235,7 @@ fn a_group_is_studied_and_one_walks_between_its_report_and_its_customers() {
 fn a_named_query_is_run_drawn_taken_out_and_saved_as_ones_own() {
     let runs = tempfile::tempdir().expect("a folder");
     let folder = runs.path().join("configuration");
-    let configuration = Configuration { folder: Some(folder.clone()) };
+    let configuration = Configuration { folder: Some(folder.clone()), voice: None };
     let mut console = Console::start_with(configuration, runs.path(), (120, 40));
     console.press("n enter");
     open_shop(&mut console);

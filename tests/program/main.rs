@@ -34,3 +34,5 @@ mod support;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+#[cfg(feature = "server")]
+mod voice;

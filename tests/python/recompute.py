@@ -96,7 +96,7 @@ class Time:
 
     @staticmethod
     def kind(state, line, passed):
-        if line["kind"] in ("week", "step"):
+        if line["kind"] in ("week", "step", "voice"):
             return "simulating"
         if state["stopped"]:
             return "paused"

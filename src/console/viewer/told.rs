@@ -6,7 +6,7 @@ use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
 use crate::report::deals::deals_in_words;
-use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query};
+use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
 use crate::session::{
     Chapter, CompanyNames, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively,
 };
@@ -47,11 +47,25 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
             let Closing { days_run, cash, .. } = closing;
             one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
         }
+        Record::Voice(said) => one(voice_in_brief(said), Role::Dim),
         Record::End(end) => one(format!("the run was over: {}", end.reason.id()), Role::Warning),
         Record::Branch(Branch { from: Some(parent) }) => {
             one(format!("branched off run {} here", parent.run), Role::Warning)
         }
         other => one(other.kind().to_owned(), Role::Dim),
+    }
+}
+
+/// What a language model said.
+fn voice_in_brief(said: &VoiceAnswer) -> String {
+    match said {
+        VoiceAnswer::Scores(judged) => {
+            let scores: Vec<String> =
+                judged.scores.iter().map(|own| format!("{} {:+.2}", own.group, own.score)).collect();
+            format!("a language model judged post {}: {}", judged.post, scores.join(", "))
+        }
+        VoiceAnswer::Words(worded) => format!("a language model worded {} posts", worded.posts.len()),
+        VoiceAnswer::Failed(failed) => format!("the language model did not serve: {}", failed.problem),
     }
 }
 

@@ -81,7 +81,10 @@ impl SessionThread {
         self.inside = None;
         let opened = found.and_then(|folder| {
             self.refuse_session_of_study(&folder, access)?;
-            Session::open(&folder, access, true)
+            match access {
+                Access::Write => Session::open_to_play(&folder, &self.configuration),
+                Access::Read => Session::open(&folder, access, true),
+            }
         });
         if opened.is_ok() {
             // Everything confirmed is on the disk already; what is left are rows that can be made again.

@@ -45,6 +45,8 @@ pub struct Entry {
     pub turns: Vec<String>,
     /// Text of each post of others among the facts.
     pub posts: Vec<String>,
+    /// Posts of others that are shown in other words from here on: number and text.
+    pub rewordings: Vec<(u32, String)>,
     /// Address of each company that came or wrote, by customer number.
     pub addresses: BTreeMap<u32, String>,
     /// The settings family that was set, as its row shows it.
@@ -167,6 +169,7 @@ impl RowWriter {
         self.ledger.write(facts);
         self.ads(transaction, facts)?;
         posts::posts(transaction, facts, &entry.posts)?;
+        posts::rewordings(transaction, &entry.rewordings)?;
         posts::own_posts(transaction, facts)?;
         self.notices.write(entry);
         direct::settings(transaction, entry)?;

@@ -18,6 +18,22 @@ pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[Strin
     Ok(())
 }
 
+/// Posts of others in other words.
+pub(super) fn rewordings(
+    transaction: &Transaction<'_>,
+    rewordings: &[(u32, String)],
+) -> rusqlite::Result<()> {
+    if rewordings.is_empty() {
+        return Ok(());
+    }
+    let mut update =
+        transaction.prepare_cached("UPDATE social_media_posts SET content = ?2 WHERE post_id = ?1")?;
+    for (post, text) in rewordings {
+        update.execute(params![post, text])?;
+    }
+    Ok(())
+}
+
 /// Posts of the player, when they are made and when they were read.
 pub(super) fn own_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(

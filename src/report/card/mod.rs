@@ -31,6 +31,8 @@ struct Card {
     marks: Vec<u32>,
     turning_points: Vec<CardFigure>,
     numbers: [CardFigure; 3],
+    /// That a language model lent its voice, where one did.
+    voice: Option<&'static str>,
     /// Scenario, seed, version.
     source: String,
 }
@@ -76,6 +78,7 @@ impl Card {
                 fact(whole(f64::from(last.enterprise_seats)), format!("seats, day {}", story.seen.day)),
                 fact(format!("{grew} of {}", story.weeks.len()), "weeks that raised cash".to_owned()),
             ],
+            voice: voice(story),
             source: source(story),
         }
     }
@@ -90,6 +93,15 @@ fn headline(story: &Story) -> String {
         Some(Ended::Lesson) => format!("{cash} when the lesson was over on day {day}"),
         None => format!("{cash} on day {day} of {}", story.seen.last_day),
     }
+}
+
+fn voice(story: &Story) -> Option<&'static str> {
+    let model = story.seen.voice.as_ref()?;
+    Some(match (model.words, model.judge) {
+        (true, true) => "A language model worded the posts of others and judged those of the player.",
+        (_, false) => "A language model worded the posts of others.",
+        (false, true) => "A language model judged the posts of the player.",
+    })
 }
 
 /// In which world it was played, and by which version.

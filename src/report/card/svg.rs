@@ -32,6 +32,9 @@ pub fn draw(card: &Card) -> String {
         escaped(&described(card))
     );
     text(&mut svg, (EDGE, 62.0), 24.0, LINE, true, "NovaMind");
+    if let Some(voice) = card.voice {
+        text(&mut svg, (EDGE + 150.0, 62.0), 18.0, DIM, false, voice);
+    }
     text(&mut svg, (EDGE, 132.0), 54.0, INK, true, &card.headline);
     if let Some(rank) = &card.rank {
         text(&mut svg, (EDGE, 170.0), 24.0, DIM, false, rank);
@@ -127,6 +130,7 @@ mod tests {
             marks: marks.to_vec(),
             turning_points: vec![fact("a")],
             numbers: ["b", "c", "d"].map(fact),
+            voice: None,
             source: "s".to_owned(),
         }
     }

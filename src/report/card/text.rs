@@ -18,6 +18,7 @@ const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇'
 pub fn write(card: &Card) -> String {
     let mut lines = vec![format!("NovaMind · {}", card.source), String::new(), card.headline.clone()];
     lines.extend(card.rank.clone());
+    lines.extend(card.voice.map(str::to_owned));
     lines.push(String::new());
     lines.extend(curve(&card.cash_by_day));
     lines.push(String::new());

@@ -19,8 +19,8 @@ use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
 use crate::session::{
-    Attendance, Consent, Ended, Line, Mode, Record, ScoredForecast, Session, SittingCount, StudyStamp,
-    TimeSpent, end_of,
+    Attendance, Consent, Ended, Line, Mode, ModelStamp, Record, ScoredForecast, Session, SittingCount,
+    StudyStamp, TimeSpent, end_of,
 };
 use timeline::{Span, Timeline};
 
@@ -53,6 +53,8 @@ pub struct Logbook {
     pub parameters_digest: String,
     /// The parameters are, or were for some days, others than those of the shipped scenario of that name.
     pub has_own_parameters: bool,
+    /// The language model that lends its voice.
+    pub voice: Option<ModelStamp>,
     /// Earlier runs of the seed and scenario on the machine.
     pub earlier_runs: u32,
     /// Run it branched from.
@@ -182,6 +184,7 @@ impl Logbook {
             version: manifest.version.clone(),
             parameters_digest: manifest.parameters_digest.clone(),
             has_own_parameters: session.observe().has_own_parameters,
+            voice: manifest.voice.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
             created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),

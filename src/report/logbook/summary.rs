@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Effort, Logbook, WeekLog};
 use crate::report::page::{Block, Fact, Page, Table};
 use crate::report::words::{count, money, whole};
-use crate::session::{BREAK_SECONDS, Ended, TimeSpent};
+use crate::session::{BREAK_SECONDS, Ended, ModelStamp, TimeSpent};
 
 /// The page that tells how a run was played.
 pub fn page_of(book: &Logbook) -> Page {
@@ -37,6 +37,7 @@ pub fn page_of(book: &Logbook) -> Page {
         format!("scenario {}", book.scenario),
         format!("seed {}", book.seed),
     ];
+    tags.extend(book.voice.iter().map(ModelStamp::in_words));
     tags.extend(book.parent.iter().map(|parent| format!("branch of {parent}")));
     Page {
         title: format!("NovaMind · session {}", book.run),

@@ -159,6 +159,7 @@ impl Timeline {
             Record::Start(_)
             | Record::Branch(_)
             | Record::Override(_)
+            | Record::Voice(_)
             | Record::End(_)
             | Record::Unknown(_) => {}
         }

@@ -4,7 +4,7 @@ use super::answers::value_in_words;
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading, number, word};
 use crate::notation::json_number;
-use crate::session::record::{Call, DialogStep, Draft, Outcome, Presence, Start};
+use crate::session::record::{Call, DialogStep, Draft, Outcome, Presence, Start, VoiceAnswer};
 use crate::session::{Activity, Record, Reversal};
 
 const OWN: [Heading; 8] = [
@@ -14,24 +14,24 @@ const OWN: [Heading; 8] = [
         "what",
         "text",
         "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: event; limit: \
-         which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; start: mode; override: key; end: reason",
+         which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; start: mode; override: key; voice: what was said; end: reason",
     ),
     heading(
         "which",
         "text",
         "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: interface or cause; \
-         limit: event; question, answer: question; xray: group, customer, part or statement; query: error; note, memo: hash; start: scenario; branch: run",
+         limit: event; question, answer: question; xray: group, customer, part or statement; query: error; note, memo: hash; start: scenario; branch: run; voice: post that was judged, or what failed",
     ),
     heading(
         "value",
         "text",
         "call: accepted or code of the refusal; query: rows; draft, note, memo: length; limit: minutes; question: form; \
-         answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that was shown",
+         answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that was shown; voice: groups or posts",
     ),
     heading(
         "for_ms",
         "milliseconds",
-        "how long: view, dialog, draft, answer, query; call: time it took; limit: active time used; clock: time it stood; \
+        "how long: view, dialog, draft, answer, query; call, voice: time it took; limit: active time used; clock: time it stood; \
          session: time since the last key",
     ),
     heading("detail", "name=value", "what else the line says"),
@@ -105,6 +105,18 @@ impl Event {
             Record::Week(closing) | Record::Step(closing) => Event {
                 detail: vec![("days_run", closing.days_run.to_string())],
                 ..named("", "", number(closing.cash))
+            },
+            Record::Voice(VoiceAnswer::Scores(judged)) => Event {
+                for_ms: number(judged.took_ms),
+                ..named("scores", &judged.post.to_string(), judged.scores.len().to_string())
+            },
+            Record::Voice(VoiceAnswer::Words(worded)) => {
+                Event { for_ms: number(worded.took_ms), ..named("words", "", worded.posts.len().to_string()) }
+            }
+            Record::Voice(VoiceAnswer::Failed(failed)) => Event {
+                for_ms: number(failed.took_ms),
+                text: failed.problem.clone(),
+                ..named("failed", &word(&failed.asked), String::new())
             },
             Record::Override(change) => named(&change.key, "", change.new.to_string()),
             Record::Branch(branch) => match &branch.from {

@@ -183,7 +183,8 @@ impl Transcript {
                 self.end = Some(end.clone());
                 return;
             }
-            Record::Activity(_) => return self.asides.push(told::aside(line)),
+            // Texts are in what is read of them; how they came about is beside it.
+            Record::Activity(_) | Record::Voice(_) => return self.asides.push(told::aside(line)),
             Record::Start(_) | Record::Branch(_) | Record::Unknown(_) => return,
         };
         self.acts.push(TranscriptAct { seq: line.seq, day: line.day, at: line.at.clone(), deed });

@@ -20,8 +20,17 @@ pub fn plain_script(run: &Transcript) -> String {
         // Whoever plays it again is not the one who played it.
         if own.mode == Mode::Baseline { " --participant again" } else { "" },
     );
+    let head = head + &judge_in_words(run).map(|words| format!("# {words}\n")).unwrap_or_default();
     let lines: String = run.acts.iter().filter_map(line).map(|line| line + "\n").collect();
     head + &lines
+}
+
+/// What keeps the run from ending in the same state where it is played again.
+pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
+    let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
+    is_judged.then_some(
+        "A language model judged its posts. The built-in judge reads them here, so the last state can be another.",
+    )
 }
 
 /// The options of the new run that this one is to be played on.

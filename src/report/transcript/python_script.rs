@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::plain_script::new_run;
+use super::plain_script::{judge_in_words, new_run};
 use super::{Deed, Transcript, predictions};
 use crate::session::RunError;
 
@@ -25,6 +25,7 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
         run.state_hash,
         new_run(run),
     );
+    text += &judge_in_words(run).map(|words| format!("# {words}\n\n")).unwrap_or_default();
     for act in &run.acts {
         match &act.deed {
             Deed::Call { tool, args, answer: Ok(_), .. } => {

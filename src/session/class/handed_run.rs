@@ -27,7 +27,8 @@ impl HandedPast {
     /// Reads a run, and simulates it again.
     ///
     /// # Errors
-    /// It is damaged, an unfinished baseline run, a run of a study or a lesson, or is over and cannot be played on.
+    /// It is damaged, an unfinished baseline run, a run of a study or a lesson, is over and cannot be played on, or has a
+    /// language model as judge.
     pub(super) fn of(folder: &Path) -> Result<HandedPast, RunError> {
         let manifest = Derived::of(folder)?.manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
@@ -40,6 +41,11 @@ impl HandedPast {
         if manifest.study.is_some() || (manifest.mode == Mode::Baseline && trajectory.end().is_none()) {
             return refused(
                 "an unfinished baseline run, or one of a study, has no branches; end it first, or take another run",
+            );
+        }
+        if manifest.voice.as_ref().is_some_and(|model| model.judge) {
+            return refused(
+                "a language model judged posts in it, and what it would say of those of students nobody can check",
             );
         }
         let day = verify(folder)?.day;

@@ -204,6 +204,8 @@ impl<'a> OpenBranch<'a> {
                 Move::Parameter(setting) if self.edits.dropped.contains(&setting.change.seq) => {}
                 Move::Parameter(setting) => self.set(setting.change.clone()),
                 Move::Days(days) => {
+                    let scores = &mut self.simulation.scores;
+                    days.scores.iter().for_each(|judged| scores.take_in(judged.clone()));
                     self.run_days(days.until.min(until), progress)?;
                     if days.until > until {
                         break;

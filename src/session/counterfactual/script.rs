@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::session::play::overrides::{ParameterChange, json_of_value};
-use crate::session::trajectory::record::{Call, Outcome, Reversal};
+use crate::session::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
 use crate::session::trajectory::{Line, Record};
 use crate::tools::{Kind, ToolId};
 
@@ -131,17 +131,30 @@ pub(in crate::session) struct PastDays {
     pub state_hash: String,
     /// Hash of each part of it.
     pub parts: BTreeMap<String, String>,
+    /// What a language model made of the player's posts on the way.
+    pub scores: Vec<JudgedPost>,
 }
 
 /// The moves of some lines, in their order.
 pub(in crate::session) fn moves(lines: &[Line]) -> Vec<Move> {
-    lines.iter().filter_map(move_of).collect()
+    let mut scores = Vec::new();
+    lines.iter().filter_map(|line| move_of(line, &mut scores)).collect()
 }
 
-fn move_of(line: &Line) -> Option<Move> {
+/// The move of a line; scores wait for the days in which they count.
+fn move_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<Move> {
     if let Some(closing) = line.record.closing() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
-        return Some(Move::Days(PastDays { until: line.day, state_hash, parts }));
+        return Some(Move::Days(PastDays {
+            until: line.day,
+            state_hash,
+            parts,
+            scores: std::mem::take(scores),
+        }));
+    }
+    if let Record::Voice(VoiceAnswer::Scores(judged)) = &line.record {
+        scores.push(judged.clone());
+        return None;
     }
     if let Record::Override(setting) = &line.record {
         let change = ParameterChange::of(line.seq, setting)?;

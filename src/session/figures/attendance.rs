@@ -2,7 +2,7 @@
 //!
 //! Time is what passes between two lines. Where `session` and `clock` lines say who was there, they decide; before the
 //! first of them, and in runs that have none, a gap of more than ten minutes is a break. The days that the program
-//! simulates are nobody's time. Everything is counted in whole nanoseconds, so that whoever adds it up again gets the
+//! simulates are nobody's time, nor is waiting for a language model. Everything is counted in whole nanoseconds, so that whoever adds it up again gets the
 //! same.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -274,7 +274,8 @@ impl Attendance {
     /// What the time since the last line was, given the line that ends it.
     fn attention(&self, passed: i64, record: Option<&Record>) -> Attention {
         let long = passed > BREAK;
-        if record.is_some_and(|record| record.closing().is_some()) {
+        let simulates = |record: &Record| record.closing().is_some() || matches!(record, Record::Voice(_));
+        if record.is_some_and(simulates) {
             return Attention::Simulating;
         }
         if self.is_paused {

@@ -13,6 +13,7 @@ use crate::session::folder::mode::Mode;
 use crate::session::play::irrevocable::Irrevocable;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Ended;
+use crate::voice::model::settings::ModelStamp;
 use crate::world::day::closing_figures;
 use crate::world::identifiers::{Group, Plan};
 
@@ -29,6 +30,9 @@ pub struct Observation {
     pub scenario: String,
     /// The parameters are others than those of the shipped scenario of that name.
     pub has_own_parameters: bool,
+    /// The language model that lends its voice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -126,6 +130,7 @@ impl Session {
             seed: Some(self.manifest.seed).filter(|_| self.manifest.study.is_none()),
             scenario: self.manifest.scenario.clone(),
             has_own_parameters: self.has_own_parameters(),
+            voice: self.manifest.voice.clone(),
             participant: self.manifest.participant.clone(),
             day: self.simulation.world.day,
             last_day: self.manifest.days,

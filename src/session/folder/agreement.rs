@@ -97,7 +97,7 @@ mod tests {
         let place = tempfile::tempdir().expect("a folder");
         let runs = place.path().join("runs");
         std::fs::create_dir(&runs).expect("a folder");
-        let configuration = Configuration { folder: Some(place.path().to_owned()) };
+        let configuration = Configuration { folder: Some(place.path().to_owned()), voice: None };
         let start = |participant, agreed, mode| {
             Session::create(new(&runs, participant, agreed, mode), &configuration)
         };

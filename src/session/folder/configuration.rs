@@ -7,6 +7,7 @@ use toml::Table;
 
 use crate::session::error::RunError;
 use crate::shipped;
+use crate::voice::model::settings::ModelSettings;
 use crate::world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
 
 /// Folders of this person on this machine.
@@ -14,6 +15,8 @@ use crate::world::params::{ParameterError, ParameterSource, Params, line_of_key,
 pub struct Configuration {
     /// Files here go before the shipped ones; none: only the shipped ones count.
     pub folder: Option<PathBuf>,
+    /// The language model that lends its voice to the runs that are played; none unless it was named.
+    pub voice: Option<ModelSettings>,
 }
 
 /// A named set of overrides.
@@ -57,12 +60,12 @@ impl Configuration {
         let from_environment = std::env::var_os("NOVAMIND_CONFIG").map(PathBuf::from);
         let platform =
             || directories::ProjectDirs::from("", "", "novamind").map(|dirs| dirs.config_dir().to_owned());
-        Configuration { folder: from_environment.or_else(platform) }
+        Configuration { folder: from_environment.or_else(platform), voice: None }
     }
 
     /// Only what came with the program.
     pub fn shipped() -> Configuration {
-        Configuration { folder: None }
+        Configuration { folder: None, voice: None }
     }
 
     /// Folder of runs: `NOVAMIND_RUNS`, or the platform's data folder.
@@ -311,7 +314,7 @@ mod tests {
         let file = folder.path().join("scenarios/mine.toml");
         let text = "title = \"Mine\"\ndescription = \"x.\"\n\n[world.quality]\nbase_product_quality = -1.0\n";
         std::fs::write(&file, text).expect("a file");
-        let configuration = Configuration { folder: Some(folder.path().to_owned()) };
+        let configuration = Configuration { folder: Some(folder.path().to_owned()), voice: None };
         let scenario = configuration.scenario("mine").expect("it reads");
         let error =
             configuration.parameters(&scenario, &[], true).expect_err("a negative quality").to_string();

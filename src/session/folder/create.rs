@@ -14,6 +14,8 @@ use crate::database::{Location, Position, Projector};
 use crate::session::class::stamp::HandoutEntry;
 use crate::session::error::RunError;
 use crate::session::lesson::conduct::LessonEntry;
+use crate::session::model_voice::joining::model_of;
+use crate::session::model_voice::speaker::{ModelVoice, Speaker};
 use crate::session::play::advance::DayReport;
 use crate::session::play::history::History;
 use crate::session::play::personal_clock::PersonalClock;
@@ -29,6 +31,7 @@ use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::now;
 use crate::session::xray::breakpoint::list::Breakpoints;
+use crate::voice::model::settings::ModelSettings;
 use crate::world::MECHANICS;
 use crate::world::fault::Fault;
 use crate::world::params::Params;
@@ -79,6 +82,8 @@ pub struct StudyEntry {
     pub rules: SessionRules,
     /// The text that participants agree to; none if none is asked for.
     pub consent: Option<ConsentText>,
+    /// The language model that lends its voice, if the study has one.
+    pub voice: Option<ModelSettings>,
 }
 
 /// Where a run is kept.
@@ -136,14 +141,28 @@ impl Session {
         let shipped = Configuration::shipped();
         // A lesson is the same on every machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
+        let model = model_of(&new, configuration)?;
+        let speaker = model.as_ref().map(Speaker::open).transpose().map_err(no_model)?;
         let (manifest, params) = plan_run(&new, configuration)?;
+        let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };
+        let begun = Session::begin_stored(manifest, params, &new, tell)?;
+        Ok(Session { voice: ModelVoice { speaker, ..ModelVoice::default() }, ..begun })
+    }
+
+    /// Begins a run where it is to be kept.
+    fn begin_stored(
+        manifest: Manifest,
+        params: Params,
+        new: &NewRun,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Session, RunError> {
         match &new.storage {
-            Storage::Memory => Session::begin(manifest, params, None, &new, tell),
+            Storage::Memory => Session::begin(manifest, params, None, new, tell),
             Storage::Runs(runs) => {
                 remove_leftovers(runs);
                 let folder = runs.join(&manifest.id);
                 std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
-                let begun = Session::begin(manifest, params, Some(folder.clone()), &new, tell);
+                let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
                 if let Ok(session) = &begun {
                     session.list_as("play");
                 }
@@ -206,6 +225,7 @@ impl Session {
             is_shadow: false,
             diary: Arc::default(),
             breakpoints: Breakpoints::default(),
+            voice: ModelVoice::default(),
             hidden_tables: None,
             clock: PersonalClock::default(),
             lesson: None,
@@ -301,12 +321,20 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         study,
         lesson: new.lesson.as_ref().map(LessonEntry::stamp),
         handout: handed_out.1,
+        voice: None,
         rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
         earlier,
         fault: new.fault,
         parameters: differences(&params),
     };
     Ok((manifest, params))
+}
+
+/// A language model that was named and cannot speak.
+fn no_model(problem: String) -> RunError {
+    RunError::NotPossible(format!(
+        "the language model cannot lend its voice: {problem}. Nothing was recorded"
+    ))
 }
 
 /// Eight hexadecimal digits that no other run has, as good as certainly.

@@ -25,6 +25,7 @@ pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
         study: manifest.study,
         lesson: manifest.lesson,
         handout: manifest.handout,
+        voice: manifest.voice,
         rules: manifest.rules,
         earlier_runs: manifest.earlier,
         parent: manifest.parent,

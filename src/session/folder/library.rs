@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn a_persons_queries_are_saved_and_go_first() {
         let folder = tempfile::tempdir().expect("a folder");
-        let configuration = Configuration { folder: Some(folder.path().join("not-yet")) };
+        let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
         assert_eq!(Library::of(&configuration), Library::shipped());
         save(&configuration, "mine", "Mine!", "SELECT 1").expect("saved");
         save(&configuration, "economy", "x", "-- title: Other\nSELECT 2").expect("saved");
@@ -310,7 +310,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::create_dir(folder.path().join("queries")).expect("a folder");
         std::fs::write(folder.path().join("queries/broken.sql"), [0xff, 0xfe]).expect("a file");
-        let library = Library::of(&Configuration { folder: Some(folder.path().to_owned()) });
+        let library = Library::of(&Configuration { folder: Some(folder.path().to_owned()), voice: None });
         let broken = library.find("broken").expect("it stands in the list");
         assert!(broken.what.contains("broken.sql") && broken.sql.is_empty(), "{broken:?}");
     }

@@ -15,6 +15,7 @@ use crate::session::study::rules::{ResultsShown, SessionRules};
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
 use crate::session::trajectory::record::Parent;
 use crate::session::trajectory::{Line, Record};
+use crate::voice::model::settings::ModelStamp;
 use crate::world::MECHANICS;
 use crate::world::fault::Fault;
 use crate::world::params::{ParameterError, ParameterSource, Params, shipped_sources};
@@ -72,6 +73,9 @@ pub struct Manifest {
     /// The hand-out of a class that it began with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
+    /// The language model that lends its voice; none in nearly all runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
@@ -171,6 +175,7 @@ impl Manifest {
             study: start.study,
             lesson: start.lesson,
             handout: start.handout,
+            voice: start.voice,
             rules: start.rules,
             earlier: start.earlier_runs,
             fault: start.fault,
@@ -326,6 +331,7 @@ mod tests {
             study: None,
             lesson: None,
             handout: None,
+            voice: None,
             rules: None,
             earlier: Vec::new(),
             fault: None,

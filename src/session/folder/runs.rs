@@ -34,6 +34,9 @@ pub struct RunSummary {
     pub scenario: String,
     /// The parameters are others than those of the shipped scenario of that name.
     pub has_own_parameters: bool,
+    /// A language model judges the posts of the player.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub judged_by_model: bool,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -156,6 +159,7 @@ fn summarise(folder: &Path) -> RunSummary {
         id,
         has_own_parameters: manifest.has_own_parameters()
             || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
+        judged_by_model: manifest.voice.as_ref().is_some_and(|model| model.judge),
         created: manifest.created.clone(),
         played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
@@ -198,6 +202,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         seed: 0,
         scenario: String::new(),
         has_own_parameters: false,
+        judged_by_model: false,
         participant: None,
         day: 0,
         days: 0,

@@ -46,7 +46,8 @@ pub struct Week {
     pub notices: Vec<(u32, String)>,
     /// How the run ended with it, if it did.
     pub ended: Option<Ended>,
-    /// What the person should know: the disk did not take the closing line, or the next day has no room for its leads.
+    /// What the person should know: the disk did not take the closing line, the next day has no room for its leads, or the
+    /// language model did not speak.
     pub remark: Option<String>,
 }
 
@@ -214,6 +215,7 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Option<Vec<String>> {
         let week_end = self.next_decision_day();
+        self.voice.begin_week();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
         let params = self.simulation.params.clone();
@@ -223,6 +225,7 @@ impl Session {
             }
             let figures =
                 self.simulation.simulate_day(&nothing, self.projection.entries(), day_before.take());
+            self.ask_readers();
             self.simulation.judge_own_posts(self.projection.entries());
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
@@ -268,6 +271,9 @@ impl Session {
         self.simulation.facts_chain.close();
         self.closing_line.clone_from(&self.position.line_hash);
         self.settle_lesson();
+        if problem.is_none() {
+            self.word_days_after(from);
+        }
         problem = problem.or_else(|| self.close_if_over());
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
@@ -281,7 +287,9 @@ impl Session {
         };
         let unsaved = problem.map(|problem| format!("{problem}; {next}"));
         let crowded = self.simulation.refuse_crowded_day().err().filter(|_| self.history.ended.is_none());
-        let week = self.report(unsaved.or(crowded.map(|refusal| refusal.message)));
+        let remark = unsaved.or(crowded.map(|refusal| refusal.message));
+        let remarks: Vec<String> = remark.into_iter().chain(self.voice.take_notice()).collect();
+        let week = self.report((!remarks.is_empty()).then(|| remarks.join(". ")));
         // The database is written once everything is told: until then the processors are needed here.
         if snapshot {
             self.keep_snapshot(|| state.0, false);

@@ -1,8 +1,10 @@
 //! The public conversation as the session keeps it: every post in words, and how the player's posts were taken.
 //!
-//! Words belong to no state: they are made anew, the same, whenever a run is simulated again.
+//! Words belong to no state: they are made anew, the same, whenever a run is simulated again. Those of a language model are
+//! taken from the record.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +25,9 @@ pub(in crate::session) struct Feed {
     /// Posts of others as the player sees them, in the order of their numbers.
     #[serde(with = "kept_posts")]
     pub posts: Vec<PublicPost>,
+    /// What the built-in voice said where a language model has put it into other words, by number of the post.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    built_in: BTreeMap<u32, String>,
     /// Whether each of them complains.
     complains: Vec<bool>,
     /// Judgements of the player's posts, by their position; empty until they were judged.
@@ -89,11 +94,21 @@ impl Feed {
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
     }
 
-    /// The post with this number, as one that is answered.
+    /// Shows a post in other words; one that is not there stays so.
+    pub(in crate::session) fn reword(&mut self, post: u32, text: &str) {
+        let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
+        let Some(own) = own else { return };
+        let before = std::mem::replace(&mut own.content, text.to_owned());
+        self.built_in.entry(post).or_insert(before);
+    }
+
+    /// The post with this number, as one that is answered: in the words of the built-in voice, whatever is shown, for what
+    /// readers make of an answer is a fact of the world.
     pub(in crate::session) fn original(&self, post: u32) -> Option<Original<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
-        Some(Original { content: &own.content, negative: self.complains[at], group: own.written_by })
+        let content = self.built_in.get(&post).unwrap_or(&own.content);
+        Some(Original { content, negative: self.complains[at], group: own.written_by })
     }
 }
 

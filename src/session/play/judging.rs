@@ -32,6 +32,7 @@ impl Simulation {
                 earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
             };
             let judgements = judge::judge(&submission, known.iter().copied(), &circumstances, lexicon);
+            let judgements = self.scores.over(post, judgements);
             let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
             verdicts.push(Verdict { post: at as u32 + 1, effects });
             self.feed.judgements[at] = judgements;

@@ -16,6 +16,7 @@ use super::projection::Entries;
 use crate::database::Entry;
 use crate::notation::grouped;
 use crate::session::folder::manifest::Manifest;
+use crate::session::model_voice::scores::RecordedScores;
 use crate::tools::Refusal;
 use crate::voice::CompanyNames;
 use crate::world::command::{Command, ResolvedCommand};
@@ -45,6 +46,8 @@ pub(in crate::session) struct Simulation {
     pub(in crate::session) names: CompanyNames,
     /// What people wrote in public, in words.
     pub(in crate::session) feed: Feed,
+    /// What a language model made of the player's posts.
+    pub(in crate::session) scores: RecordedScores,
     /// Hashes of this week's facts.
     pub(in crate::session) facts_chain: FactsChain,
     /// Who looks into the days that are simulated: nobody, but for the x-ray.
@@ -75,6 +78,7 @@ impl Simulation {
             facts_before: Arc::default(),
             trace: DayTrace::default(),
             feed: Feed::default(),
+            scores: RecordedScores::default(),
             facts_chain: FactsChain::default(),
             watch: Arc::new(Unwatched),
         }
@@ -97,6 +101,7 @@ impl Simulation {
             trace: DayTrace::default(),
             names,
             feed,
+            scores: RecordedScores::default(),
             facts_chain: FactsChain::default(),
             watch: Arc::new(Unwatched),
         }

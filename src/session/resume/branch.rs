@@ -157,11 +157,17 @@ fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
 /// The lines before a decision day: those of the days before it and the week that ends on it, without what was
 /// decided on that day itself.
 fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
-    let after = trajectory
-        .lines
-        .iter()
-        .position(|line| !(line.day < day || (line.day == day && line.closes_days()) || line.seq == 0));
+    let is_before = |line: &Line| {
+        let ends_on_it = (line.day == day && line.closes_days()) || (line.day == day && is_of_model(line));
+        line.day < day || ends_on_it || line.seq == 0
+    };
+    let after = trajectory.lines.iter().position(|line| !is_before(line));
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
+}
+
+/// Whether a language model said it: that is written before anything is decided on its day.
+fn is_of_model(line: &Line) -> bool {
+    matches!(line.record, Record::Voice(_))
 }
 
 /// Those lines that make a company what it is.
@@ -172,7 +178,10 @@ fn shared_lines(lines: &[Line]) -> Vec<&Line> {
 fn makes_company(line: &Line) -> bool {
     let record = &line.record;
     record.accepted_call().is_some()
-        || matches!(record, Record::Advance(_) | Record::Week(_) | Record::Step(_) | Record::Override(_))
+        || matches!(
+            record,
+            Record::Advance(_) | Record::Voice(_) | Record::Week(_) | Record::Step(_) | Record::Override(_)
+        )
 }
 
 /// Writes the files of a branch that shares some lines with its parent; nothing is opened.

@@ -13,6 +13,7 @@ use crate::database::{
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
+use crate::session::trajectory::record::VoiceAnswer;
 use crate::session::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// What stood beside the trajectory before it was read.
@@ -121,8 +122,11 @@ pub(in crate::session) fn is_as_left(folder: &Path, key: &SealKey) -> bool {
 fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &'static str)> {
     let last = trajectory.lines.last()?;
     // A torn line is cut off with a notice, and a week that lacks its closing lines is simulated again: week and end.
-    let healing =
-        if matches!(last.record, Record::Advance(_)) { 2 } else { u64::from(trajectory.unfinished > 0) };
+    let is_open = matches!(last.record, Record::Advance(_) | Record::Voice(VoiceAnswer::Scores(_)));
+    let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
+    // A language model that is not asked again leaves out the line of its words, and of its scores.
+    let of_week = if has_model { 4 } else { 2 };
+    let healing = if is_open { of_week } else { u64::from(trajectory.unfinished > 0) };
     match trajectory.lines.get(position.seq as usize) {
         None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
         Some(line) if line.hash != position.line_hash => {

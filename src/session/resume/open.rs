@@ -213,6 +213,7 @@ impl Session {
                 self.commit_projection();
             }
             Record::Override(change) => self.replay_override(line.seq, change)?,
+            Record::Voice(said) => self.replay_voice(said)?,
             Record::Query(query) => self.remember_query(query),
             Record::Activity(_)
             | Record::Memo(_)
@@ -284,6 +285,7 @@ pub(in crate::session) fn check_start(
         && start.parameters_digest == manifest.parameters_digest
         && start.scenario == manifest.scenario
         && start.participant == manifest.participant
+        && start.voice == manifest.voice
         && start.consent == manifest.consent;
     if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
 }

@@ -17,6 +17,7 @@ use crate::session::error::RunError;
 use crate::session::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
 use crate::session::resume::sealing::SealKey;
 use crate::session::trajectory::record::Activity;
+use crate::voice::model::settings::ModelSettings;
 use crate::world::params::{ParameterError, line_of_key};
 
 /// Name of the file that makes a folder a study.
@@ -70,6 +71,9 @@ pub struct Protocol {
     /// What is recorded.
     #[serde(default)]
     pub record: RecordPage,
+    /// The language model that lends its voice to the runs; none: the built-in voice speaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelSettings>,
     /// What makes the record evidence.
     #[serde(default)]
     pub integrity: IntegrityPage,
@@ -410,6 +414,7 @@ impl Protocol {
                 format!("{kind} cannot be left out: times and answers rest on it"),
             ));
         }
+        self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(of_voice)?;
         self.limits.check_warning()?;
         let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
         if limits.contains(&Some(0)) {
@@ -417,6 +422,19 @@ impl Protocol {
         }
         Ok(())
     }
+}
+
+/// A problem with a key of the table `voice`.
+fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
+    let key = match key {
+        "endpoint" => "voice.endpoint",
+        "model" => "voice.model",
+        "key_variable" => "voice.key_variable",
+        "seconds_a_week" => "voice.seconds_a_week",
+        "words" => "voice.words",
+        _ => "voice",
+    };
+    (key, problem)
 }
 
 /// What is wrong with a key of a file.

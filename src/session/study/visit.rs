@@ -190,7 +190,12 @@ impl Visit {
             mode: Mode::Baseline,
             participant: Some(self.label.clone()),
             agreed,
-            study: Some(StudyEntry { stamp, rules: self.study.rules(), consent: self.consent_text() }),
+            study: Some(StudyEntry {
+                stamp,
+                rules: self.study.rules(),
+                consent: self.consent_text(),
+                voice: protocol.voice.clone(),
+            }),
             storage: Storage::Runs(self.runs.clone()),
             seal_key: self.study.seal_key.clone(),
             ..NewRun::default()
@@ -218,6 +223,7 @@ impl Visit {
     /// As [`Session::open`].
     pub fn open(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
+        session.join_model(self.study.protocol.voice.as_ref());
         self.watch(&mut session);
         Ok(session)
     }

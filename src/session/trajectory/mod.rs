@@ -316,7 +316,7 @@ mod tests {
         }
         let kinds: std::collections::BTreeSet<&str> =
             examples.iter().map(|(kind, _)| kind.as_str()).collect();
-        assert_eq!(kinds.len(), 24, "{kinds:?}");
+        assert_eq!(kinds.len(), 25, "{kinds:?}");
     }
 
     #[test]
@@ -347,6 +347,7 @@ mod tests {
                 "lesson" => "step",
                 "look" => "command",
                 "xray" => "shown_day",
+                "voice" => "what",
                 "advance" => "rationale",
                 "week" | "step" => "days_run",
                 "override" => "key",

@@ -15,7 +15,7 @@ use crate::session::lesson::definition::CapacityMover;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::resume::branch::not_saved;
 use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
+use crate::session::trajectory::record::{JudgedPost, Via, VoiceAnswer};
 use crate::session::trajectory::{Line, Record, Trajectory};
 use crate::tools::{Refusal, ToolId};
 use crate::world::customers::numbers::CustomerNumbers;
@@ -61,7 +61,9 @@ impl Session {
         let no_room =
             |refusal: Refusal| if refusal.code == "not_saved" { no_branch(refusal) } else { refusal };
         let branch = self.begin_branch(week, mode).map_err(no_room)?;
-        let session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
+        let mut session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
+        // Whatever is posted again is taken as it was.
+        session.voice.inherited = later.iter().filter_map(scores_of).collect();
         let (settings, params) = (session.settings(), session.params());
         let opening = Opening { day: from, settings, params, mode };
         let mut edits = edits(decided, &opening, &known, until.max(from + 1))?;
@@ -83,6 +85,14 @@ impl Session {
         session.save().map_err(|error| no_branch(not_saved(error)))?;
         drop(session);
         Ok(Adopted { session: branch.name().map_err(|error| no_branch(not_saved(error)))?, refused })
+    }
+}
+
+/// What a language model made of a post, if a line says that.
+fn scores_of(line: &Line) -> Option<JudgedPost> {
+    match &line.record {
+        Record::Voice(VoiceAnswer::Scores(judged)) => Some(judged.clone()),
+        _ => None,
     }
 }
 

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use circumstances::Circumstances;
 pub use lexicon::Lexicon;
 
+use crate::voice::model::scoring::ModelScore;
 use crate::world::identifiers::Group;
 use features::Features;
 use std::borrow::Cow;
@@ -60,6 +61,9 @@ pub struct Judgement {
     pub effect: f64,
     /// What it is made of, before the group's gain, in a fixed order; zeros are left out.
     pub terms: Vec<Term>,
+    /// Why, in the words of a language model, where that judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub said: Option<String>,
 }
 
 /// One part of a reaction.
@@ -81,8 +85,19 @@ impl Judgement {
         terms
     }
 
-    /// The three largest terms in one line, for instance `topics +0.40 (api, limits), specific +0.20`.
+    /// The same readers as a language model scored them. What the post is about stays known, for comments name it.
+    pub fn scored_by_model(self, score: &ModelScore) -> Judgement {
+        let Judgement { group, mut terms, .. } = self;
+        terms.retain(|term| term.name == "topics");
+        Judgement { group, effect: score.score, terms, said: Some(score.reason.clone()) }
+    }
+
+    /// The three largest terms in one line, for instance `topics +0.40 (api, limits), specific +0.20`; what a language model
+    /// gave as its reason, where that judged.
     pub fn reason(&self) -> String {
+        if let Some(said) = &self.said {
+            return said.clone();
+        }
         let mut text = String::new();
         for term in self.leading().into_iter().take(3) {
             let comma = if text.is_empty() { "" } else { ", " };

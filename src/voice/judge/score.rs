@@ -18,7 +18,7 @@ struct Eyes<'a> {
 pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     let lexicon = case.lexicon;
     if case.features.empty {
-        return Judgement { group, effect: 0.0, terms: Vec::new() };
+        return Judgement { group, effect: 0.0, terms: Vec::new(), said: None };
     }
     let readers = &case.circumstances.groups[group];
     let claims = claims(&case.features, readers, case.circumstances, lexicon);
@@ -30,7 +30,7 @@ pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     {
         raw *= lexicon.terms.elsewhere;
     }
-    Judgement { group, effect: compressed(raw, lexicon.terms.knee), terms }
+    Judgement { group, effect: compressed(raw, lexicon.terms.knee), terms, said: None }
 }
 
 /// Keeps a score within -1..=1 without a hard edge, in hundredths: above the knee it bends towards 1.

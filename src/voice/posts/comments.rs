@@ -82,7 +82,7 @@ mod tests {
                 for group in Group::all() {
                     let term =
                         Term { name: (*name).into(), value: 0.4 * sign, because: vec!["api".to_owned()] };
-                    let judgement = Judgement { group, effect: 0.7 * sign, terms: vec![term] };
+                    let judgement = Judgement { group, effect: 0.7 * sign, terms: vec![term], said: None };
                     let context = context(group, 0.7 * sign, Some(&judgement));
                     let phrasings = GRAMMAR.phrasings("comment", &context);
                     assert!(phrasings >= 30, "{side} {name} {group}: {phrasings}");
@@ -112,6 +112,7 @@ mod tests {
             group,
             effect: -0.7,
             terms: vec![term("topics", 0.1, "limits"), term("claims_false", -0.55, "speed")],
+            said: None,
         };
         assert_eq!(reason(-0.7, Some(&judgement)), ("claims_false".into(), "speed".to_owned()));
         assert_eq!(reason(0.7, Some(&judgement)), ("topics".into(), "limits".to_owned()));

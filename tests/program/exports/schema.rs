@@ -228,7 +228,11 @@ fn every_line_that_runs_write_is_as_the_schema_says() {
         lines.iter().map(|line| line["kind"].as_str().expect("a kind").to_owned()).collect();
     let mut missing = kinds(&root);
     missing.retain(|kind| !written.contains(kind));
-    assert_eq!(missing.into_iter().collect::<Vec<_>>(), ["memo", "override"], "all others are written");
+    assert_eq!(
+        missing.into_iter().collect::<Vec<_>>(),
+        ["memo", "override", "voice"],
+        "all others are written"
+    );
     assert!(lines.iter().any(|line| line.get("calculations").is_some() && line["kind"] == "advance"));
     assert!(lines.iter().any(|line| line.get("undoes").is_some()));
 }

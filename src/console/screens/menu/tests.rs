@@ -18,6 +18,7 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         seed: 42,
         scenario: "default".to_owned(),
         has_own_parameters: false,
+        judged_by_model: false,
         participant: None,
         day: 84,
         days: 500,

@@ -10,6 +10,7 @@ mod lesson;
 mod notes;
 mod presence;
 mod start;
+mod voice;
 mod week;
 
 use serde::{Serialize, Serializer};
@@ -28,6 +29,7 @@ pub use presence::{
     Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,
 };
 pub use start::{Parent, Start};
+pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
 pub use week::{Advance, Branch, Closing, End, Ended, FiledForecast, Override};
 
 /// What a line says.
@@ -47,6 +49,8 @@ pub enum Record {
     Note(Note),
     /// Rationale and forecasts were filed, and the week was let pass.
     Advance(Advance),
+    /// A language model spoke, or did not.
+    Voice(VoiceAnswer),
     /// A week has passed.
     Week(Closing),
     /// Single days of a debug run have passed.
@@ -72,6 +76,7 @@ impl Record {
             Record::Memo(_) => "memo",
             Record::Note(_) => "note",
             Record::Advance(_) => "advance",
+            Record::Voice(_) => "voice",
             Record::Week(_) => "week",
             Record::Step(_) => "step",
             Record::Override(_) => "override",
@@ -90,6 +95,7 @@ impl Record {
             "memo" => Record::Memo(serde_json::from_slice(line)?),
             "note" => Record::Note(serde_json::from_slice(line)?),
             "advance" => Record::Advance(serde_json::from_slice(line)?),
+            "voice" => Record::Voice(serde_json::from_slice(line)?),
             "week" => Record::Week(serde_json::from_slice(line)?),
             "step" => Record::Step(serde_json::from_slice(line)?),
             "override" => Record::Override(serde_json::from_slice(line)?),
@@ -112,6 +118,7 @@ impl Record {
             Record::Memo(memo) => serde_json::to_value(memo),
             Record::Note(note) => serde_json::to_value(note),
             Record::Advance(advance) => serde_json::to_value(advance),
+            Record::Voice(said) => serde_json::to_value(said),
             Record::Week(closing) | Record::Step(closing) => serde_json::to_value(closing),
             Record::Override(change) => serde_json::to_value(change),
             Record::Branch(branch) => serde_json::to_value(branch),

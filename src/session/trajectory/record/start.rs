@@ -10,6 +10,7 @@ use crate::session::folder::mode::Mode;
 use crate::session::lesson::stamp::LessonStamp;
 use crate::session::study::rules::SessionRules;
 use crate::session::study::stamp::{EarlierRun, StudyStamp};
+use crate::voice::model::settings::ModelStamp;
 use crate::world::fault::Fault;
 
 /// What the first line says of a run.
@@ -57,6 +58,9 @@ pub struct Start {
     /// The hand-out of a class that it began with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
+    /// The language model that lends its voice; none in nearly all runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
     /// By which rules it is played; none in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,

@@ -1,0 +1,132 @@
+//! The connection to a language model: one question, one answer, over plain http and within a time.
+
+use std::time::Duration;
+
+use crate::voice::model::ModelPrompt;
+use crate::voice::model::settings::ModelSettings;
+
+#[cfg(feature = "server")]
+pub(super) use over_http::Endpoint;
+#[cfg(not(feature = "server"))]
+pub(super) use without::Endpoint;
+
+#[cfg(feature = "server")]
+mod over_http {
+    use serde_json::{Value, json};
+    use ureq::{Agent, Error};
+
+    use super::{Duration, ModelPrompt, ModelSettings};
+    use crate::notation::printable;
+
+    /// Bytes of an answer.
+    const MOST_BYTES: u64 = 1024 * 1024;
+    /// How freely a model chooses among its words.
+    const TEMPERATURE: f64 = 0.3;
+
+    /// Where a model answers.
+    pub(in crate::session) struct Endpoint {
+        agent: Agent,
+        address: String,
+        model: String,
+        key: Option<String>,
+    }
+
+    impl Endpoint {
+        /// The endpoint that settings name; nothing is sent yet.
+        ///
+        /// # Errors
+        /// The environment does not hold the key.
+        pub(in crate::session) fn open(settings: &ModelSettings) -> Result<Endpoint, String> {
+            let key = settings.key_variable.as_deref().map(key_in).transpose()?;
+            let configuration = Agent::config_builder()
+                .http_status_as_error(false)
+                // What is asked goes to the host that was named, and to no other.
+                .max_redirects(0)
+                .max_redirects_will_error(false)
+                .proxy(None)
+                .max_idle_connections(0)
+                .user_agent("novamind")
+                .build();
+            let (address, model) = (settings.address(), settings.model.clone());
+            Ok(Endpoint { agent: configuration.into(), address, model, key })
+        }
+
+        /// Asks, and waits no longer than that.
+        ///
+        /// # Errors
+        /// Why there is no answer, in words.
+        pub(in crate::session) fn ask(
+            &self,
+            prompt: &ModelPrompt,
+            within: Duration,
+        ) -> Result<String, String> {
+            let body = json!({
+                "model": self.model,
+                "messages": [
+                    { "role": "system", "content": prompt.task },
+                    { "role": "user", "content": prompt.material },
+                ],
+                "temperature": TEMPERATURE,
+                "stream": false,
+            });
+            let mut request = self.agent.post(&self.address).header("content-type", "application/json");
+            if let Some(key) = &self.key {
+                request = request.header("authorization", format!("Bearer {key}"));
+            }
+            let request = request.config().timeout_global(Some(within)).build();
+            let mut response = request.send(body.to_string()).map_err(in_words)?;
+            let status = response.status().as_u16();
+            if status != 200 {
+                return Err(format!("it answered with status {status}"));
+            }
+            let read = response.body_mut().with_config().limit(MOST_BYTES).read_to_string();
+            let told: Value = serde_json::from_str(&read.map_err(in_words)?)
+                .map_err(|_| "what it sent is not JSON".to_owned())?;
+            let content = told.pointer("/choices/0/message/content").and_then(Value::as_str);
+            content.map(str::to_owned).ok_or_else(|| "what it sent holds no message".to_owned())
+        }
+    }
+
+    fn key_in(variable: &str) -> Result<String, String> {
+        let key = std::env::var(variable).unwrap_or_default();
+        match key.trim() {
+            "" => Err(format!("the environment variable {variable} is to hold its key and is not set")),
+            key => Ok(key.to_owned()),
+        }
+    }
+
+    fn in_words(error: Error) -> String {
+        match error {
+            Error::Timeout(_) => "it did not answer in time".to_owned(),
+            Error::BodyExceedsLimit(_) => format!("what it sent is longer than {MOST_BYTES} bytes"),
+            other => format!("it cannot be asked ({})", printable(&other.to_string())),
+        }
+    }
+}
+
+#[cfg(not(feature = "server"))]
+mod without {
+    use super::{Duration, ModelPrompt, ModelSettings};
+
+    /// Where a model would answer.
+    pub(in crate::session) struct Endpoint;
+
+    impl Endpoint {
+        /// This build asks nobody.
+        ///
+        /// # Errors
+        /// Always.
+        pub(in crate::session) fn open(_: &ModelSettings) -> Result<Endpoint, String> {
+            Err("this program was built without the feature server, and cannot ask a language model"
+                .to_owned())
+        }
+
+        /// Never asked.
+        ///
+        /// # Errors
+        /// Always.
+        pub(in crate::session) fn ask(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
+            Err("this program cannot ask".to_owned())
+        }
+    }
+}

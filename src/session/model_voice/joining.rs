@@ -1,0 +1,84 @@
+//! Which runs have a language model: those that began with one. It speaks in them as long as whoever opens them names it.
+
+use super::speaker::Speaker;
+use crate::session::error::RunError;
+use crate::session::folder::configuration::Configuration;
+use crate::session::folder::create::NewRun;
+use crate::session::folder::mode::Mode;
+use crate::session::resume::open::Access;
+use crate::session::state::Session;
+use crate::voice::model::settings::ModelSettings;
+
+/// The language model of a new run, if it is to have one.
+///
+/// # Errors
+/// It must not have the one that is named.
+pub(in crate::session) fn model_of(
+    new: &NewRun,
+    configuration: &Configuration,
+) -> Result<Option<ModelSettings>, RunError> {
+    match (new.mode, &new.study, &configuration.voice) {
+        (Mode::Baseline, Some(study), _) => Ok(study.voice.clone()),
+        (Mode::Baseline, None, Some(_)) => Err(RunError::NotPossible(
+            "a baseline run speaks with the built-in voice, unless the configuration of its study names a language model \
+             ([voice] in study.toml): leave out --voice, or take another mode. Nothing was recorded"
+                .to_owned(),
+        )),
+        // A lesson and a hand-out are the same on every machine.
+        (Mode::Lesson, ..) => Ok(None),
+        _ if new.handout.is_some() => Ok(None),
+        (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.clone()),
+    }
+}
+
+impl Session {
+    /// Opens a run to go on with it, with its language model if the configuration names that.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_to_play(
+        folder: &std::path::Path,
+        configuration: &Configuration,
+    ) -> Result<Session, RunError> {
+        let mut session = Session::open(folder, Access::Write, true)?;
+        session.join_model(configuration.voice.as_ref());
+        Ok(session)
+    }
+
+    /// Lets a language model speak in a run that began with it; where it cannot, a remark says so and the built-in voice goes
+    /// on.
+    pub fn join_model(&mut self, named: Option<&ModelSettings>) {
+        if self.history.ended.is_some() || self.recorder.is_none() {
+            return;
+        }
+        let problem = match (&self.manifest.voice, named) {
+            (None, None) => return,
+            (None, Some(_)) => {
+                self.remarks.push(
+                    "This run began with the built-in voice and keeps it: --voice is not used.".to_owned(),
+                );
+                return;
+            }
+            (Some(_), None) => "name its file with --voice to hear it".to_owned(),
+            (Some(model), Some(named)) if named.stamp() != *model => {
+                format!("--voice names another: {}", named.stamp().in_words())
+            }
+            (Some(_), Some(named)) => match Speaker::open(named) {
+                Ok(speaker) => {
+                    self.voice.speaker = Some(speaker);
+                    return;
+                }
+                Err(problem) => problem,
+            },
+        };
+        let model = self.manifest.voice.as_ref().map(|model| model.in_words()).unwrap_or_default();
+        self.remarks.push(format!(
+            "In this run {model}; from here on the built-in voice does ({problem}). What the model said is kept."
+        ));
+    }
+
+    /// The settings of the language model that can be asked.
+    pub fn model_settings(&self) -> Option<&ModelSettings> {
+        self.voice.speaker.as_ref().map(|speaker| &speaker.settings)
+    }
+}

@@ -1,0 +1,16 @@
+//! A language model that lends the public its voice: asking it, recording what it says, and going on without it
+//! (docs/interfaces/voice.md).
+//!
+//! Its scores of the player's posts are inputs of the world, so their line is in the trajectory before they count. Its words
+//! stand beside the world: nothing that is simulated reads them.
+
+mod asking;
+mod endpoint;
+pub(in crate::session) mod joining;
+pub(in crate::session) mod scores;
+pub(in crate::session) mod speaker;
+#[cfg(all(test, feature = "server"))]
+mod stub;
+mod telling_again;
+#[cfg(all(test, feature = "server"))]
+mod tests;

@@ -1,0 +1,94 @@
+//! Who speaks in an open run besides the built-in voice, how long a week still waits for it, and what the player is told
+//! where it does not speak.
+
+use std::time::{Duration, Instant};
+
+use super::endpoint::Endpoint;
+use crate::session::trajectory::record::JudgedPost;
+use crate::voice::model::ModelPrompt;
+use crate::voice::model::settings::ModelSettings;
+
+/// With less time than this left nobody is asked.
+const LEAST: Duration = Duration::from_millis(50);
+
+/// What an open run has besides the built-in voice: nothing, as a rule.
+#[derive(Default)]
+pub(in crate::session) struct ModelVoice {
+    /// The model.
+    pub(in crate::session) speaker: Option<Speaker>,
+    /// What a model said in another run of which this one takes over decisions.
+    pub(in crate::session) inherited: Vec<JudgedPost>,
+}
+
+impl ModelVoice {
+    /// A new week has all its time.
+    pub(in crate::session) fn begin_week(&mut self) {
+        if let Some(speaker) = &mut self.speaker {
+            speaker.left = Duration::from_secs(u64::from(speaker.settings.seconds_a_week));
+        }
+    }
+
+    /// What the player has to know and was not told yet.
+    pub(in crate::session) fn take_notice(&mut self) -> Option<String> {
+        self.speaker.as_mut()?.notice.take()
+    }
+}
+
+/// A model that can be asked.
+pub(in crate::session) struct Speaker {
+    /// Which, where, and what for.
+    pub(in crate::session) settings: ModelSettings,
+    endpoint: Endpoint,
+    /// What this week may still wait.
+    left: Duration,
+    /// The last question had no answer that could be used.
+    is_failing: bool,
+    notice: Option<String>,
+}
+
+/// What came of a question, and the milliseconds it took.
+pub(super) struct Reply<T> {
+    /// The answer, or why there is none.
+    pub(super) answer: Result<T, String>,
+    /// Milliseconds.
+    pub(super) took_ms: f64,
+}
+
+impl Speaker {
+    /// The model of these settings; nothing is sent yet.
+    ///
+    /// # Errors
+    /// It cannot be asked: its key is missing, or this build asks nobody.
+    pub(in crate::session) fn open(settings: &ModelSettings) -> Result<Speaker, String> {
+        let endpoint = Endpoint::open(settings)?;
+        let left = Duration::from_secs(u64::from(settings.seconds_a_week));
+        Ok(Speaker { settings: settings.clone(), endpoint, left, is_failing: false, notice: None })
+    }
+
+    /// Asks within what is left of the week's time. The player is told of the first of several failures.
+    pub(super) fn ask<T>(
+        &mut self,
+        prompt: &ModelPrompt,
+        read: impl FnOnce(&str) -> Result<T, String>,
+    ) -> Reply<T> {
+        let started = Instant::now();
+        let answer = match self.left < LEAST {
+            true => Err("the time of the week is used up".to_owned()),
+            false => self.endpoint.ask(prompt, self.left),
+        };
+        let answer = answer
+            .and_then(|text| read(&text).map_err(|problem| format!("its answer cannot be used: {problem}")));
+        let took = started.elapsed();
+        self.left = self.left.saturating_sub(took);
+        if let (Err(problem), false) = (&answer, self.is_failing) {
+            self.notice = Some(format!(
+                "the language model {} at {} did not serve ({problem}): the built-in voice speaks instead; this is said once, \
+                 until the model serves again",
+                self.settings.model,
+                self.settings.host()
+            ));
+        }
+        self.is_failing = answer.is_err();
+        Reply { answer, took_ms: (took.as_secs_f64() * 1e6).round() / 1e3 }
+    }
+}

@@ -1,0 +1,58 @@
+//! What all answers have in common: a JSON array, and texts that can be shown.
+
+use serde_json::Value;
+
+use crate::notation::printable;
+
+/// The array that an answer is. Models like to put it into a block of code; nothing else may stand around it.
+pub(super) fn array(answer: &str) -> Result<Vec<Value>, String> {
+    match serde_json::from_str(without_fence(answer.trim())) {
+        Ok(Value::Array(values)) => Ok(values),
+        Ok(_) | Err(_) => Err("it is no JSON array".to_owned()),
+    }
+}
+
+fn without_fence(answer: &str) -> &str {
+    let inner = answer.strip_prefix("```").and_then(|rest| rest.strip_suffix("```"));
+    let inner = inner.and_then(|rest| rest.split_once('\n'));
+    inner.map_or(answer, |(_, rest)| rest.trim())
+}
+
+/// Whether a text can be shown in one place: not empty, one line, no letter that acts, no longer than that.
+pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> {
+    if text.trim().is_empty() {
+        return Err("a text is empty".to_owned());
+    }
+    if text.chars().any(char::is_control) || printable(text) != text {
+        return Err("a text has control characters or line ends".to_owned());
+    }
+    match text.chars().count() {
+        letters if letters > most_letters => {
+            Err(format!("a text has {letters} letters, more than {most_letters}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_array_may_stand_in_a_block_of_code_and_nowhere_else() {
+        for answer in ["[1, 2]", " [1,2]\n", "```json\n[1, 2]\n```", "```\n[1, 2]```"] {
+            assert_eq!(array(answer).expect(answer).len(), 2);
+        }
+        for answer in ["", "{}", "Here it is: [1]", "[1", "```json [1] ```", "``````"] {
+            assert!(array(answer).is_err(), "{answer}");
+        }
+    }
+
+    #[test]
+    fn texts_that_cannot_be_shown_are_refused() {
+        assert_eq!(check_text("Größer, für 5 $.", 20), Ok(()));
+        for text in ["", "  ", "a\nb", "a\tb", "\u{1b}[31m", "a\u{202e}b", "123456789012345678901"] {
+            assert!(check_text(text, 20).is_err(), "{text:?}");
+        }
+    }
+}

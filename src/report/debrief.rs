@@ -9,9 +9,9 @@ use super::words::{count, money};
 use crate::glossary::{Term, terms};
 use crate::notation::{grouped, percent, signed_dollars};
 use crate::session::{
-    CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, Ended, FigureUnit,
-    FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, ToolId,
-    WeekFigure,
+    CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, Ended,
+    FigureUnit, FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve,
+    ToolId, WeekFigure,
 };
 use crate::world::params::Params;
 
@@ -179,9 +179,17 @@ fn calls_in_words(tool: ToolId, calls: &[Value], names: &CompanyNames) -> String
 }
 
 fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
-    let Some(effect) = parting.effect else {
-        return "The calls of the good play are refused in your run, so their effect was not simulated."
-            .to_owned();
+    let effect = match parting.effect {
+        DecisionEffect::Simulated(effect) => effect,
+        DecisionEffect::Refused => {
+            return "The calls of the good play are refused in your run, so their effect was not simulated."
+                .to_owned();
+        }
+        DecisionEffect::OtherCustomers => {
+            return "Your later letters name companies by number. After other decisions other companies come under \
+                    those numbers, so the effect was not simulated."
+                .to_owned();
+        }
     };
     let judged_by = own.judged_by.as_ref();
     let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {

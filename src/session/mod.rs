@@ -87,8 +87,8 @@ pub use folder::world_log::{
 };
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, FirstDifference, JudgedFigure, PartingEffect, PlayedPart,
-    ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
+    PlayedPart, ReferenceCurve,
 };
 pub use lesson::decisions::{DecisionContrast, PartedDecision};
 pub use lesson::definition::{

@@ -101,7 +101,7 @@ fn the_first_other_decision_is_worth_what_a_play_with_it_comes_to() {
     let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
     // The one decision makes the good play of it.
-    let effect = parting.effect.expect("an effect");
+    let effect = parting.effect.simulated().expect("an effect");
     let good = found.good.as_ref().expect("a good play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
     assert_eq!(Some(&effect.own), found.own.last());
@@ -109,7 +109,7 @@ fn the_first_other_decision_is_worth_what_a_play_with_it_comes_to() {
     let later = debrief(&played(folder.path(), 40, 1));
     let DecisionComparison::Parted(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
     assert_eq!(parting.week, 1);
-    assert_ne!(parting.effect.map(|effect| effect.with), good.last().copied());
+    assert_ne!(parting.effect.simulated().map(|effect| effect.with), good.last().copied());
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn a_part_that_is_judged_by_another_figure_than_cash_is_told_in_it() {
     let good = judged.good.as_ref().expect("the good play");
     assert!(good.len() == 2 && good != &own, "{good:?}");
     let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
-    let (before, with) = parting.effect.and_then(|effect| effect.judged).expect("an effect");
+    let (before, with) = parting.effect.simulated().and_then(|effect| effect.judged).expect("an effect");
     assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
     let markdown = debrief_as_markdown(&found);
     for said in ["Recurring revenue on day 14: yours $", "the good play's $", "Recurring revenue by week"] {

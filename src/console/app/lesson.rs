@@ -122,10 +122,12 @@ impl App {
                 1 => "A company waits".to_owned(),
                 many => format!("{} wait", count(many, "company")),
             };
+            let key = self.keys.label(Action::NextWeek).unwrap_or_default();
             let text = format!(
-                "{who} for an answer. In Inbox the rules that you sent last answer once more. Run the week without?"
+                "{who} for an answer. Go to Inbox, where {key} asks whether the rules that you sent last answer?"
             );
-            return self.open(Confirm::new("Next week", text, vec![week]));
+            let asked = Confirm::new("Next week", text, vec![Effect::Show(ScreenId::Inbox)]);
+            return self.open(asked.or(Action::WeekUnanswered, vec![week]));
         }
         let answers = match run.here {
             ScreenId::Inbox => run.screens.inbox.answers_of_before(&run.company),

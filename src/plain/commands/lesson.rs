@@ -165,6 +165,7 @@ fn debrief_as_data(own: &Debrief) -> Value {
         DecisionComparison::Parted(parting) => {
             let effect = parting
                 .effect
+                .simulated()
                 .map(|effect| json!({ "day": effect.day, "own": effect.own, "with": effect.with }));
             let decisions: Vec<Value> = parting.decisions.iter().map(decision_as_data).collect();
             json!({ "week": parting.week, "day": parting.day, "decisions": decisions, "effect": effect })

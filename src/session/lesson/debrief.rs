@@ -12,6 +12,7 @@ use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
+use crate::session::counterfactual::companies::highest_named;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::state::{AnswersCompanies, Session};
@@ -114,8 +115,29 @@ pub struct FirstDifference {
     pub day: u32,
     /// What was decided otherwise.
     pub decisions: Vec<PartedDecision>,
-    /// What these decisions of the good play would have come to; none where they cannot be made.
-    pub effect: Option<PartingEffect>,
+    /// What these decisions of the good play would have come to.
+    pub effect: DecisionEffect,
+}
+
+/// What became of the decisions of the good play in the own company.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DecisionEffect {
+    /// They were simulated.
+    Simulated(PartingEffect),
+    /// They are refused there.
+    Refused,
+    /// Later calls name customers, who would have other numbers.
+    OtherCustomers,
+}
+
+impl DecisionEffect {
+    /// What they came to, where they were simulated.
+    pub fn simulated(self) -> Option<PartingEffect> {
+        match self {
+            DecisionEffect::Simulated(effect) => Some(effect),
+            DecisionEffect::Refused | DecisionEffect::OtherCustomers => None,
+        }
+    }
 }
 
 /// What the run would have come to with the decisions of the good play in one week, and all others as they were.
@@ -300,16 +322,33 @@ impl PlayedPart {
         };
         let before = self.standing.own_part().start_weeks + at as u32;
         let with = self.with_decisions(before, &decisions, &good.weeks[at]);
-        let effect = self.play(&with, answers).and_then(|played| {
-            let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
-            let judged = self.judged_by().and_then(|figure| {
-                let last = |weeks: &[WeekFigures]| figure.of_week(weeks.last()?);
-                last(&self.weeks).zip(last(&played.figures))
-            });
-            Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
-        });
+        let effect = match self.names_customers_after(before) {
+            true => DecisionEffect::OtherCustomers,
+            false => self
+                .play(&with, answers)
+                .and_then(|played| self.effect_of(&played))
+                .map_or(DecisionEffect::Refused, DecisionEffect::Simulated),
+        };
         let day = before * self.days_per_week;
         DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })
+    }
+
+    /// Whether calls of later weeks name customers: after other decisions others come, under other numbers.
+    fn names_customers_after(&self, week: u32) -> bool {
+        let later = self.own.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
+        later.into_iter().any(|call| match call {
+            LessonCall::Tool(tool, args) => highest_named(*tool, args).is_some(),
+            _ => false,
+        })
+    }
+
+    fn effect_of(&self, played: &Played) -> Option<PartingEffect> {
+        let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
+        let judged = self.judged_by().and_then(|figure| {
+            let last = |weeks: &[WeekFigures]| figure.of_week(weeks.last()?);
+            last(&self.weeks).zip(last(&played.figures))
+        });
+        Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
     }
 
     /// The own calls, with those of the good play in one week where they differ.

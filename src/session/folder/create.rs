@@ -141,7 +141,10 @@ impl Session {
         let shipped = Configuration::shipped();
         // A lesson is the same on every machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
-        let model = model_of(&new, configuration)?;
+        // A hand-out is the same on every machine.
+        let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
+        let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
+        let model = model_of(new.mode, laid_down, named)?;
         let speaker = model.as_ref().map(Speaker::open).transpose().map_err(no_model)?;
         let (manifest, params) = plan_run(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };

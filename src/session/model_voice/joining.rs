@@ -1,33 +1,35 @@
 //! Which runs have a language model: those that began with one. It speaks in them as long as whoever opens them names it.
 
+use std::path::Path;
+
 use super::speaker::Speaker;
 use crate::session::error::RunError;
 use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::NewRun;
 use crate::session::folder::mode::Mode;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::voice::model::settings::ModelSettings;
 
-/// The language model of a new run, if it is to have one.
+/// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that
+/// was named.
 ///
 /// # Errors
-/// It must not have the one that is named.
+/// It must not have the one that was named.
 pub(in crate::session) fn model_of(
-    new: &NewRun,
-    configuration: &Configuration,
+    mode: Mode,
+    study: Option<Option<&ModelSettings>>,
+    named: Option<&ModelSettings>,
 ) -> Result<Option<ModelSettings>, RunError> {
-    match (new.mode, &new.study, &configuration.voice) {
-        (Mode::Baseline, Some(study), _) => Ok(study.voice.clone()),
+    match (mode, study, named) {
+        (Mode::Baseline, Some(laid_down), _) => Ok(laid_down.cloned()),
         (Mode::Baseline, None, Some(_)) => Err(RunError::NotPossible(
             "a baseline run speaks with the built-in voice, unless the configuration of its study names a language model \
              ([voice] in study.toml): leave out --voice, or take another mode. Nothing was recorded"
                 .to_owned(),
         )),
-        // A lesson and a hand-out are the same on every machine.
+        // A lesson is the same on every machine.
         (Mode::Lesson, ..) => Ok(None),
-        _ if new.handout.is_some() => Ok(None),
-        (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.clone()),
+        (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.cloned()),
     }
 }
 
@@ -36,10 +38,7 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub fn open_to_play(
-        folder: &std::path::Path,
-        configuration: &Configuration,
-    ) -> Result<Session, RunError> {
+    pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
         session.join_model(configuration.voice.as_ref());
         Ok(session)

@@ -158,8 +158,8 @@ fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
 /// decided on that day itself.
 fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
-        let ends_on_it = (line.day == day && line.closes_days()) || (line.day == day && is_of_model(line));
-        line.day < day || ends_on_it || line.seq == 0
+        let said_on_it = line.day == day && is_of_model(line);
+        line.day < day || (line.day == day && line.closes_days()) || said_on_it || line.seq == 0
     };
     let after = trajectory.lines.iter().position(|line| !is_before(line));
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]

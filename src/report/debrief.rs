@@ -13,7 +13,6 @@ use crate::session::{
     FigureUnit, FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve,
     ToolId, WeekFigure,
 };
-use crate::world::params::Params;
 
 /// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;
@@ -116,8 +115,7 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
                 "Week {}, day {}, is the first in which you decided otherwise:",
                 parting.week, parting.day
             ));
-            // No lesson gives companies other names than those of its seed.
-            let names = CompanyNames::new(own.seed, &Params::shipped().personas.email);
+            let names = own.company_names();
             lines.extend(parting.decisions.iter().map(|one| format!("  {}", decision_in_words(one, &names))));
             lines.push(effect_in_words(parting, own));
             lines

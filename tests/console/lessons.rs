@@ -75,7 +75,7 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     console.press("n");
     console.shows("What share of the leads will buy?");
     console.press("enter");
-    console.shows("type a number");
+    console.shows("a share is a number from 0 to 1");
     console.press("'0.5' enter");
     console.shows("You guessed 50%");
     console.press("; l h");

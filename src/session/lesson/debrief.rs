@@ -19,6 +19,8 @@ use crate::session::state::{AnswersCompanies, Session};
 use crate::session::trajectory::record::Ended;
 use crate::session::why::WeekFigure;
 use crate::tools::{Refusal, ToolId};
+use crate::voice::CompanyNames;
+use crate::world::params::Params;
 
 /// A part of a lesson that was played: what its debrief is found from.
 #[derive(Debug, Clone)]
@@ -69,6 +71,13 @@ pub struct Debrief {
     pub pitfalls: Vec<(u32, String)>,
     /// The mechanism, in the words of the lesson, in Markdown; none while a part of the lesson is to come.
     pub text: Option<String>,
+}
+
+impl Debrief {
+    /// The names of its companies: no lesson gives them others than those of its seed.
+    pub fn company_names(&self) -> CompanyNames {
+        CompanyNames::new(self.seed, &Params::shipped().personas.email)
+    }
 }
 
 /// A reference play.

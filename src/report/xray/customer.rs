@@ -97,6 +97,7 @@ fn term_in_words(term: Term, lens: &CustomerLens) -> String {
         Term::Tenure => "tenure".to_owned(),
         Term::Service => "today's service".to_owned(),
         Term::Expectations => "the market's expectations".to_owned(),
+        Term::Budgets => "the drift of budgets".to_owned(),
         Term::Economy => "the economy".to_owned(),
         Term::Prices => "the change of prices since the last bill".to_owned(),
     }

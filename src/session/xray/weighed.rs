@@ -2,7 +2,6 @@
 
 use crate::world::customers::curve::{Curve, required_quality};
 use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::market::drift::Expectation;
 use crate::world::params::Params;
 use crate::world::product::quality::Experience;
 use crate::world::retention::weighing::Weighing;
@@ -41,6 +40,8 @@ pub enum Term {
     Service,
     /// What the market expects beyond the own curve.
     Expectations,
+    /// What budgets have drifted by.
+    Budgets,
     /// The economy's effect on the budget.
     Economy,
     /// List prices and discounts beside those of the last bill.
@@ -49,7 +50,7 @@ pub enum Term {
 
 impl Term {
     /// All terms.
-    pub const ALL: [Term; 9] = [
+    pub const ALL: [Term; 10] = [
         Term::Issue,
         Term::Ads,
         Term::Quota,
@@ -57,6 +58,7 @@ impl Term {
         Term::Tenure,
         Term::Service,
         Term::Expectations,
+        Term::Budgets,
         Term::Economy,
         Term::Prices,
     ];
@@ -72,7 +74,8 @@ impl Term {
             Term::Relationship => each(&|own| own.relationship = 0.0),
             Term::Tenure => each(&|own| own.tenure = 0.0),
             Term::Service => each(&|own| own.delivered += weighing.service_penalty),
-            Term::Expectations => other.expectation = Expectation { quality: 0.0, c_max: 0.0 },
+            Term::Expectations => other.expectation.quality = 0.0,
+            Term::Budgets => other.expectation.c_max = 0.0,
             Term::Economy => other.willingness_to_pay = 1.0,
             Term::Prices => other.prices = *last_bill?,
         }

@@ -34,6 +34,8 @@ enum AgentCommand {
     New(NewRunOptions),
     /// Day, cash, subscribers, last day, and how the run ended.
     Status,
+    /// The dashboard of the last week.
+    Dashboard,
     /// File rationale and forecasts, and let a week pass.
     #[command(allow_negative_numbers = true)]
     NextWeek {
@@ -78,6 +80,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         AgentCommand::New(new) => begin(new, context),
         AgentCommand::Status => answer(&connect(named, context)?.1, "/game-status", None),
+        AgentCommand::Dashboard => answer(&connect(named, context)?.1, "/dashboard", None),
         AgentCommand::NextWeek { words } => {
             let filed = next_week_of(words)?;
             answer(&connect(named, context)?.1, "/next-week", Some(&filed))

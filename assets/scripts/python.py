@@ -19,16 +19,18 @@ SYSTEM = (
     "/usr/share/zoneinfo", "/etc/localtime", "/etc/ld.so.cache", "/dev/null", "/dev/zero", "/dev/urandom",
 )
 
-#: System calls that are refused, by machine: new processes and programs, sockets, signals to others, a look into others'
-#: memory, keys, and rights of files.
+#: System calls that are refused, by machine: new processes and programs, sockets and messages to them, signals to others, a look
+#: into others' memory, their limits and their place in the queue, memory and queues that outlive the script, keys, and rights,
+#: times and attributes of files.
 REFUSED = {
     "x86_64": (0xC000003E, (
-        41, 56, 57, 58, 59, 62, 90, 91, 92, 93, 94, 101, 129, 200, 234, 250, 260, 268, 297, 298, 310, 311, 321, 322, 323,
-        424, 425, 434, 435, 438, 452,
+        29, 30, 31, 41, 44, 46, 56, 57, 58, 59, 62, 64, 68, 90, 91, 92, 93, 94, 101, 129, 132, 141, 142, 144, 188, 189, 190,
+        197, 198, 199, 200, 203, 234, 235, 240, 250, 251, 260, 261, 268, 280, 297, 298, 302, 307, 310, 311, 314, 321, 322, 323,
+        424, 425, 434, 435, 438, 452, 463, 466,
     )),
     "aarch64": (0xC00000B7, (
-        52, 53, 54, 55, 117, 129, 130, 131, 138, 198, 219, 220, 221, 240, 241, 270, 271, 280, 281, 282, 424, 425, 434,
-        435, 438, 452,
+        5, 6, 7, 14, 15, 16, 30, 52, 53, 54, 55, 88, 117, 118, 119, 122, 129, 130, 131, 138, 140, 180, 186, 190, 194, 195, 196,
+        198, 206, 211, 219, 220, 221, 240, 241, 261, 269, 270, 271, 274, 280, 281, 282, 424, 425, 434, 435, 438, 452, 463, 466,
     )),
 }
 

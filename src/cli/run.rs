@@ -211,10 +211,13 @@ fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> R
     Ok(())
 }
 
+/// Most runs that are played at the same time: more threads than any machine has processors.
+const MOST_JOBS: usize = 1024;
+
 /// A pool of worker threads.
 pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    if jobs == Some(0) {
-        return Err(Failure::usage("--jobs must be at least 1"));
+    if jobs.is_some_and(|jobs| !(1..=MOST_JOBS).contains(&jobs)) {
+        return Err(Failure::usage(format!("--jobs is a number from 1 to {MOST_JOBS}; without it, one for each processor")));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(jobs.unwrap_or(0))

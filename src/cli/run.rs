@@ -217,7 +217,9 @@ const MOST_JOBS: usize = 1024;
 /// A pool of worker threads.
 pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     if jobs.is_some_and(|jobs| !(1..=MOST_JOBS).contains(&jobs)) {
-        return Err(Failure::usage(format!("--jobs is a number from 1 to {MOST_JOBS}; without it, one for each processor")));
+        return Err(Failure::usage(format!(
+            "--jobs is a number from 1 to {MOST_JOBS}; without it, one for each processor"
+        )));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(jobs.unwrap_or(0))

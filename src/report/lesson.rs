@@ -144,7 +144,7 @@ pub fn goal_in_words(goal: &GoalPage) -> String {
         None => "goal",
     };
     let at = goal_at(goal).map(|at| format!(": {at}")).unwrap_or_default();
-    format!("{mark:<8} {}{at}", goal.text)
+    format!("{mark}: {}{at}", goal.text)
 }
 
 /// What a goal stands at, beside what is to be reached as far as that is known.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
-use crate::session::{Access, Session, Trajectory, find_run_to_read};
+use crate::session::{Access, Manifest, Session, Trajectory, find_run_to_read};
 
 /// What is read of each run that was named; that it is read is recorded with the run.
 ///
@@ -22,7 +22,8 @@ pub fn of_runs<T>(
     let mut known = BTreeMap::new();
     for name in names {
         let own = find_run_to_read(&folder, name)?;
-        if let Some(before) = known.insert(own.clone(), name) {
+        // Folders can be copied: the same run has the same name in all of them.
+        if let Some(before) = known.insert(Manifest::read(&own)?.id, name) {
             let message =
                 format!("{before} and {name} are one run, which would count twice; name each run once");
             return Err(Failure::usage(message));

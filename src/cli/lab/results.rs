@@ -69,8 +69,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn finished_runs(runs: &Path) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
     for folder in all_run_folders(runs) {
+        // A copy of a folder is the same run once more.
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
+                && run.copy_of.is_none()
                 && matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson))
         };
         let own = list_runs(&folder)?.into_iter().filter(is_over);

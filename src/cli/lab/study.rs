@@ -54,6 +54,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let plan = StudyPlan::read(&options.file, options.daily, &context.configuration)
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
+    let is_own_file = |out: &PathBuf| {
+        out.canonicalize().is_ok_and(|out| options.file.canonicalize().is_ok_and(|file| file == out))
+    };
+    if options.out.as_ref().is_some_and(is_own_file) {
+        return Err(Failure::usage("--out names the study file itself, which the rows would replace"));
+    }
     if options.check {
         return print(&format!("{}: {}, {}\n", plan.name, size(&plan), count(runs as u32, "run")));
     }
@@ -123,10 +129,17 @@ fn write(
 ) -> Result<(), Failure> {
     let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let draft = place.with_file_name(format!(".{name}.draft"));
-    let written = File::create(&draft).and_then(|file| {
+    // A device or a pipe is written to, and never replaced.
+    let is_special = std::fs::metadata(place).is_ok_and(|found| !found.is_file());
+    let target = if is_special { place } else { &draft };
+    let written = File::create(target).and_then(|file| {
         let mut file = BufWriter::new(file);
         rows(&mut file)?;
-        file.into_inner()?.sync_all()?;
+        let file = file.into_inner()?;
+        if is_special {
+            return Ok(());
+        }
+        file.sync_all()?;
         std::fs::rename(&draft, place)
     });
     written.map_err(|error| {

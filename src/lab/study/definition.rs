@@ -151,6 +151,7 @@ impl StudyPlan {
             return Err(source.wrong("name", problem));
         }
         let policies = policies(source, &own, folder, configuration)?;
+        check_scenarios(source, &own)?;
         check_terms(source, &own)?;
         let levels = varied(source, &own)?;
         let seeds = seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
@@ -238,6 +239,45 @@ fn policies(
     Ok(found)
 }
 
+/// Each scenario once: its runs would be the same.
+fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
+    let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
+    match (0..own.scenarios.len()).find(twice) {
+        Some(at) => {
+            let problem = format!("scenario {} stands twice", own.scenarios[at]);
+            Err(source.wrong(&format!("scenarios.{at}"), problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Parameters that a study, or the policy, says by keys of their own: what they were set to here would not act.
+const SAID_ELSEWHERE: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
+
+fn refuse_said_elsewhere(
+    source: &StudySource<'_>,
+    within: &str,
+    keys: impl IntoIterator<Item = String>,
+) -> Result<(), ParameterError> {
+    match keys.into_iter().find(|key| SAID_ELSEWHERE.contains(&key.as_str())) {
+        Some(key) => {
+            let problem =
+                "seeds, days and cash are keys of the study: vary them there, or in several studies";
+            Err(source.wrong_override(within, &key, problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether two values say the same: 0 and 0.0 do.
+fn is_same(one: &Value, other: &Value) -> bool {
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => one.total_cmp(&other).is_eq(),
+        _ => one == other,
+    }
+}
+
 /// What is varied beside policies, scenarios and seeds.
 struct Varied {
     names: Vec<String>,
@@ -255,17 +295,26 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
                 let problem = "sets of overrides have names, each another one";
                 return Err(source.wrong(&format!("overrides.{at}"), problem));
             }
+            let keys = flat(&set.set).into_iter().map(|(key, _)| key);
+            refuse_said_elsewhere(source, "overrides", keys)?;
             let overrides = flat(&set.set).into_iter().map(|(key, value)| (key, value_text(value)));
             sets.push(Level { labels: vec![set.name.clone()], overrides: overrides.collect() });
         }
         all = crossed(&all, &sets);
     }
+    refuse_said_elsewhere(source, "grid", flat(&own.grid).into_iter().map(|(key, _)| key))?;
     for (key, values) in flat(&own.grid) {
         let Value::Array(values) = values else {
             return Err(source.wrong_override("grid", &key, "a list of values is varied"));
         };
         if values.is_empty() {
             return Err(source.wrong_override("grid", &key, "a list without values leaves nothing to play"));
+        }
+        if let Some(at) =
+            (0..values.len()).find(|at| values[..*at].iter().any(|own| is_same(own, &values[*at])))
+        {
+            let problem = format!("the value {} stands twice", value_text(&values[at]));
+            return Err(source.wrong_override("grid", &key, problem));
         }
         let level = |value: &Value| {
             let text = value_text(value);

@@ -107,6 +107,21 @@ fn wrong_studies_name_line_and_key() {
             ["demand_surge.probability", "a list"],
         ),
         (format!("{begin}\n[grid]\n\"leads.saturation_base\" = []\n"), Some(6), ["leads", "nothing to play"]),
+        (
+            format!("{begin}\n[grid]\n\"leads.saturation_base\" = [1, 1.0]\n"),
+            Some(6),
+            ["leads", "stands twice"],
+        ),
+        (
+            format!("{begin}\n[grid]\n\"run.total_days\" = [100, 200]\n"),
+            Some(6),
+            ["run.total_days", "keys of the study"],
+        ),
+        (
+            format!("{begin}scenarios = [\"default\", \"default\"]\n"),
+            Some(4),
+            ["scenarios.1", "stands twice"],
+        ),
         ("name = \"x\"\npolicies = [\"P0\"\nseeds = 1\n".to_owned(), Some(3), ["", ""]),
     ] {
         let path = write(folder.path(), &text);

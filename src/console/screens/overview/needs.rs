@@ -55,7 +55,7 @@ impl Pane<Overview> for NeedsPane {
                 Some(_) => "the run is over; you can still read and query",
                 // Needs whose tool is locked are left out: that is not the same as none.
                 None if look.company.running_lesson().is_some_and(|own| own.tools.is_some()) => {
-                    "no problem that this lesson has a tool for: see your task"
+                    "nothing is listed here; your task says what to do"
                 }
                 None => "nothing: n starts the next week",
             };

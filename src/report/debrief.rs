@@ -213,6 +213,10 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     if with >= mine {
         return String::new();
     }
+    let is_missed = |step: &DebriefStep| step.goals.iter().any(|goal| goal.met == Some(false));
+    if effect.judged.is_none() && own.steps.iter().any(is_missed) {
+        return " Cash alone is no measure of this part: its goals say what it asks for.".to_owned();
+    }
     let good = match (&own.judged_by, effect.judged) {
         (Some(judged), Some(_)) => {
             judged.good.as_ref().and_then(|good| Some((good.last()?.1, judged.figure)))

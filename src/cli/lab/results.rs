@@ -11,7 +11,8 @@ use crate::lab::Policy;
 use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsBy, ResultsTable, idle_company};
 use crate::report::comparable::{Obstacle, RunTerms};
 use crate::session::{
-    Access, Configuration, Ended, RunSummary, Session, Trajectory, all_run_folders, list_runs, run_folder,
+    Access, Configuration, Ended, RunError, RunSummary, Session, Trajectory, all_run_folders, list_runs,
+    run_folder,
 };
 
 /// Options of `lab table`.
@@ -43,10 +44,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         if obstacles.is_empty() { comparable.push(folder) } else { left_out.push(obstacles) }
     }
     let progress = progress_bar(comparable.len() as u64 + 1, "runs");
-    let (mut results, mut closed) = (Vec::new(), 0);
+    let (mut results, mut closed, mut unreadable) = (Vec::new(), 0, Vec::new());
     for folder in comparable {
         match context.check_look(folder) {
-            Ok(()) => results.extend(result_of(folder)?),
+            // One run that is damaged does not take the others' table away.
+            Ok(()) => match result_of(folder) {
+                Ok(result) => results.extend(result),
+                Err(problem) => unreadable.push(problem.to_string()),
+            },
             Err(_) => closed += 1,
         }
         progress.inc(1);
@@ -62,6 +67,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if closed > 0 {
         exhibit.notes.push(format!("Runs whose study shows no results are left out: {closed}."));
     }
+    exhibit.notes.extend(unreadable.iter().map(|why| format!("Left out, for it cannot be read: {why}.")));
     options.output.show(&exhibit)
 }
 
@@ -81,7 +87,7 @@ fn finished_runs(runs: &Path) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     Ok(finished)
 }
 
-fn result_of(folder: &Path) -> Result<Option<FinishedRun>, Failure> {
+fn result_of(folder: &Path) -> Result<Option<FinishedRun>, RunError> {
     let session = Session::open(folder, Access::Read, false)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     Ok(FinishedRun::of(&session, &trajectory.lines))

@@ -106,7 +106,8 @@ pub const FIGURES: &[ComparedFigure] = &[
         "survival",
         "",
         "days",
-        |run| Some(f64::from(run.measures.survival_days)),
+        // How long a company lives is known once its run is over.
+        |run| run.ended.map(|_| f64::from(run.measures.survival_days)),
         || range("mean of three runs of each agent", |agent| Some(agent.mean_survival_days)),
     ),
     figure("minutes played", "", "minutes", |run| Some(run.total.time.active_seconds() / 60.0), nothing),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import os
-from http.client import HTTPConnection
+from http.client import HTTPConnection, HTTPException
 from typing import Any, Dict, Optional, Tuple
 
 #: Seconds that an answer is waited for; a week of a large company takes a few.
@@ -57,7 +57,9 @@ def request(method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Di
         NovamindError: no server answers, or it wants a token that was not given (code ``token``).
     """
     headers = {"Content-Type": "application/json"}
-    token = os.environ.get("NOVAMIND_API_TOKEN")
+    token = os.environ.get("NOVAMIND_API_TOKEN", "").strip()
+    if any(letter.isspace() or not letter.isascii() for letter in token):
+        raise NovamindError("NOVAMIND_API_TOKEN holds more than a token", "token")
     if token:
         headers["Authorization"] = "Bearer " + token
     payload = None if body is None else json.dumps(body).encode()
@@ -69,7 +71,7 @@ def request(method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Di
         connection.request(method, path, payload, headers)
         response = connection.getresponse()
         text = response.read()
-    except OSError as error:
+    except (OSError, HTTPException) as error:
         _close()
         raise NovamindError(f"the server on port {port} does not answer: {error}", "no_server") from error
     try:

@@ -21,16 +21,16 @@ SYSTEM = (
 
 #: System calls that are refused, by machine: new processes and programs, sockets and messages to them, signals to others, a look
 #: into others' memory, their limits and their place in the queue, memory and queues that outlive the script, keys, and rights,
-#: times and attributes of files.
+#: times and attributes of files. Before them stand the machine's sign and its number of prctl.
 REFUSED = {
-    "x86_64": (0xC000003E, (
-        29, 30, 31, 41, 44, 46, 56, 57, 58, 59, 62, 64, 68, 90, 91, 92, 93, 94, 101, 129, 132, 141, 142, 144, 188, 189, 190,
-        197, 198, 199, 200, 203, 234, 235, 240, 250, 251, 260, 261, 268, 280, 297, 298, 302, 307, 310, 311, 314, 321, 322, 323,
+    "x86_64": (0xC000003E, 157, (
+        29, 30, 31, 41, 44, 46, 53, 56, 57, 58, 59, 62, 64, 68, 90, 91, 92, 93, 94, 101, 129, 132, 141, 142, 144, 188, 189, 190,
+        197, 198, 199, 200, 203, 234, 235, 240, 248, 249, 250, 251, 260, 261, 268, 280, 297, 298, 302, 307, 310, 311, 314, 321, 322, 323,
         424, 425, 434, 435, 438, 452, 463, 466,
     )),
-    "aarch64": (0xC00000B7, (
+    "aarch64": (0xC00000B7, 167, (
         5, 6, 7, 14, 15, 16, 30, 52, 53, 54, 55, 88, 117, 118, 119, 122, 129, 130, 131, 138, 140, 180, 186, 190, 194, 195, 196,
-        198, 206, 211, 219, 220, 221, 240, 241, 261, 269, 270, 271, 274, 280, 281, 282, 424, 425, 434, 435, 438, 452, 463, 466,
+        198, 199, 206, 211, 217, 218, 219, 220, 221, 240, 241, 261, 269, 270, 271, 274, 280, 281, 282, 424, 425, 434, 435, 438, 452, 463, 466,
     )),
 }
 
@@ -138,9 +138,10 @@ def enclose():
     # It ends with the program, and gains no rights: without that, nothing below is allowed.
     call(libc.prctl, 1, 9, 0, 0, 0)
     call(libc.prctl, 38, 1, 0, 0, 0)
-    # A user and a network of its own.
+    # A user and a network of its own, and no memory that others share.
     if hasattr(libc, "unshare"):
         call(libc.unshare, 0x10000000 | 0x40000000)
+        call(libc.unshare, 0x08000000)
     for part in (fence_files, refuse_calls):
         try:
             part(ctypes, libc, call)
@@ -195,12 +196,14 @@ def refuse_calls(ctypes, libc, call):
     machine = os.uname().machine
     if machine not in REFUSED or sys.maxsize < 1 << 32:
         return
-    architecture, numbers = REFUSED[machine]
+    architecture, prctl, numbers = REFUSED[machine]
     load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
     steps = [(load, 0, 0, 4), (equal, 1, 0, architecture), (answer, 0, 0, 0x80000000), (load, 0, 0, 0)]
     # Another numbering of the same machine.
-    steps.append((at_least, len(numbers) + 1, 0, 0x40000000))
-    steps.extend((equal, len(numbers) - at, 0, number) for at, number in enumerate(numbers))
+    steps.append((at_least, len(numbers) + 4, 0, 0x40000000))
+    steps.extend((equal, len(numbers) - at + 3, 0, number) for at, number in enumerate(numbers))
+    # That it ends with the program stays as it is: the first option of prctl is refused, the others are not.
+    steps.extend([(equal, 0, 2, prctl), (load, 0, 0, 16), (equal, 1, 0, 1)])
     steps.extend([(answer, 0, 0, 0x7FFF0000), (answer, 0, 0, 0x00050001)])
     program = (Step * len(steps))(*(Step(*step) for step in steps))
     call(libc.prctl, 22, 2, ctypes.pointer(Filter(len(steps), ctypes.cast(program, ctypes.POINTER(Step)))), 0, 0)

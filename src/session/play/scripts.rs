@@ -4,7 +4,7 @@
 //! from the calls of the trajectory; what calculations said before a week stands in its `advance` line, so a resumed run
 //! shows the same dashboard, and runs nothing for it.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::surroundings::Calculated;
 use crate::database::{self, text};
@@ -110,13 +110,20 @@ impl Session {
         }
     }
 
-    /// Runs all calculations on the company as it is. One that fails says why and does not keep the week.
+    /// Runs all calculations on the company as it is. One that fails says why and does not keep the week; all together have the
+    /// time of one query, so that a week never waits longer for them.
     pub(in crate::session) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
         let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
-        let time = self.query_limits().time;
+        let (most, started) = (self.query_limits().time, Instant::now());
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
+            let time = most.saturating_sub(started.elapsed());
             let said = match Language::of(&code) {
+                _ if time.is_zero() => {
+                    let message =
+                        format!("the calculations before it took the {} s of a week", most.as_secs());
+                    Err(Refusal::new("script_timeout", message))
+                }
                 Language::Sql => self.run_statements(&code, time),
                 // Nobody asks what it asks.
                 Language::Python => {

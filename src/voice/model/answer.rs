@@ -1,8 +1,12 @@
 //! What all answers have in common: a JSON array, and texts that can be shown.
 
 use serde_json::Value;
+use unicode_width::UnicodeWidthChar;
 
 use crate::notation::printable;
+
+/// Letters without a width of their own, at most: accents of a text that is written apart.
+const MOST_MARKS: usize = 20;
 
 /// The array that an answer is. Models like to put it into a block of code; nothing else may stand around it.
 pub(super) fn array(answer: &str) -> Result<Vec<Value>, String> {
@@ -26,6 +30,10 @@ pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> 
     if text.chars().any(char::is_control) || printable(text) != text {
         return Err("a text has control characters or line ends".to_owned());
     }
+    // Marks that pile up on a letter reach into the lines around it.
+    if text.chars().filter(|letter| letter.width() == Some(0)).count() > MOST_MARKS {
+        return Err(format!("a text has more than {MOST_MARKS} letters without a width"));
+    }
     match text.chars().count() {
         letters if letters > most_letters => {
             Err(format!("a text has {letters} letters, more than {most_letters}"))
@@ -37,6 +45,13 @@ pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_that_pile_up_are_refused_and_accents_are_not() {
+        assert!(check_text("Cafe\u{301}, 12 euros", 100).is_ok());
+        let piled = format!("Up{} 12", "\u{301}".repeat(MOST_MARKS + 1));
+        assert!(check_text(&piled, 100).expect_err("piled").contains("without a width"));
+    }
 
     #[test]
     fn an_array_may_stand_in_a_block_of_code_and_nowhere_else() {

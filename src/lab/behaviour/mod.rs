@@ -294,6 +294,7 @@ fn correlation_in_words(runs: &[ObservedRun]) -> String {
 mod tests {
     use super::*;
     use crate::report::test_kit;
+    use crate::session::Ended;
 
     fn observed() -> Vec<ObservedRun> {
         let (session, lines) = test_kit::recorded();
@@ -313,7 +314,14 @@ mod tests {
 
     #[test]
     fn measures_have_a_mean_and_a_spread() {
-        let runs = observed();
+        let mut runs = observed();
+        let survival = |runs: &[ObservedRun]| {
+            let rows = exhibit_of(runs).table("measures").expect("measures").as_csv();
+            let at = rows[0].iter().position(|name| name == "survival").expect("survival");
+            [1, 2, 3].map(|row: usize| rows[row][at].clone())
+        };
+        assert_eq!(survival(&runs), ["", "", ""], "nobody knows how long an open run lives");
+        runs.iter_mut().for_each(|run| run.book.ended = Some(Ended::Horizon));
         let exhibit = exhibit_of(&runs);
         let rows = exhibit.table("measures").expect("measures").as_csv();
         assert_eq!(rows.len(), 1 + 2 + 2);

@@ -97,7 +97,7 @@ fn chart_in_words(chart: &Chart) -> String {
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
             // Curves of one chart are read against each other: they have one scale.
-            let all: Vec<f64> = curves.iter().flat_map(|own| values_of(own)).collect();
+            let all: Vec<f64> = curves.iter().flat_map(values_of).collect();
             let trend = |own: &Curve| trend_between(&values_of(own), extremes(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
         }

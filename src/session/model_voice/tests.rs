@@ -101,7 +101,7 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
     assert_eq!(told, [None, None, None]);
     let folder = folder_of(&session);
     let (hash, words) = (session.state_hash().0, shown(&session));
-    let effects = session.world().market.social.own[0].effects.as_ref().expect("it was judged").clone();
+    let effects = session.world().market.social.own[0].effects.expect("it was judged");
     assert!(effects.iter().filter(|effect| **effect == 0.8).count() >= 6);
     assert!(session.simulation.feed.judgements[0].iter().all(|own| own.reason() == "It speaks to me."));
     assert!(

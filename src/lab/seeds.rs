@@ -3,7 +3,7 @@
 use crate::notation::grouped;
 
 /// Most seeds that a range holds: more of them is a mistake of typing.
-pub const MOST_SEEDS: u64 = 1_000_000;
+const MOST_SEEDS: u64 = 1_000_000;
 
 /// A seed or a range of seeds, both ends included.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub struct Seeds {
 /// Reads `7` or `1..24`.
 ///
 /// # Errors
-/// It is neither, or the range holds no seed, or more than [`MOST_SEEDS`].
+/// It is neither, or the range holds no seed, or more than `MOST_SEEDS`.
 pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {

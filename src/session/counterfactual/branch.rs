@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use serde_json::{Value, json};
 
 use super::companies::{CallHere, in_other_numbers};
-use super::edits::{AddedCall, AddedSetting, Edits, Redrawn};
+use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
 use crate::session::figures::groups::{self, GroupWeek};
@@ -23,7 +23,6 @@ use crate::world::command::Command;
 use crate::world::events::{DayFigures, LedgerEntry};
 use crate::world::identifiers::ByGroup;
 use crate::world::market::surges::week_end;
-use crate::world::params::Params;
 use crate::world::state::World;
 
 /// What came of days that were simulated again.
@@ -332,12 +331,14 @@ impl<'a> OpenBranch<'a> {
         for AddedCall { tool, args, .. } in edits.added.iter().filter(|added| added.day == day) {
             self.try_new(*tool, args);
         }
-        if edits.capacity_follows_usage
+        if let Some(FollowedUsage { rule, from }) = edits.capacity
             && self.week.days_run == 0
-            && let Some(busiest) = self.weeks.last().map(|week| week.busiest_day).or(edits.busiest_before)
+            && day >= from
         {
-            let tier = covering_tier(busiest, &self.simulation.params);
-            if tier != self.simulation.world.settings.core.capacity_tier {
+            let now = self.simulation.world.settings.core.capacity_tier;
+            let before = self.weeks.last().or(edits.week_before.as_ref());
+            let tier = rule.tier(now, before, &self.simulation.params);
+            if tier != now {
                 let args = json!({ "tier": tier });
                 self.try_new(ToolId::SetCapacityTier, &args);
                 self.followed.push(AddedCall { day, tool: ToolId::SetCapacityTier, args });
@@ -423,13 +424,6 @@ impl<'a> OpenBranch<'a> {
             end,
         }
     }
-}
-
-/// The smallest capacity tier that serves so many units a day without overload; the largest where none does.
-pub(in crate::session) fn covering_tier(units: u64, params: &Params) -> u8 {
-    let tiers = &params.capacity_tier;
-    let covering = tiers.iter().find(|tier| u64::from(tier.capacity_units) >= units);
-    covering.or(tiers.last()).map_or(0, |tier| tier.tier)
 }
 
 /// Mean satisfaction of the individual subscribers, on its scale; not a number without any.

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use crate::session::figures::capacity_by_usage::UsageRule;
+use crate::session::figures::week::WeekFigures;
 use crate::tools::ToolId;
 use crate::world::customers::numbers::CustomerNumbers;
 use crate::world::held::Held;
@@ -23,10 +25,10 @@ pub(in crate::session) struct Edits {
     pub added: Vec<AddedCall>,
     /// Parameters that are set besides, before those calls.
     pub set: Vec<AddedSetting>,
-    /// At the start of every week the smallest capacity tier is set that covers the busiest day of the week before.
-    pub capacity_follows_usage: bool,
-    /// Usage on the busiest day of the week before all of it, units; none where no week is before it, or it does not matter.
-    pub busiest_before: Option<u64>,
+    /// The capacity follows usage at the start of every week.
+    pub capacity: Option<FollowedUsage>,
+    /// The week before all of it, for the first day on which the capacity follows usage.
+    pub week_before: Option<WeekFigures>,
     /// Which customers the calls mean by their numbers; none where numbers are the same in every branch.
     pub meant: Option<Arc<CustomerNumbers>>,
     /// Inputs of the world that are held.
@@ -35,6 +37,13 @@ pub(in crate::session) struct Edits {
     pub params: Option<Arc<Params>>,
     /// Other luck.
     pub redrawn: Option<Redrawn>,
+}
+
+/// By which rule the capacity follows usage, and from which day on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::session) struct FollowedUsage {
+    pub rule: UsageRule,
+    pub from: u32,
 }
 
 /// Luck that is redrawn after a day.

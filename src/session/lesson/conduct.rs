@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::definition::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, GuessTold, LessonAccess, Pitfall,
-    PitfallBound, RationaleAsked,
+    ForecastsAsked, GoalBound, Guess, GuessForm, GuessTold, LessonAccess, Pitfall, PitfallBound,
+    RationaleAsked,
 };
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
@@ -106,9 +106,7 @@ impl Session {
 
     /// What the lesson does by itself before a week.
     pub(in crate::session) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
-        let follows =
-            self.lesson.as_deref().is_some_and(|own| own.own_part().capacity == CapacityMover::FollowsUsage);
-        if !follows {
+        if !self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity()) {
             return Ok(());
         }
         let (now, next) = (self.simulation.world.settings.core.capacity_tier, self.capacity_towards_usage());

@@ -6,7 +6,7 @@
 use std::thread;
 
 use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::definition::{CapacityMover, LessonGoal, ReferencePlay, ScheduledCalls};
+use super::definition::{LessonGoal, ReferencePlay, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
@@ -207,8 +207,7 @@ impl Session {
     /// What the student called, by week: every call but those of the start and of the lesson itself.
     fn own_calls(&self, standing: &LessonStanding) -> Vec<ScheduledCalls> {
         let part = standing.own_part();
-        let follows = part.capacity == CapacityMover::FollowsUsage;
-        let of_lesson = |tool: ToolId| follows && tool == ToolId::SetCapacityTier;
+        let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
         let starts = part.start.iter().flat_map(|own| &own.calls);
         let starts =
             starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();

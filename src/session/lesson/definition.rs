@@ -109,6 +109,13 @@ pub struct LessonPart {
     pub steps: Vec<LessonStep>,
 }
 
+impl LessonPart {
+    /// Whether the capacity follows usage by itself.
+    pub fn moves_capacity(&self) -> bool {
+        self.capacity == CapacityMover::FollowsUsage
+    }
+}
+
 /// Who moves the capacity.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 pub enum CapacityMover {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::definition::{CapacityMover, GuessForm, LessonPart, LessonStep};
+use super::definition::{GuessForm, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
 use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote};
 use crate::session::trajectory::{Line, Record};
@@ -80,8 +80,7 @@ impl LessonStanding {
     /// # Errors
     /// `not_in_this_lesson`.
     pub(in crate::session) fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
-        let own_capacity = self.own_part().capacity == CapacityMover::FollowsUsage;
-        if own_capacity && tool == ToolId::SetCapacityTier {
+        if self.own_part().moves_capacity() && tool == ToolId::SetCapacityTier {
             let message = "capacity follows usage by itself in this lesson";
             return Err(Refusal::new("not_in_this_lesson", message));
         }

@@ -4,15 +4,13 @@ use std::ops::ControlFlow;
 
 use serde_json::json;
 
-use super::decision_edit::{DecisionEdit, Opening, drop_all, edits};
+use super::decision_edit::{DecisionEdit, Opening, edits, let_capacity_follow};
 use super::lesson_limits::refuse_locked;
-use crate::session::counterfactual::branch::covering_tier;
 use crate::session::counterfactual::companies::{CallHere, in_other_numbers};
-use crate::session::counterfactual::edits::Edits;
+use crate::session::counterfactual::edits::{Edits, FollowedUsage};
 use crate::session::counterfactual::script::{Move, PastCall, moves};
+use crate::session::figures::capacity_by_usage::UsageRule;
 use crate::session::folder::mode::Mode;
-use crate::session::lesson::definition::CapacityMover;
-use crate::session::lesson::standing::LessonStanding;
 use crate::session::resume::branch::not_saved;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{JudgedPost, Via, VoiceAnswer};
@@ -67,11 +65,11 @@ impl Session {
         let (settings, params) = (session.settings(), session.params());
         let opening = Opening { day: from, settings, params, mode };
         let mut edits = edits(decided, &opening, &known, until.max(from + 1))?;
-        let part = self.lesson.as_deref().map(LessonStanding::own_part);
-        if part.is_some_and(|part| part.capacity == CapacityMover::FollowsUsage) && !decided.is_empty() {
+        let is_moved = self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity());
+        if is_moved && !decided.is_empty() && edits.capacity.is_none() {
             // The branch is no lesson: what that does by itself is done for it as long as it is played.
-            edits.capacity_follows_usage = true;
-            drop_all(ToolId::SetCapacityTier, &mut edits, &known);
+            let followed = FollowedUsage { rule: UsageRule::StepByStep, from };
+            let_capacity_follow(followed, &mut edits, &known);
         }
         let mut adopted =
             Adopting { session, refused: Vec::new(), meant: &self.simulation.world.customers.numbers };
@@ -178,10 +176,8 @@ impl Adopting<'_> {
             self.call(added.tool, &added.args);
         }
         let is_decision_day = day.is_multiple_of(self.session.params().run.days_per_week);
-        if let Some(week) =
-            self.session.weeks().last().filter(|_| is_decision_day && edits.capacity_follows_usage)
-        {
-            let tier = covering_tier(week.busiest_day, self.session.params());
+        if let Some(followed) = edits.capacity.filter(|_| is_decision_day) {
+            let tier = self.session.tier_by(followed.rule);
             if tier != self.session.settings().core.capacity_tier {
                 self.call(ToolId::SetCapacityTier, &json!({ "tier": tier }));
             }

@@ -6,9 +6,10 @@ use std::str::FromStr;
 use serde_json::{Map, Value, json};
 
 use crate::notation::json_number;
-use crate::session::counterfactual::edits::{AddedCall, AddedSetting, Edits};
+use crate::session::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage};
 use crate::session::counterfactual::kept_state::KeptState;
 use crate::session::counterfactual::script::{Move, PastCall};
+use crate::session::figures::capacity_by_usage::UsageRule;
 use crate::session::folder::mode::Mode;
 use crate::session::play::overrides::value_of_json;
 use crate::session::play::parameters::unknown;
@@ -154,8 +155,8 @@ impl DecisionEdit {
                 edits.set.push(AddedSetting { day, key: key.clone(), value: value.clone() });
             }
             DecisionEdit::CapacityFollowsUsage => {
-                drop_all(ToolId::SetCapacityTier, edits, moves);
-                edits.capacity_follows_usage = true;
+                let followed = FollowedUsage { rule: UsageRule::BusiestDay, from: opening.day };
+                let_capacity_follow(followed, edits, moves);
             }
         }
         Ok(())
@@ -169,8 +170,13 @@ fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
     })
 }
 
-/// Makes no call of a tool.
-pub(super) fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
+/// Lets the capacity follow usage, and makes no call that sets it.
+pub(super) fn let_capacity_follow(followed: FollowedUsage, edits: &mut Edits, moves: &[Move]) {
+    drop_all(ToolId::SetCapacityTier, edits, moves);
+    edits.capacity = Some(followed);
+}
+
+fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
     edits.dropped.extend(calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
 }
 

@@ -6,35 +6,28 @@ use std::path::Path;
 use super::decision_edit::DecisionEdit;
 use crate::session::counterfactual::past::Past;
 use crate::session::counterfactual::script::Move;
-use crate::session::lesson::definition::CapacityMover;
+use crate::session::lesson::definition::LessonPart;
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::trajectory::Trajectory;
 use crate::session::why::not_readable;
 use crate::tools::{Refusal, ToolId};
 
-/// Where the student of an unfinished lesson stands.
+/// Where the student of an unfinished lesson stands, and whether the lesson of a run, over or not, moves the capacity by itself.
 ///
 /// # Errors
 /// `not_readable`.
-pub(super) fn lesson_of(folder: &Path, past: &Past) -> Result<Option<LessonStanding>, Refusal> {
-    let Some(stamp) = past.manifest.lesson.as_ref().filter(|_| !past.ended) else { return Ok(None) };
+pub(super) fn lesson_of(folder: &Path, past: &Past) -> Result<(Option<LessonStanding>, bool), Refusal> {
+    let Some(stamp) = past.manifest.lesson.as_ref() else { return Ok((None, false)) };
     let lesson = Lesson::of_run(folder, &stamp.name).map_err(|error| not_readable(&error))?;
+    let part = (stamp.part as usize).clamp(1, lesson.plan.parts.len().max(1)) - 1;
+    let moves_capacity = lesson.plan.parts.get(part).is_some_and(LessonPart::moves_capacity);
+    if past.ended {
+        return Ok((None, moves_capacity));
+    }
     let trajectory =
         Trajectory::read(&folder.join("trajectory.jsonl")).map_err(|error| not_readable(&error))?;
-    let part = (stamp.part as usize).clamp(1, lesson.plan.parts.len().max(1)) - 1;
-    Ok(Some(LessonStanding::of(lesson.into(), part, &trajectory.lines)))
-}
-
-/// Whether the capacity follows usage by itself in the lesson of a run, be it over or not.
-///
-/// # Errors
-/// `not_readable`.
-pub(super) fn follows_usage(folder: &Path, past: &Past) -> Result<bool, Refusal> {
-    let Some(stamp) = past.manifest.lesson.as_ref() else { return Ok(false) };
-    let lesson = Lesson::of_run(folder, &stamp.name).map_err(|error| not_readable(&error))?;
-    let part = lesson.plan.parts.get((stamp.part as usize).saturating_sub(1));
-    Ok(part.is_some_and(|part| part.capacity == CapacityMover::FollowsUsage))
+    Ok((Some(LessonStanding::of(lesson.into(), part, &trajectory.lines)), moves_capacity))
 }
 
 /// Refuses to decide otherwise what the student could not decide.

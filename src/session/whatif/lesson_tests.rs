@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
+use crate::session::figures::capacity_by_usage::UsageRule;
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::create::{NewRun, Storage};
 use crate::session::lesson::conduct::LessonEntry;
@@ -57,7 +58,7 @@ text = "Nothing either."
 pitfall = "none"
 "#;
 
-const MORE: &str = r#"in 1 set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 3000}}}"#;
+const MORE: &str = r#"in 1 set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 6000}}}"#;
 
 fn begun(folder: &Path, runs: &str) -> Session {
     let path = folder.join("more.toml");
@@ -104,9 +105,14 @@ fn the_capacity_follows_usage_in_every_branch_as_it_does_in_the_lesson() {
     let ahead = compared(&session, 10, &[MORE]).expect("an answer");
     weeks(&mut session, 6);
     let mut other = begun(folder.path(), "decided");
-    let more = serde_json::json!({"targeted_spend": {"content_marketing": {"S1": 3000}}});
+    let more = serde_json::json!({"targeted_spend": {"content_marketing": {"S1": 6000}}});
     other.call("set_targeted_ad_spend", &more, Via::Plain).expect("as by hand");
-    weeks(&mut other, 10);
+    let mut is_distinguished = false;
+    for _ in 0..10 {
+        weeks(&mut other, 1);
+        is_distinguished |= other.tier_by(UsageRule::BusiestDay) != other.tier_by(UsageRule::StepByStep);
+    }
+    assert!(is_distinguished, "another rule would lead elsewhere");
     let tier = |session: &Session| session.settings().core.capacity_tier;
     assert!(tier(&other) > tier(&session), "the lesson rents more where more is used");
     let [was, decided] = &ahead.branches[..] else { panic!("{:?}", ahead.branches) };

@@ -27,20 +27,22 @@ pub use figure::BranchFigure;
 pub use futures::{FutureBand, Futures};
 pub use kin::{BranchOrigin, FirstChange, Kin, branches_of, origin_of};
 
-use self::lesson_limits::{follows_usage, lesson_of, refuse_locked};
+use self::lesson_limits::{lesson_of, refuse_locked};
 use super::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
 use super::counterfactual::companies::highest_named;
-use super::counterfactual::edits::{Edits, Redrawn};
+use super::counterfactual::edits::{Edits, FollowedUsage, Redrawn};
 use super::counterfactual::kept_state::KeptState;
 use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::one_each::one_each;
 use super::counterfactual::past::Past;
 use super::counterfactual::script::{Move, PastDecision};
 use super::why::{Sight, not_readable, sight};
+use crate::session::figures::capacity_by_usage::UsageRule;
+use crate::session::figures::week::WeekFigures;
 use crate::session::folder::mode::Mode;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::state::Session;
-use crate::tools::{Refusal, ToolId};
+use crate::tools::Refusal;
 use crate::world::events::DayFigures;
 
 /// Alternatives that stand side by side, at most.
@@ -63,7 +65,7 @@ pub struct WhatIf {
     /// The unfinished lesson that the run belongs to.
     lesson: Option<LessonStanding>,
     /// The lesson of the run moves the capacity by itself: it does so in every branch.
-    follows_usage: bool,
+    moves_capacity: bool,
 }
 
 /// Days of a run from which branches part.
@@ -81,14 +83,14 @@ impl OfRecord for WhatIf {
     fn read(folder: &Path) -> Result<WhatIf, Refusal> {
         let past = Past::read(folder).map_err(|error| not_readable(&error))?;
         let sight = sight(&past.manifest, past.ended)?;
-        let (lesson, follows_usage) = (lesson_of(folder, &past)?, follows_usage(folder, &past)?);
-        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson, follows_usage })
+        let (lesson, moves_capacity) = lesson_of(folder, &past)?;
+        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson, moves_capacity })
     }
 
     fn renew(&mut self) -> Result<(), Refusal> {
         self.past.renew().map_err(|error| not_readable(&error))?;
         self.sight = sight(&self.past.manifest, self.past.ended)?;
-        self.lesson = lesson_of(&self.folder, &self.past)?;
+        (self.lesson, self.moves_capacity) = lesson_of(&self.folder, &self.past)?;
         Ok(())
     }
 }
@@ -125,12 +127,11 @@ impl WhatIf {
             alternatives.iter().try_for_each(|own| refuse_locked(lesson, own, &parting.moves))?;
         }
         let (all, mut edits) = all_edits(alternatives, parting, self.past.manifest.mode)?;
-        let busiest = parting.busiest_before(self.past.days_per_week());
+        let week_before = parting.week_before(self.past.days_per_week());
         for (own, decided) in edits.iter_mut().zip(&all) {
-            own.busiest_before = busiest;
-            own.capacity_follows_usage |= self.follows_usage;
-            if self.follows_usage && !decided.is_empty() {
-                decision_edit::drop_all(ToolId::SetCapacityTier, own, &parting.moves);
+            own.week_before = week_before;
+            if self.moves_capacity {
+                self.move_capacity_as_lesson(own, decided, parting);
             }
         }
         let Some(day) = parting.last_meeting(&edits) else { return Ok(Some((all, edits))) };
@@ -140,6 +141,20 @@ impl WhatIf {
         let meant = Arc::new(met.world.customers.numbers.clone());
         edits.iter_mut().for_each(|own| own.meant = Some(meant.clone()));
         Ok(Some((all, edits)))
+    }
+
+    /// Lets the lesson move the capacity: in the run as it was from the last recorded day on, and everywhere where something is
+    /// decided otherwise, unless that is another rule.
+    fn move_capacity_as_lesson(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &Parting) {
+        let rule = UsageRule::StepByStep;
+        match (decided.is_empty(), edits.capacity) {
+            (true, _) => edits.capacity = Some(FollowedUsage { rule, from: self.past.last_day() }),
+            (false, None) => {
+                let followed = FollowedUsage { rule, from: parting.start.world.day };
+                decision_edit::let_capacity_follow(followed, edits, &parting.moves);
+            }
+            (false, Some(_)) => {}
+        }
     }
 
     /// The calls of the run from a week on: what can be decided otherwise.
@@ -353,10 +368,12 @@ impl Parting {
         (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
     }
 
-    /// Usage on the busiest day of the week before the branches part.
-    fn busiest_before(&self, days_per_week: u32) -> Option<u64> {
-        let week = self.earlier.iter().rev().take(days_per_week as usize);
-        week.map(|day| day.total_usage).max()
+    /// The week before the branches part, as far as usage goes.
+    fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
+        let from = self.earlier.len().checked_sub(days_per_week as usize)?;
+        let mut week = WeekFigures::default();
+        self.earlier[from..].iter().for_each(|day| week.add(day));
+        Some(week)
     }
 
     /// The last day of the run on which a call names a customer who came after the branches part; such customers have other

@@ -14,6 +14,7 @@ use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
 use crate::session::trajectory::{Record, Trajectory};
 use crate::statistics::Interval;
+use crate::tools::ToolId;
 use crate::world::identifiers::Group;
 
 fn on(_: usize, _: usize) -> ControlFlow<()> {

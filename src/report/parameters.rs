@@ -14,6 +14,16 @@ pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {
     }
 }
 
+/// A parameter that was set, as the record tells it: `set leads.saturation_base: 1 → 0.9 from day 30 on`.
+pub fn entry_in_words(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
+    format!("set {key}: {old} → {new}{}", since_in_words(from_day))
+}
+
+/// ` from day 30 on`; nothing where it acted at once.
+pub fn since_in_words(from_day: Option<u32>) -> String {
+    from_day.map_or(String::new(), |day| format!(" from day {day} on"))
+}
+
 /// What differs from the scenario, one parameter in a line, and what waits for its day.
 pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
     let against = match &changed.scenario {

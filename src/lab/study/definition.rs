@@ -75,12 +75,7 @@ struct StudySource<'a> {
 
 impl StudySource<'_> {
     fn wrong(&self, key: &str, problem: impl Into<String>) -> ParameterError {
-        ParameterError {
-            source: self.name.clone(),
-            line: line_of_key(self.text, key),
-            key: key.to_owned(),
-            problem: problem.into(),
-        }
+        ParameterError::of_key(&self.name, self.text, key, problem)
     }
 
     /// What is wrong with an override: at the first line that names it from its table on.
@@ -254,16 +249,16 @@ fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), Para
 /// Parameters that a study, or the policy, says by keys of their own: what they were set to here would not act.
 const SAID_ELSEWHERE: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
-fn refuse_said_elsewhere(
+fn refuse_said_elsewhere<'a>(
     source: &StudySource<'_>,
     within: &str,
-    keys: impl IntoIterator<Item = String>,
+    mut keys: impl Iterator<Item = &'a String>,
 ) -> Result<(), ParameterError> {
-    match keys.into_iter().find(|key| SAID_ELSEWHERE.contains(&key.as_str())) {
+    match keys.find(|key| SAID_ELSEWHERE.contains(&key.as_str())) {
         Some(key) => {
             let problem =
                 "seeds, days and cash are keys of the study: vary them there, or in several studies";
-            Err(source.wrong_override(within, &key, problem))
+            Err(source.wrong_override(within, key, problem))
         }
         None => Ok(()),
     }
@@ -295,15 +290,16 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
                 let problem = "sets of overrides have names, each another one";
                 return Err(source.wrong(&format!("overrides.{at}"), problem));
             }
-            let keys = flat(&set.set).into_iter().map(|(key, _)| key);
-            refuse_said_elsewhere(source, "overrides", keys)?;
-            let overrides = flat(&set.set).into_iter().map(|(key, value)| (key, value_text(value)));
+            let given = flat(&set.set);
+            refuse_said_elsewhere(source, "overrides", given.iter().map(|(key, _)| key))?;
+            let overrides = given.into_iter().map(|(key, value)| (key, value_text(value)));
             sets.push(Level { labels: vec![set.name.clone()], overrides: overrides.collect() });
         }
         all = crossed(&all, &sets);
     }
-    refuse_said_elsewhere(source, "grid", flat(&own.grid).into_iter().map(|(key, _)| key))?;
-    for (key, values) in flat(&own.grid) {
+    let grid = flat(&own.grid);
+    refuse_said_elsewhere(source, "grid", grid.iter().map(|(key, _)| key))?;
+    for (key, values) in grid {
         let Value::Array(values) = values else {
             return Err(source.wrong_override("grid", &key, "a list of values is varied"));
         };

@@ -47,22 +47,17 @@ impl Interpreter {
             return Err(problem(arguments, "guess takes one answer, for instance guess 12000"));
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
-        let value = match self.session.lesson_page().and_then(|page| page.question) {
-            Some(question) => typed_guess(&question, &written).map_err(|text| problem(arguments, &text))?,
-            None => return Ok(Answer::refused("guess", self.nothing_asked())),
-        };
+        if self.session.lesson().is_none() {
+            return Ok(Answer::refused("guess", no_lesson()));
+        }
+        // Where nothing is asked, the session says so whatever is answered.
+        let question = self.session.lesson_page().and_then(|page| page.question);
+        let value = question.map_or(Ok(f64::NAN), |question| typed_guess(&question, &written));
+        let value = value.map_err(|text| problem(arguments, &text))?;
         Ok(match self.session.guess_in_lesson(value) {
             Ok(()) => self.lesson_page("guess"),
             Err(refusal) => Answer::refused("guess", refusal),
         })
-    }
-
-    /// Why nothing can be answered now.
-    fn nothing_asked(&self) -> Refusal {
-        match self.session.lesson() {
-            Some(_) => Refusal::new("no_question", "no question of the lesson is open"),
-            None => no_lesson(),
-        }
     }
 
     /// `hint`

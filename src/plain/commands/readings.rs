@@ -15,6 +15,7 @@ use crate::report::cash_change_in_words;
 use crate::report::chapters::change_in_words;
 use crate::report::deals::deals_in_words;
 use crate::report::needs::{Need, Place, needs};
+use crate::report::parameters::entry_in_words;
 use crate::report::peak::PeakProjection;
 use crate::report::research::late_lines;
 use crate::report::review::{alike_lines, money_lines};
@@ -171,8 +172,7 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &CompanyNames
             format!("day {day:>3}  {tool}{remark} {words}")
         }
         JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
-            let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
-            format!("day {day:>3}  set {key}: {old} → {new}{from}")
+            format!("day {day:>3}  {}", entry_in_words(key, [old, new], *from_day))
         }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
             let naive = if filled_naively[0] { ", naive" } else { "" };

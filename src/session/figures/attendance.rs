@@ -2,8 +2,8 @@
 //!
 //! Time is what passes between two lines. Where `session` and `clock` lines say who was there, they decide; before the
 //! first of them, and in runs that have none, a gap of more than ten minutes is a break. The days that the program
-//! simulates are nobody's time, nor is waiting for a language model. Everything is counted in whole nanoseconds, so that whoever adds it up again gets the
-//! same.
+//! simulates are nobody's time, nor is waiting for a language model. Everything is counted in whole nanoseconds, so that
+//! whoever adds it up again gets the same.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 

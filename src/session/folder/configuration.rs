@@ -191,18 +191,9 @@ impl Scenario {
 }
 
 fn read_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<Scenario, ParameterError> {
-    let file: ScenarioFile = toml::from_str(&source.text).map_err(|error| ParameterError {
-        source: source.name.clone(),
-        line: error.span().map(|span| source.text[..span.start].matches('\n').count() + 1),
-        key: String::new(),
-        problem: error.message().to_owned(),
-    })?;
-    let wrong = |key: &str, problem: String| ParameterError {
-        source: source.name.clone(),
-        line: line_of_key(&source.text, key),
-        key: key.to_owned(),
-        problem,
-    };
+    let file: ScenarioFile = toml::from_str(&source.text)
+        .map_err(|error| ParameterError::of_toml(&source.name, &source.text, &error))?;
+    let wrong = |key: &str, problem: String| ParameterError::of_key(&source.name, &source.text, key, problem);
     file.days.map_or(Ok(()), check_days).map_err(|problem| wrong("days", problem))?;
     file.cash.map_or(Ok(()), check_cash).map_err(|problem| wrong("cash", problem))?;
     Ok(Scenario {

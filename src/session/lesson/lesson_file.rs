@@ -48,12 +48,8 @@ impl Lesson {
         texts: String,
         shipped: bool,
     ) -> Result<Lesson, ParameterError> {
-        let read: LessonPlan = toml::from_str(&plan.text).map_err(|error| ParameterError {
-            source: plan.name.clone(),
-            line: error.span().map(|span| plan.text[..span.start].matches('\n').count() + 1),
-            key: String::new(),
-            problem: error.message().to_owned(),
-        })?;
+        let read: LessonPlan = toml::from_str(&plan.text)
+            .map_err(|error| ParameterError::of_toml(&plan.name, &plan.text, &error))?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(plan.text.as_bytes()).update(b"\0").update(texts.as_bytes());
         let lesson = Lesson {

@@ -18,7 +18,7 @@ use crate::session::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_
 use crate::session::resume::sealing::SealKey;
 use crate::session::trajectory::record::Activity;
 use crate::voice::model::settings::ModelSettings;
-use crate::world::params::{ParameterError, line_of_key};
+use crate::world::params::ParameterError;
 
 /// Name of the file that makes a folder a study.
 pub const STUDY_FILE: &str = "study.toml";
@@ -303,7 +303,9 @@ impl Study {
         if assignment.is_none() && protocol.seeds.plan != SeedPlan::One {
             let problem =
                 "assignment.csv is missing: this plan gives seeds by it. `novamind study assign` writes one";
-            return Err(wrong(&path.display().to_string(), &text, "seeds.plan", problem).into());
+            return Err(
+                ParameterError::of_key(&path.display().to_string(), &text, "seeds.plan", problem).into()
+            );
         }
         let mut digest = blake3::Hasher::new_derive_key("novamind study protocol");
         let mut take = |name: &str, text: &str| {
@@ -361,13 +363,9 @@ impl Protocol {
     /// # Errors
     /// The first thing that is wrong, with its line and key.
     pub fn read(source: &str, text: &str) -> Result<Protocol, ParameterError> {
-        let protocol: Protocol = toml::from_str(text).map_err(|error| ParameterError {
-            source: source.to_owned(),
-            line: error.span().map(|span| text[..span.start].matches('\n').count() + 1),
-            key: String::new(),
-            problem: error.message().to_owned(),
-        })?;
-        protocol.check().map_err(|(key, problem)| wrong(source, text, key, &problem))?;
+        let protocol: Protocol =
+            toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
+        protocol.check().map_err(|(key, problem)| ParameterError::of_key(source, text, key, problem))?;
         Ok(protocol)
     }
 
@@ -435,16 +433,6 @@ fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
         _ => "voice",
     };
     (key, problem)
-}
-
-/// What is wrong with a key of a file.
-pub(super) fn wrong(source: &str, text: &str, key: &str, problem: &str) -> ParameterError {
-    ParameterError {
-        source: source.to_owned(),
-        line: line_of_key(text, key),
-        key: key.to_owned(),
-        problem: problem.to_owned(),
-    }
 }
 
 fn read_if_there(path: &Path) -> Result<Option<String>, RunError> {

@@ -5,7 +5,6 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::definition::wrong;
 use crate::world::params::ParameterError;
 
 /// Questions that are asked together.
@@ -235,16 +234,12 @@ impl Questionnaire {
     /// The first thing that is wrong, with its line and key.
     pub fn read(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
         let source = path.display().to_string();
-        let read: Questionnaire = toml::from_str(text).map_err(|error| ParameterError {
-            source: source.clone(),
-            line: error.span().map(|span| text[..span.start].matches('\n').count() + 1),
-            key: String::new(),
-            problem: error.message().to_owned(),
-        })?;
+        let read: Questionnaire =
+            toml::from_str(text).map_err(|error| ParameterError::of_toml(&source, text, &error))?;
         let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let questionnaire = Questionnaire { name, ..read };
         if (questionnaire.when == Moment::Weeks) == questionnaire.weeks.is_empty() {
-            return Err(wrong(
+            return Err(ParameterError::of_key(
                 &source,
                 text,
                 "weeks",
@@ -264,19 +259,25 @@ impl Questionnaire {
             if let Some(key) = unknown {
                 let problem =
                     format!("{}: {key} is no key of this form; its keys are {}", question.id, own.join(", "));
-                return Err(wrong(&source, text, key, &problem));
+                return Err(ParameterError::of_key(&source, text, key, problem));
             }
             let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
             if question.id.is_empty() || !question.id.bytes().all(fits) {
                 let problem =
                     format!("{:?} is no name of a question: letters, digits, underscores", question.id);
-                return Err(wrong(&source, text, "question", &problem));
+                return Err(ParameterError::of_key(&source, text, "question", problem));
             }
             if !known.insert(&question.id) {
-                return Err(wrong(&source, text, "question", &format!("{} stands here twice", question.id)));
+                return Err(ParameterError::of_key(
+                    &source,
+                    text,
+                    "question",
+                    format!("{} stands here twice", question.id),
+                ));
             }
-            let problem =
-                |problem: String| wrong(&source, text, "question", &format!("{}: {problem}", question.id));
+            let problem = |problem: String| {
+                ParameterError::of_key(&source, text, "question", format!("{}: {problem}", question.id))
+            };
             question.form.check().map_err(problem)?;
         }
         Ok(questionnaire)

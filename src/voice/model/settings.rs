@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::notation::printable;
-use crate::world::params::{ParameterError, line_of_key};
+use crate::world::params::ParameterError;
 
 /// Seconds that a week may wait where nothing is said.
 const SECONDS_A_WEEK: u32 = 30;
@@ -74,18 +74,9 @@ impl ModelSettings {
     /// # Errors
     /// The first thing that is wrong, with its line and key.
     pub fn read(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
-        let settings: ModelSettings = toml::from_str(text).map_err(|error| ParameterError {
-            source: source.to_owned(),
-            line: error.span().map(|span| text[..span.start].matches('\n').count() + 1),
-            key: String::new(),
-            problem: error.message().to_owned(),
-        })?;
-        settings.check().map_err(|(key, problem)| ParameterError {
-            source: source.to_owned(),
-            line: line_of_key(text, key),
-            key: key.to_owned(),
-            problem,
-        })?;
+        let settings: ModelSettings =
+            toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
+        settings.check().map_err(|(key, problem)| ParameterError::of_key(source, text, key, problem))?;
         Ok(settings)
     }
 

@@ -32,6 +32,28 @@ pub struct ParameterError {
     pub problem: String,
 }
 
+impl ParameterError {
+    /// A text that cannot be read as TOML, or holds other keys and types than it should.
+    pub fn of_toml(source: &str, text: &str, error: &toml::de::Error) -> ParameterError {
+        ParameterError {
+            source: source.to_owned(),
+            line: error.span().map(|span| line_of(text, span.start)),
+            key: String::new(),
+            problem: error.message().to_owned(),
+        }
+    }
+
+    /// A problem with a key, at its line in the text.
+    pub fn of_key(source: &str, text: &str, key: &str, problem: impl Into<String>) -> ParameterError {
+        ParameterError {
+            source: source.to_owned(),
+            line: line_of_key(text, key),
+            key: key.to_owned(),
+            problem: problem.into(),
+        }
+    }
+}
+
 impl fmt::Display for ParameterError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}", self.source)?;
@@ -119,12 +141,7 @@ pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
 }
 
 fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
-    source.text.parse::<Table>().map_err(|error| ParameterError {
-        source: source.name.clone(),
-        line: error.span().map(|span| line_of(&source.text, span.start)),
-        key: String::new(),
-        problem: error.message().to_owned(),
-    })
+    source.text.parse::<Table>().map_err(|error| ParameterError::of_toml(&source.name, &source.text, &error))
 }
 
 fn read(tables: Table) -> Result<Params, (String, String)> {

@@ -20,8 +20,7 @@ use crate::console::text::number;
 use crate::console::theme::Role;
 use crate::console::widgets::field::ONLY_NUMBERS;
 use crate::console::widgets::{Editor, Field};
-use crate::notation::grouped;
-use crate::notation::parse_number;
+use crate::notation::{grouped, parse_number};
 use crate::session::Forecasts;
 use crate::tools::{Forecast, ToolId};
 

@@ -8,6 +8,7 @@ use crate::console::company::Company;
 use crate::console::text::{number, short_dollars};
 use crate::console::theme::Role;
 use crate::notation::{compact, dollars, grouped, signed_dollars};
+use crate::report::parameters::{entry_in_words, since_in_words};
 use crate::report::deals::deals_in_words;
 use crate::session::{CompanyNames, JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
 use crate::tools::{Forecast, Kind, Spec};
@@ -240,13 +241,12 @@ fn of_call(
 
 /// A parameter that was set, as a line.
 fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
-    let from = from_day.map_or(String::new(), |day| format!(" from day {day} on"));
     JournalLine {
         day,
-        text: format!("  set {key}: {old} → {new}{from}"),
+        text: format!("  {}", entry_in_words(key, [old, new], from_day)),
         role: Role::Text,
         title: format!("{key} · day {day}"),
-        whole: format!("set {key}{from}\n\nbefore: {old}\nthen: {new}"),
+        whole: format!("set {key}{}\n\nbefore: {old}\nthen: {new}", since_in_words(from_day)),
         term: "",
         sql: None,
     }

@@ -88,12 +88,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Where the mean of what these numbers were drawn from lies; none without numbers.
+    /// Where the mean of what these numbers were drawn from lies; none of fewer than two numbers.
     pub fn of_mean(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| Some(mean(drawn)))
     }
 
-    /// Where the median of what these numbers were drawn from lies; none without numbers.
+    /// Where the median of what these numbers were drawn from lies; none of fewer than two numbers.
     pub fn of_median(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| {
             drawn.sort_by(f64::total_cmp);
@@ -102,11 +102,12 @@ impl Interval {
     }
 }
 
-/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value.
+/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value, and of one number,
+/// which tells nothing of how far others are from it.
 ///
 /// The statistic may put the numbers into another order.
 pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
-    let count = u32::try_from(values.len()).ok().filter(|count| *count > 0)?;
+    let count = u32::try_from(values.len()).ok().filter(|count| *count > 1)?;
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
     let mut drawn = vec![0.0; values.len()];
     let mut resample = |_| {
@@ -124,8 +125,8 @@ pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) 
 pub struct PairedDifference {
     /// Mean of the differences.
     pub mean: f64,
-    /// Where the mean lies.
-    pub interval: Interval,
+    /// Where the mean lies; none of one pair.
+    pub interval: Option<Interval>,
     /// Pairs in which the first has more.
     pub more: u32,
     /// Pairs that were compared.
@@ -137,9 +138,9 @@ impl PairedDifference {
     pub fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
         let differences = pairs.into_iter().map(|(own, other)| own - other);
         let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
-        Some(PairedDifference {
+        (!differences.is_empty()).then(|| PairedDifference {
             mean: mean(&differences),
-            interval: Interval::of_mean(&differences)?,
+            interval: Interval::of_mean(&differences),
             more: differences.iter().filter(|own| **own > 0.0).count() as u32,
             of: differences.len() as u32,
         })
@@ -172,7 +173,7 @@ mod tests {
         assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
         assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
         assert_eq!(Interval::of_mean(&[]), None);
-        assert_eq!(Interval::of_mean(&[3.0]), Some(Interval { low: 3.0, high: 3.0 }));
+        assert_eq!(Interval::of_mean(&[3.0]), None, "one number does not tell how far others are from it");
     }
 
     #[test]
@@ -188,7 +189,7 @@ mod tests {
     #[test]
     fn differences_are_taken_pair_by_pair() {
         let own = PairedDifference::of([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
-        let interval = Interval { low: 2.0, high: 2.0 };
+        let interval = Some(Interval { low: 2.0, high: 2.0 });
         assert_eq!(own, PairedDifference { mean: 2.0, interval, more: 2, of: 2 });
         assert_eq!(PairedDifference::of([(f64::NAN, 1.0)]), None);
     }

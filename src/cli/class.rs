@@ -7,6 +7,7 @@ use std::sync::Arc;
 use clap::{Args, Subcommand};
 
 use super::lesson::lesson_of;
+use super::output_file::write_text;
 use super::play::show_console;
 use super::run::progress_bar;
 use super::runs::{as_csv, tidy_up_on_signals};
@@ -167,7 +168,6 @@ fn show(folder: &Path, shown: Shown, html: Option<&Path>, screen: Option<&Contex
         return show_console(&super::play::Options::default(), Some(start), context);
     }
     let Some(path) = html else { return print(&shown_in_words(&view)) };
-    std::fs::write(path, as_html(&view))
-        .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    write_text(path, &as_html(&view))?;
     print(&format!("written: {}\n", path.display()))
 }

@@ -89,7 +89,10 @@ impl From<Refusal> for Failure {
 
 impl From<lab::PolicyError> for Failure {
     fn from(error: lab::PolicyError) -> Failure {
-        Failure::unreadable(error.to_string())
+        match error.is_unknown {
+            true => Failure::usage(error.to_string()),
+            false => Failure::unreadable(error.to_string()),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::{Args, Subcommand};
 
+use super::output_file::write_text;
 use super::{Context, Failure, print};
 use crate::lab::{LessonCheck, PlayResult, check_lesson};
 use crate::notation::compact;
@@ -151,7 +152,7 @@ fn debrief(
         (None, Some(path)) => (path, debrief_as_markdown(&debrief)),
         (None, None) => return print(&(in_words(&debrief).join("\n") + "\n")),
     };
-    std::fs::write(&path, text).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    write_text(&path, &text)?;
     print(&format!("written: {}\n", path.display()))
 }
 

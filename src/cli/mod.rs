@@ -12,6 +12,7 @@ mod lesson;
 #[cfg(feature = "server")]
 mod mcp;
 mod new_run;
+mod output_file;
 mod pictures;
 mod play;
 mod query;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::output_file::write_text;
 use super::{Context, Failure, print};
 use crate::report::{
     Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
@@ -58,7 +59,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let Some(path) = &options.out else {
         return print(&text);
     };
-    std::fs::write(path, text).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+    write_text(path, &text)?;
     print(&format!("written: {}\n", path.display()))
 }
 

@@ -13,20 +13,22 @@ use super::routine;
 use super::symbols::Symbols;
 use crate::session::{
     Configuration, DayReport, Ended, Line, Mode, NewRun, Record, Refusal, RunError as SessionError, Session,
-    Storage, Via, WeekFigures,
+    Storage, Via, WeekFigures, is_of_policy,
 };
 use crate::tools::{Answer, ToolId};
 
 /// What the rationale of a policy's week says before the policy's name.
 const POLICY_RATIONALE: &str = "policy ";
 
-/// The policy that played a run, by the rationale of its first week; none of a run that a person or an agent played.
+/// The policy that played a run, by the rationales of its weeks; none where somebody else decided one of them.
 pub(super) fn policy_of(lines: &[Line]) -> Option<&str> {
-    let first = lines.iter().find_map(|line| match &line.record {
+    let mut weeks = lines.iter().filter_map(|line| match &line.record {
         Record::Advance(week) => Some(week),
         _ => None,
-    })?;
-    first.rationale.strip_prefix(POLICY_RATIONALE).filter(|_| first.via == Via::Policy)
+    });
+    let rationale = &weeks.next()?.rationale;
+    let is_one = is_of_policy(lines) && weeks.all(|week| week.rationale == *rationale);
+    rationale.strip_prefix(POLICY_RATIONALE).filter(|_| is_one)
 }
 
 /// What to run.

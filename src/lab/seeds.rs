@@ -17,25 +17,28 @@ pub struct Seeds {
 /// Reads `7` or `1..24`.
 ///
 /// # Errors
-/// It is neither, or the range holds no seed, or more than `MOST_SEEDS`.
+/// It is neither, or a seed is above 2^63 - 1, or the range holds no seed, or more than `MOST_SEEDS`.
 pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {
         Some((first, last)) => Seeds { first: number(first)?, last: number(last)? },
         None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
     };
+    if seeds.last > i64::MAX as u64 {
+        return Err(format!("a seed is at most {}, not {}", i64::MAX, seeds.last));
+    }
     if seeds.first > seeds.last {
         return Err(format!("{}..{} holds no seed; put the smaller number first", seeds.first, seeds.last));
     }
-    // The whole range of numbers holds one more than a number can say.
-    match (seeds.last - seeds.first).checked_add(1) {
-        Some(count) if count <= MOST_SEEDS => Ok(seeds),
-        count => {
-            let holds = count.map_or("too many".to_owned(), |count| grouped(count as f64, 0));
-            let most = grouped(MOST_SEEDS as f64, 0);
-            Err(format!("{}..{} holds {holds} seeds; at most {most} are played", seeds.first, seeds.last))
-        }
+    let count = seeds.last - seeds.first + 1;
+    if count > MOST_SEEDS {
+        let (holds, most) = (grouped(count as f64, 0), grouped(MOST_SEEDS as f64, 0));
+        return Err(format!(
+            "{}..{} holds {holds} seeds; at most {most} are played",
+            seeds.first, seeds.last
+        ));
     }
+    Ok(seeds)
 }
 
 #[cfg(test)]
@@ -49,7 +52,10 @@ mod tests {
         assert!(parse_seeds("1..1000000").is_ok());
         let many = parse_seeds("1..1000000000").expect_err("too many");
         assert_eq!(many, "1..1000000000 holds 1,000,000,000 seeds; at most 1,000,000 are played");
-        assert!(parse_seeds("0..18446744073709551615").is_err());
+        assert!(parse_seeds("9223372036854775807").is_ok());
+        for above in ["9223372036854775808", "0..18446744073709551615"] {
+            assert!(parse_seeds(above).expect_err(above).contains("a seed is at most"));
+        }
         assert!(parse_seeds("5..4").is_err() && parse_seeds("x").is_err() && parse_seeds("1..").is_err());
     }
 }

@@ -29,6 +29,10 @@ pub struct RunTerms<'a> {
     pub judged_by_model: bool,
     /// It belongs to a lesson.
     pub is_lesson: bool,
+    /// It goes on from weeks of another run, whose end may be known.
+    pub is_branch: bool,
+    /// Somebody played it in debug mode, which shows hidden state; a policy sees nothing of it.
+    pub showed_hidden_state: bool,
 }
 
 impl<'a> RunTerms<'a> {
@@ -41,6 +45,8 @@ impl<'a> RunTerms<'a> {
             has_own_parameters: seen.has_own_parameters,
             judged_by_model: seen.voice.as_ref().is_some_and(|model| model.judge),
             is_lesson: seen.mode == Mode::Lesson,
+            is_branch: seen.is_branch,
+            showed_hidden_state: seen.mode == Mode::Debug,
         }
     }
 
@@ -53,6 +59,8 @@ impl<'a> RunTerms<'a> {
             has_own_parameters: run.has_own_parameters,
             judged_by_model: run.judged_by_model,
             is_lesson: run.mode == Some(Mode::Lesson),
+            is_branch: run.is_branch,
+            showed_hidden_state: run.mode == Some(Mode::Debug) && !run.is_of_policy,
         }
     }
 
@@ -65,6 +73,8 @@ impl<'a> RunTerms<'a> {
             has_own_parameters: book.has_own_parameters,
             judged_by_model: book.voice.as_ref().is_some_and(|model| model.judge),
             is_lesson: book.mode == Mode::Lesson,
+            is_branch: book.parent.is_some(),
+            showed_hidden_state: book.mode == Mode::Debug && !book.is_of_policy,
         }
     }
 
@@ -89,6 +99,12 @@ impl<'a> RunTerms<'a> {
         if self.judged_by_model {
             obstacles.push(Obstacle::Judge);
         }
+        if self.is_branch {
+            obstacles.push(Obstacle::Branch);
+        }
+        if self.showed_hidden_state {
+            obstacles.push(Obstacle::Debug);
+        }
         obstacles
     }
 }
@@ -108,6 +124,10 @@ pub enum Obstacle {
     Parameters,
     /// A language model judges the posts of the player: other readers are another game.
     Judge,
+    /// It goes on from weeks of another run: what comes of them may be known.
+    Branch,
+    /// Played in debug mode, which shows hidden state.
+    Debug,
 }
 
 impl Obstacle {
@@ -128,6 +148,8 @@ impl Obstacle {
             Obstacle::Scenario(name) => format!("scenario {name}"),
             Obstacle::Parameters => "changed parameters".to_owned(),
             Obstacle::Judge => "posts judged by a language model".to_owned(),
+            Obstacle::Branch => "a branch of another run".to_owned(),
+            Obstacle::Debug => "played in debug mode".to_owned(),
         }
     }
 
@@ -140,6 +162,8 @@ impl Obstacle {
             Obstacle::Scenario(_) => "another scenario",
             Obstacle::Parameters => "changed parameters",
             Obstacle::Judge => "posts judged by a language model",
+            Obstacle::Branch => "a branch of another run",
+            Obstacle::Debug => "played in debug mode",
         }
     }
 }
@@ -191,6 +215,8 @@ mod tests {
         has_own_parameters: false,
         judged_by_model: false,
         is_lesson: false,
+        is_branch: false,
+        showed_hidden_state: false,
     };
 
     #[test]
@@ -204,6 +230,8 @@ mod tests {
             (RunTerms { start_cash: 2e6, ..COMPARABLE }, "$2M at the start instead of $1M"),
             (RunTerms { has_own_parameters: true, ..COMPARABLE }, "changed parameters"),
             (RunTerms { judged_by_model: true, ..COMPARABLE }, "posts judged by a language model"),
+            (RunTerms { is_branch: true, ..COMPARABLE }, "a branch of another run"),
+            (RunTerms { showed_hidden_state: true, ..COMPARABLE }, "played in debug mode"),
             (
                 RunTerms { is_lesson: true, days: 14, ..COMPARABLE },
                 "part of a lesson, 14 days instead of 500",

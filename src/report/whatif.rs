@@ -226,13 +226,13 @@ pub fn difference_line(
 ) -> Option<String> {
     let difference = futures.difference(branch, figure, comparison.until)?;
     let signed = |value| signed(figure.unit(), value);
-    let Interval { low, high } = difference.interval;
+    let interval = difference.interval.map_or(String::new(), |Interval { low, high }| {
+        format!(" (95 % interval {} to {})", signed(low), signed(high))
+    });
     Some(format!(
-        "{}: {} on average (95 % interval {} to {}), more in {} of {}",
+        "{}: {} on average{interval}, more in {} of {}",
         figure.name(),
         signed(difference.mean),
-        signed(low),
-        signed(high),
         difference.more,
         count(difference.of, "future")
     ))

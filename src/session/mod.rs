@@ -144,8 +144,8 @@ pub use study::visit_log::{
 };
 pub use trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
-    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, record, steady,
-    written_moment,
+    Line, Record, ScriptedClock, Trajectory, end_of, is_of_policy, nanoseconds as nanoseconds_of, record,
+    steady, written_moment,
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,

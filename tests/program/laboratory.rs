@@ -41,6 +41,11 @@ fn what_needs_no_run_is_told_in_every_form() {
     let (development, estimate) = (6, 15);
     let off = ["--scenario", "competitor-off"];
     assert!(own(development, &off) < own(development, &[]), "without rivals development is cheap");
+    let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
+    assert!(
+        said.contains("no rivals: the parameters in force have none") && !said.contains("lucks"),
+        "{said}"
+    );
     // Where it is paid once and not three times over, more is left of it, too.
     let once = ["--slack", "1"];
     assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
@@ -55,9 +60,13 @@ fn what_is_not_there_is_refused_with_what_is() {
         (vec!["lab", "laws", "lead_noise", "--of", "S1"], 2, "leave out --of"),
         (vec!["lab", "curves", "S9"], 2, "S1, S2"),
         (vec!["lab", "bound", "--slack", "5"], 2, "1..=4"),
-        (vec!["lab", "baseline", "--grid", "none"], 3, "content-ads, paper"),
+        (vec!["lab", "bound", "--scenario", "short"], 2, "runs of 500 days"),
+        (vec!["lab", "bound", "--set", "run.total_days=200"], 2, "these parameters are of 200 days"),
+        (vec!["lab", "baseline", "--grid", "none"], 2, "content-ads, paper"),
         (vec!["lab", "ablate", "--day", "141"], 2, "weeks end"),
-        (vec!["lab", "ablate", "--policy", "none"], 3, "P1a"),
+        (vec!["lab", "ablate", "--policy", "none"], 2, "P1a"),
+        (vec!["run", "--policy", "none"], 2, "P1a"),
+        (vec!["run", "--scenario", "none", "--policy", "P0"], 2, "default"),
     ] {
         let said = home.run(&arguments);
         assert!(said.code == code && said.err.contains(part), "{arguments:?}: {} {}", said.code, said.err);

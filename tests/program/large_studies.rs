@@ -258,3 +258,25 @@ fn a_study_by_days_has_a_row_for_each_run_and_day() {
         }
     }
 }
+
+#[test]
+fn what_is_read_is_not_replaced_by_what_is_written() {
+    let home = Home::new();
+    let text = "name = \"s\"\npolicies = [\"P0\"]\nseeds = [1, 2]\ndays = 14\n";
+    let file = study(&home, text);
+    let place = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
+    let twice = place("./rows");
+    for places in [&["--out", &file][..], &["--svg", &file], &["--out", &place("rows"), "--svg", &twice]] {
+        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["replace"]);
+    }
+    assert_eq!(fs::read_to_string(&file).expect("the study"), text);
+    let folder = place("shards");
+    for shard in ["1/2", "2/2"] {
+        let said = home.run(&["lab", "study", &file, "--shard", shard, "--out", &folder]);
+        assert_eq!(said.code, 0, "{}", said.err);
+    }
+    let shard = place("shards/s.1-of-2.csv");
+    home.run(&["lab", "merge", &folder, "--out", &shard]).fails(2, &["is one of the shards"]);
+    let whole = home.run(&["lab", "merge", &folder]);
+    assert_eq!((whole.code, whole.out.lines().count()), (0, 3), "{}", whole.err);
+}

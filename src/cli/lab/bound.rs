@@ -21,8 +21,15 @@ pub struct Options {
 
 /// Runs the command; nothing is played.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let params = options.world.params(context)?;
-    let account = BoundAccount::of(Premises::of_the_paper(f64::from(options.slack)), &params);
+    let (days, params) = options.world.terms(context)?;
+    let premises = Premises::of_the_paper(f64::from(options.slack));
+    if days != premises.run_days {
+        return Err(Failure::usage(format!(
+            "the account prices runs of {} days and compares them with the published ones; these parameters are of {days} days",
+            premises.run_days
+        )));
+    }
+    let account = BoundAccount::of(premises, &params);
     let slacks = sensitivity(&[1.0, 2.0, 3.0, 4.0], &params);
     options.output.show(&bound_exhibit(&account, &slacks))
 }

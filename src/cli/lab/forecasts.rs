@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rayon::prelude::*;
 
+use super::super::output_file::write_text;
 use super::super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
 use super::super::{Context, Failure, print};
 use crate::lab::{PlayedWeeks, Policy, STRONG, coverage, horizons, measure, play_weeks, policies_of};
@@ -40,8 +41,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let text = toml::to_string(bands).map_err(|error| Failure::failed(error.to_string()))?;
         let head = "# Intervals of naive forecasts, in shares of what moves until then. `novamind lab forecasts --write` makes\n\
                     # this file.\n\n";
-        std::fs::write(path, format!("{head}{text}"))
-            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+        write_text(path, &format!("{head}{text}"))?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use crate::database::text::aligned;
 use crate::lab::play_opponents;
 use crate::notation::dollars;
 use crate::report::opponents::{Opponent, Opponents};
-use crate::session::find_run_to_read;
+use crate::session::{Access, Ended, Session, find_run_to_read};
 
 /// Options of `lab opponents`.
 #[derive(Debug, Args)]
@@ -32,12 +32,32 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             serde_json::to_string_pretty(&opponents).map_err(|error| Failure::failed(error.to_string()))?;
         return print(&format!("{text}\n"));
     }
-    print(&as_text(&opponents))
+    print(&as_text(&opponents, &Session::open(&folder, Access::Read, false)?))
 }
 
-fn as_text(opponents: &Opponents) -> String {
-    let row = |own: &Opponent| vec![own.policy.clone(), dollars(own.score()), own.in_words()];
-    let rows: Vec<Vec<String>> = opponents.policies.iter().map(row).collect();
+/// The policies and the run itself, if it has a score, the best first.
+fn as_text(opponents: &Opponents, run: &Session) -> String {
+    let policy = |own: &Opponent| (own.score(), own.policy.clone(), ended_in_words(own));
+    let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
+    if let Some(score) = run.score() {
+        let ended = match run.ended() {
+            Some(Ended::Bankruptcy) => format!("bankrupt on day {}", run.day()),
+            _ => format!("alive on day {}", run.day()),
+        };
+        places.push((score, format!("this run, {}", run.manifest().id), ended));
+    }
+    places.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let row =
+        |(score, name, ended): &(f64, String, String)| vec![name.clone(), dollars(*score), ended.clone()];
+    let rows: Vec<Vec<String>> = places.iter().map(row).collect();
     let headers = ["policy", "score", "how it ended"].map(str::to_owned);
     format!("{}\n\n{}", opponents.in_words(), aligned(&headers, &rows))
+}
+
+fn ended_in_words(own: &Opponent) -> String {
+    match &own.stopped {
+        Some(why) => format!("stopped on day {}: {why}", own.day),
+        None if own.is_bankrupt => format!("bankrupt on day {}", own.day),
+        None => format!("alive on day {}", own.day),
+    }
 }

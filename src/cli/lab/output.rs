@@ -1,10 +1,11 @@
 //! How commands of the laboratory write what they show.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::cli::output_file::write_text;
 use crate::cli::runs::as_csv;
 use crate::cli::{Failure, print};
 use crate::lab::exhibit::{Exhibit, WIDTH};
@@ -35,6 +36,11 @@ impl OutputOptions {
         !self.json && self.svg.is_none()
     }
 
+    /// The file that the graphs are drawn into, if they are asked for.
+    pub fn graphs(&self) -> Option<&Path> {
+        self.svg.as_deref()
+    }
+
     /// Writes an exhibit as it was asked for.
     ///
     /// # Errors
@@ -44,9 +50,7 @@ impl OutputOptions {
             let drawn = exhibit
                 .as_svg()
                 .ok_or_else(|| Failure::usage("this command has no graph: leave out --svg"))?;
-            std::fs::write(path, drawn).map_err(|error| {
-                Failure::failed(format!("the graphs cannot be written to {}: {error}", path.display()))
-            })?;
+            write_text(path, &drawn)?;
         }
         if self.json {
             return print(&(serde_json::to_string_pretty(&exhibit.as_json()).unwrap_or_default() + "\n"));

@@ -1,13 +1,13 @@
 //! `novamind lab study` and `novamind lab merge`: large studies, whole or in shards.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::experiments::{PlayOptions, conduct_some};
 use super::output::OutputOptions;
+use crate::cli::output_file::{is_same_file, write_file};
 use crate::cli::runs::as_csv;
 use crate::cli::{Context, Failure, print};
 use crate::lab::study::{Shard, ShardHead, Shards, StudyPlan, head, parse_shard, rows, size, summary};
@@ -54,12 +54,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let plan = StudyPlan::read(&options.file, options.daily, &context.configuration)
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
-    let is_own_file = |out: &PathBuf| {
-        out.canonicalize().is_ok_and(|out| options.file.canonicalize().is_ok_and(|file| file == out))
-    };
-    if options.out.as_ref().is_some_and(is_own_file) {
-        return Err(Failure::usage("--out names the study file itself, which the rows would replace"));
-    }
+    check_places(options)?;
     if options.check {
         return print(&format!("{}: {}, {}\n", plan.name, size(&plan), count(runs as u32, "run")));
     }
@@ -82,15 +77,32 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         (None, _) if options.output.is_of_rows() => print(&text),
         (None, _) => options.output.show(&summary(&plan, &results)),
         (Some(file), None) => {
-            write(file, kept, |out| out.write_all(text.as_bytes()))?;
+            write_file(file, Some(kept), |out| out.write_all(text.as_bytes()))?;
             options.output.show(&summary(&plan, &results))
         }
         (Some(folder), Some(part)) => {
             let file = folder.join(ShardHead::file_name(&plan.name, part));
             text = ShardHead::sealed(&plan.name, &digest, part, &text);
-            write(&file, kept, |out| out.write_all(text.as_bytes()))?;
+            write_file(&file, Some(kept), |out| out.write_all(text.as_bytes()))?;
             print(&format!("shard {part}: {} in {}\n", count(numbers.len() as u32, "run"), file.display()))
         }
+    }
+}
+
+/// What is written replaces neither the study file nor something else that is written.
+fn check_places(options: &Options) -> Result<(), Failure> {
+    let graphs = options.output.graphs();
+    for (name, place) in [("--out", options.out.as_deref()), ("--svg", graphs)] {
+        if place.is_some_and(|place| is_same_file(place, &options.file)) {
+            let problem = format!("{name} names the study file itself, which would be replaced");
+            return Err(Failure::usage(problem));
+        }
+    }
+    match (&options.out, graphs) {
+        (Some(rows), Some(graphs)) if is_same_file(rows, graphs) => {
+            Err(Failure::usage("--out and --svg name the same file: one would replace the other"))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -109,7 +121,10 @@ fn kept_in(
 pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
     let shards = Shards::of(&options.shards).map_err(|error| Failure::failed(error.to_string()))?;
     match &options.out {
-        Some(file) => write(file, "the shards are as they were", |out| shards.write(out)),
+        Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => {
+            Err(Failure::usage(format!("{} is one of the shards, which would be replaced", file.display())))
+        }
+        Some(file) => write_file(file, Some("the shards are as they were"), |out| shards.write(out)),
         None => {
             let mut out = BufWriter::new(io::stdout().lock());
             match shards.write(&mut out).and_then(|()| out.flush()) {
@@ -119,31 +134,4 @@ pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
             }
         }
     }
-}
-
-/// Writes a file so that it is whole or not there.
-fn write(
-    place: &Path,
-    safe: &str,
-    rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> Result<(), Failure> {
-    let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let draft = place.with_file_name(format!(".{name}.draft"));
-    // A device or a pipe is written to, and never replaced.
-    let is_special = std::fs::metadata(place).is_ok_and(|found| !found.is_file());
-    let target = if is_special { place } else { &draft };
-    let written = File::create(target).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        rows(&mut file)?;
-        let file = file.into_inner()?;
-        if is_special {
-            return Ok(());
-        }
-        file.sync_all()?;
-        std::fs::rename(&draft, place)
-    });
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&draft);
-        Failure::failed(format!("{}: {error}; it was not written, {safe}", place.display()))
-    })
 }

@@ -24,7 +24,16 @@ impl WorldOptions {
     /// # Errors
     /// There is no such scenario, or a parameter is wrong.
     pub fn params(&self, context: &Context) -> Result<Params, Failure> {
+        self.terms(context).map(|(_, params)| params)
+    }
+
+    /// The last day of a run, and the parameters.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn terms(&self, context: &Context) -> Result<(u32, Params), Failure> {
         let scenario = context.configuration.scenario(&self.scenario)?;
-        Ok(context.configuration.parameters(&scenario, &self.set, true)?)
+        let params = context.configuration.parameters(&scenario, &self.set, true)?;
+        Ok((scenario.terms(&params).0, params))
     }
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::super::output_file::write_text;
 use super::super::pictures::size;
 use super::super::{Context, Failure, print};
 use super::note_look;
@@ -68,7 +69,7 @@ pub fn record(
     let recording = recording(&mut console, recorded, (first, last), options);
     console.finish();
     let (text, frames) = recording?;
-    std::fs::write(file, text).map_err(|error| Failure::failed(format!("{}: {error}", file.display())))?;
+    write_text(file, &text)?;
     print(&format!("{}: {frames} frames\n", file.display()))
 }
 

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use serde_json::Value;
 
+use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::report::transcript::{Surroundings, Transcript, atif, inspect, plain_script, python_script};
-use crate::session::{manifest_of, write_whole};
+use crate::session::manifest_of;
 
 /// What a run is written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -58,7 +59,7 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
     };
     let mut written: Vec<&PathBuf> = Vec::new();
     for (file, text) in files.iter().zip(&texts).filter(|(_, text)| !text.is_empty()) {
-        write_whole(file, text.as_bytes())?;
+        write_text(file, text)?;
         written.push(file);
     }
     let names: Vec<String> = written.iter().map(|file| file.display().to_string()).collect();

@@ -11,6 +11,7 @@ use super::transcript::import_transcript;
 use super::{find_in, list_all};
 #[cfg(feature = "server")]
 use crate::cli::new_run::NewRunOptions;
+use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::notation::csv_cell;
@@ -199,8 +200,7 @@ fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
 pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     for (name, rows) in tables.into_files() {
         let path = folder.join(format!("{name}.csv"));
-        std::fs::write(&path, as_csv(&rows)?)
-            .map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
+        write_text(&path, &as_csv(&rows)?)?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
 use crate::lab::experiment::{ExperimentResults, RunResult};
+use crate::report::count;
 use crate::statistics::{Interval, PairedDifference, mean, median};
 
 /// One axis of the ablation, played.
@@ -35,9 +36,12 @@ const START: f64 = 1e6;
 
 /// The ablation: subscribers on a day, the end of the runs, steps, the short horizon.
 pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> Exhibit {
-    let count = axes.first().map_or(0, |axis| axis.results.seeds.len());
+    let seeds = axes.first().map_or(0, |axis| axis.results.seeds.len());
     let mut exhibit = Exhibit {
-        title: format!("Rivals that copy and drain, {count} seeds, the same luck in every arm"),
+        title: format!(
+            "Rivals that copy and drain, {}, the same luck in every arm",
+            count(seeds as u32, "seed")
+        ),
         tables: Vec::new(),
         graphs: Vec::new(),
         notes: Vec::new(),
@@ -88,7 +92,7 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
             Datum::number(mean(&own)),
             Datum::interval(Interval::of_mean(&own)),
             Datum::number(difference.map(|own| own.mean)),
-            Datum::interval(difference.map(|own| own.interval)),
+            Datum::interval(difference.and_then(|own| own.interval)),
             Datum::number(median(&axis.results.of(arm, |run| run.cash))),
             Datum::number(mean(&axis.results.of(arm, |run| f64::from(u8::from(run.is_bankrupt()))))),
         ]);
@@ -112,7 +116,7 @@ fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
         table.rows.push(vec![
             Datum::words(format!("{} to {}", pair[0].name, pair[1].name)),
             Datum::number(own.mean),
-            Datum::interval(Some(own.interval)),
+            Datum::interval(own.interval),
             Datum::number(f64::from(own.more)),
             Datum::words(verdict(&own)),
         ]);
@@ -122,10 +126,11 @@ fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
 
 fn verdict(own: &PairedDifference) -> &'static str {
     match own.interval {
-        Interval { low, .. } if low > 0.0 => "loses",
-        Interval { high, .. } if high < 0.0 => "gains",
-        Interval { low, high } if low == 0.0 && high == 0.0 => "identical",
-        _ => "not told apart",
+        None => "one seed tells no order",
+        Some(Interval { low, .. }) if low > 0.0 => "loses",
+        Some(Interval { high, .. }) if high < 0.0 => "gains",
+        Some(Interval { low, high }) if low == 0.0 && high == 0.0 => "identical",
+        Some(_) => "not told apart",
     }
 }
 
@@ -137,9 +142,9 @@ fn alike(axis: &Axis<'_>) -> String {
     let runs = |arm: usize| axis.results.by_arm.get(arm).map_or(&[][..], Vec::as_slice);
     let same = runs(default).iter().zip(runs(hard)).filter(|(own, other)| ends(own) == ends(other)).count();
     format!(
-        "{}: default and hard rivals are identical in {same} of {} seeds.",
+        "{}: default and hard rivals are identical in {same} of {}.",
         axis.caption,
-        runs(default).len()
+        count(runs(default).len() as u32, "seed")
     )
 }
 

@@ -156,20 +156,29 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     for (at, seed) in board.results.seeds.iter().enumerate() {
         let run = |arm: usize| board.runs(arm).get(at);
         let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |own| own.cash);
-        // Of equal ones the first in the table.
-        let best =
-            board.order.iter().copied().reduce(|best, own| if cash(&own) > cash(&best) { own } else { best });
-        let Some(best) = best else { continue };
+        let best = board.order.iter().map(cash).fold(f64::NEG_INFINITY, f64::max);
+        let first: Vec<usize> = board.order.iter().copied().filter(|arm| cash(arm) == best).collect();
         let bankrupt =
             board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
         table.rows.push(vec![
             Datum::number(*seed as f64),
-            Datum::words(grid.configurations[best].label()),
-            Datum::number(cash(&best)),
+            Datum::words(labels(grid, &first)),
+            Datum::number(best),
             Datum::number(bankrupt as f64),
         ]);
     }
     table
+}
+
+/// The configurations that are first together: the first of them by name, and how many more.
+fn labels(grid: &Grid, first: &[usize]) -> String {
+    match first {
+        [] => String::new(),
+        [one] => grid.configurations[*one].label(),
+        [one, rest @ ..] => {
+            format!("{} and {} equal to it", grid.configurations[*one].label(), rest.len())
+        }
+    }
 }
 
 /// Quartiles of the final cash of each configuration, the best first.
@@ -199,7 +208,9 @@ fn spread(board: &Board<'_>) -> Graph {
 fn notes(grid: &Grid, is_published: bool, board: &Board<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(best) = board.order.first() {
-        let label = grid.configurations[*best].label();
+        let alike = |arm: &&usize| board.runs(**arm) == board.runs(*best);
+        let first: Vec<usize> = board.order.iter().filter(alike).copied().collect();
+        let label = labels(grid, &first);
         notes.push(match board.results.seeds.len() {
             1 => format!("Best configuration: {label}."),
             _ => format!("Best configuration by median final cash: {label}."),

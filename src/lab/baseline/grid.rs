@@ -81,7 +81,8 @@ impl Grid {
     /// # Errors
     /// There is none, or it is wrong.
     pub fn find(name: &str) -> Result<Grid, PolicyError> {
-        let wrong = |problem: String| PolicyError { source: name.to_owned(), line: None, problem };
+        let wrong =
+            |problem: String| PolicyError { source: name.to_owned(), line: None, problem, is_unknown: false };
         if name.ends_with(".toml") || name.contains(std::path::is_separator) {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return Grid::parse(&ParameterSource { name: name.to_owned(), text });
@@ -93,7 +94,8 @@ impl Grid {
             }
             None => {
                 let known: Vec<&str> = shipped::grids().into_iter().map(|(name, _)| name).collect();
-                Err(wrong(format!("there is no such grid; there are {}, and files", known.join(", "))))
+                let problem = format!("there is no such grid; there are {}, and files", known.join(", "));
+                Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
         }
     }
@@ -107,10 +109,13 @@ impl Grid {
         let file: GridFile =
             toml::from_str(&source.text).map_err(|error| reader.at(error.span(), error.message()))?;
         let base = file.policy.map(|policy| (policy.span(), policy.into_inner()));
-        let mut axes = Vec::new();
+        let mut axes: Vec<(String, Vec<GridLevel>)> = Vec::new();
         for axis in file.axis {
             let span = axis.span();
             let axis = axis.into_inner();
+            if axis.name.is_empty() || axes.iter().any(|(name, _)| *name == axis.name) {
+                return Err(reader.at(Some(span), "axes have names, each another one"));
+            }
             let levels = reader.levels(&axis.name, axis.level, span)?;
             axes.push((axis.name, levels));
         }
@@ -142,6 +147,7 @@ impl Reader<'_> {
             source: self.0.name.clone(),
             line: span.map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1),
             problem: problem.to_owned(),
+            is_unknown: false,
         }
     }
 
@@ -158,6 +164,9 @@ impl Reader<'_> {
             if levels.iter().any(|own| own.name == name) {
                 let problem = format!("axis {axis} has two levels of the name {name}");
                 return Err(self.at(Some(span), &problem));
+            }
+            if name.is_empty() {
+                return Err(self.at(Some(span), &format!("axis {axis} has a level without a name")));
             }
             levels.push(GridLevel { name, set, calls: call, span });
         }
@@ -301,6 +310,8 @@ mod tests {
                 "decision day",
             ),
             (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"x\"\n"), Some(6), "two levels"),
+            (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"\"\n"), Some(6), "without a name"),
+            (format!("name = \"g\"\n{level}{level}"), Some(6), "each another one"),
             (format!("name = \"g\"\n[policy.rule_based]\nprice = 1\n{level}"), Some(3), "price"),
             (format!("name = \"g\"\n{level}sets = {{}}\n"), Some(6), "sets"),
         ] {

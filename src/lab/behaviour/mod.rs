@@ -120,7 +120,8 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
         cells.extend(own.iter().map(|value| Datum::number(*value)));
         cells
     };
-    let mut rows: Vec<Vec<Datum>> = runs.iter().zip(&by_run).map(row).collect();
+    let rows: Vec<Vec<Datum>> = runs.iter().zip(&by_run).map(row).collect();
+    let mut summary = Vec::new();
     if runs.len() > 1 {
         let samples: Vec<Sample> = (0..figures.len())
             .map(|at| Sample::of(&by_run.iter().filter_map(|own| own[at]).collect::<Vec<_>>()))
@@ -129,10 +130,10 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
             let cells = samples.iter().map(|own| Datum::number((own.count >= least).then(|| of(own))));
             [Datum::words(name), Datum::words("")].into_iter().chain(cells).collect()
         };
-        rows.push(told("mean", 1, |own| own.mean));
-        rows.push(told("± sd", 2, |own| own.std));
+        summary.push(told("mean", 1, |own| own.mean));
+        summary.push(told("± sd", 2, |own| own.std));
     }
-    Tabulation { rows, ..Tabulation::new("measures", "", columns) }
+    Tabulation { rows, summary, ..Tabulation::new("measures", "", columns) }
 }
 
 fn who(run: &ObservedRun) -> &str {
@@ -315,26 +316,24 @@ mod tests {
     #[test]
     fn measures_have_a_mean_and_a_spread() {
         let mut runs = observed();
-        let survival = |runs: &[ObservedRun]| {
-            let rows = exhibit_of(runs).table("measures").expect("measures").as_csv();
-            let at = rows[0].iter().position(|name| name == "survival").expect("survival");
-            [1, 2, 3].map(|row: usize| rows[row][at].clone())
+        let measures = |runs: &[ObservedRun]| exhibit_of(runs).table("measures").expect("measures").clone();
+        let of = |table: &Tabulation, row: usize, column: &str| {
+            let at = table.columns.iter().position(|own| own.name == column).expect(column);
+            table.rows.iter().chain(&table.summary).nth(row).expect("a row")[at].clone()
         };
-        assert_eq!(survival(&runs), ["", "", ""], "nobody knows how long an open run lives");
+        let survival = |table: &Tabulation| [0, 1, 2, 3].map(|row| of(table, row, "survival"));
+        let open = survival(&measures(&runs));
+        assert!(open.iter().all(|own| *own == Datum::Missing), "nobody knows how long an open run lives");
         runs.iter_mut().for_each(|run| run.book.ended = Some(Ended::Horizon));
-        let exhibit = exhibit_of(&runs);
-        let rows = exhibit.table("measures").expect("measures").as_csv();
-        assert_eq!(rows.len(), 1 + 2 + 2);
-        let of = |row: usize, column: &str| {
-            let at = rows[0].iter().position(|name| name == column).expect(column);
-            rows[row][at].clone()
-        };
-        assert_eq!([of(1, "survival"), of(2, "survival"), of(3, "survival")], ["14", "7", "10.5"]);
-        assert_eq!(of(4, "survival"), Sample::of(&[14.0, 7.0]).std.to_string());
-        assert_eq!(of(1, "\"if\" in rationales"), "1");
-        assert_eq!(of(1, "\"if\" in notes"), "0");
+        let table = measures(&runs);
+        let spread = Sample::of(&[14.0, 7.0]).std;
+        assert_eq!(survival(&table), [14.0, 7.0, 10.5, spread].map(Datum::Number));
+        assert_eq!(of(&table, 0, "\"if\" in rationales"), Datum::Number(1.0));
+        assert_eq!(of(&table, 0, "\"if\" in notes"), Datum::Number(0.0));
+        assert_eq!(table.as_csv().len(), 1 + 2, "rows of runs alone");
         let alone = exhibit_of(&runs[..1]);
-        assert_eq!(alone.table("measures").expect("measures").rows.len(), 1);
+        let alone = alone.table("measures").expect("measures");
+        assert_eq!((alone.rows.len(), alone.summary.len()), (1, 0));
     }
 
     #[test]

@@ -47,6 +47,8 @@ pub struct Figured {
 pub struct BoundAccount {
     /// What is taken for granted.
     pub premises: Premises,
+    /// Rivals act under the parameters in force.
+    pub has_rivals: bool,
     /// Units that everybody uses on a day.
     pub daily_usage: f64,
     /// Quality that the overload costs.
@@ -90,7 +92,9 @@ impl BoundAccount {
         let overload = overload_penalty(daily_usage, premises.capacity_tier, params);
         let groups: Vec<BoundGroup> =
             Group::all().map(|group| account_of(group, overload, climate, &premises, params)).collect();
-        let mut account = BoundAccount { premises, daily_usage, overload, groups, lines: Vec::new() };
+        let has_rivals = !params.competitor.competitor_events_disabled;
+        let mut account =
+            BoundAccount { premises, has_rivals, daily_usage, overload, groups, lines: Vec::new() };
         account.lines = account.figured(params);
         account
     }

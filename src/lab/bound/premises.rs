@@ -62,8 +62,15 @@ impl Premises {
         f64::from(self.days) / 2.0
     }
 
-    /// Everything the account supposes: what, and why it matters.
-    pub fn assumptions(&self) -> Vec<(&'static str, String)> {
+    /// Everything the account supposes: what, and why it matters. Rivals are in it where the parameters in force have them.
+    pub fn assumptions(&self, has_rivals: bool) -> Vec<(&'static str, String)> {
+        let rivals = match has_rivals {
+            true => format!(
+                "mean of {} lucks of the world's own rivals, copying and draining what this plan develops",
+                super::climate::LUCKS
+            ),
+            false => "no rivals: the parameters in force have none".to_owned(),
+        };
         let (first, last) = (self.renewals.first().unwrap_or(&0), self.renewals.last().unwrap_or(&0));
         vec![
             (
@@ -90,10 +97,7 @@ impl Premises {
             ),
             (
                 "d: rivals and taste",
-                format!(
-                    "mean of {} lucks of the world's own rivals, copying and draining what this plan develops, and the drift of the group; the drift of single customers is left out",
-                    super::climate::LUCKS
-                ),
+                format!("{rivals}, and the drift of the group; the drift of single customers is left out"),
             ),
             (
                 "overload",

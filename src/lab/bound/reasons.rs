@@ -28,6 +28,9 @@ impl BoundAccount {
                     grouped(units / 1e6, 0)
                 )
             }
+            AccountLine::TargetedDevelopment if params.competitor.competitor_events_disabled => {
+                "no rival raises what customers expect here; in the published account rivals do".to_owned()
+            }
             AccountLine::TargetedDevelopment => format!(
                 "the gap of each group depends on the rivals: mean of {} lucks here; how the paper reckons its gaps is not known",
                 super::climate::LUCKS

@@ -10,8 +10,8 @@ pub use figures::{ComparedFigure, FIGURES, figure_of};
 pub use table::{as_rows, as_text};
 
 use crate::report::Logbook;
-use crate::report::comparable::{PUBLISHED_SEED, RunTerms, left_out_in_words};
-use crate::report::ranking::{by_result, published_terms};
+use crate::report::comparable::{RunTerms, left_out_in_words};
+use crate::report::ranking::by_result;
 
 /// Puts runs side by side.
 pub fn beside(runs: &[Logbook]) -> Comparison {
@@ -71,8 +71,5 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
         1 => format!("One run is not comparable with the published ones: {why}."),
         count => format!("{count} runs are not comparable with the published ones: {why}."),
     }));
-    if runs.iter().any(|run| run.seed != PUBLISHED_SEED) {
-        caveats.push(format!("{}.", published_terms()));
-    }
     caveats
 }

@@ -3,7 +3,7 @@
 use super::compared::{Comparison, Range, Row};
 use super::rows::one_a_row;
 use crate::notation::{dollars, grouped, percent};
-use crate::report::ranking::published;
+use crate::report::ranking::{published, published_terms};
 
 /// Most days whose cash the text tells; of longer runs it leaves weeks out.
 const CASH_ROWS: usize = 20;
@@ -16,7 +16,7 @@ pub fn as_text(beside: &Comparison, width: usize) -> String {
     let table = side_by_side(beside);
     if table.lines().any(|line| line.chars().count() > width) {
         let mut exhibit = one_a_row(beside);
-        exhibit.notes.extend(foot(beside));
+        exhibit.notes.extend(beside.caveats.iter().cloned());
         return exhibit.as_text(width);
     }
     let foot: String = foot(beside).into_iter().map(|line| line + "\n").collect();
@@ -45,6 +45,7 @@ fn side_by_side(beside: &Comparison) -> String {
 /// What keeps runs from being compared, and where the published ones come from.
 fn foot(beside: &Comparison) -> Vec<String> {
     let mut lines = beside.caveats.clone();
+    lines.push(format!("{}.", published_terms()));
     lines.push(format!("Published: {}.", published().source));
     lines
 }

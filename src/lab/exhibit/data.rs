@@ -52,11 +52,15 @@ impl Tabulation {
             let pairs = self.columns.iter().zip(cells);
             Value::Object(pairs.map(|(column, cell)| (column.name.clone(), value(cell))).collect())
         };
-        json!({
+        let mut object = json!({
             "caption": self.caption,
             "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
             "rows": self.rows.iter().map(row).collect::<Vec<_>>(),
-        })
+        });
+        if !self.summary.is_empty() {
+            object["summary"] = self.summary.iter().map(row).collect();
+        }
+        object
     }
 }
 

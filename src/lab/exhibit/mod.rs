@@ -40,6 +40,8 @@ pub struct Tabulation {
     pub columns: Vec<Column>,
     /// Cells by row, one for each column.
     pub rows: Vec<Vec<Datum>>,
+    /// Rows that sum the others up: people read them below a rule, programs apart from the rows.
+    pub summary: Vec<Vec<Datum>>,
 }
 
 /// A column of a table.
@@ -204,7 +206,13 @@ impl Exhibit {
 impl Tabulation {
     /// Without rows yet.
     pub fn new(name: &str, caption: impl Into<String>, columns: Vec<Column>) -> Tabulation {
-        Tabulation { name: name.to_owned(), caption: caption.into(), columns, rows: Vec::new() }
+        Tabulation {
+            name: name.to_owned(),
+            caption: caption.into(),
+            columns,
+            rows: Vec::new(),
+            summary: Vec::new(),
+        }
     }
 }
 

@@ -57,6 +57,26 @@ fn no_line_is_wider_than_the_room_and_no_cell_is_lost() {
 }
 
 #[test]
+fn columns_below_stand_after_as_many_names_as_tell_the_rows_apart() {
+    let columns = ["policy", "scenario", "overrides"].map(|name| Column::words(name, name));
+    let figures = ["lower quartile", "median", "upper quartile"];
+    let figures = figures.map(|name| Column::numbers(name, name, Measure::Dollars));
+    let mut table = Tabulation::new("arms", "", columns.into_iter().chain(figures).collect());
+    for (policy, scenario) in [("idle", "default"), ("idle", "competitor-hard"), ("baseline", "default")] {
+        let words = [policy, scenario, "as shipped"].map(Datum::words);
+        table.rows.push(words.into_iter().chain([1e6, 2e6, 3e6].map(Datum::Number)).collect());
+    }
+    table
+        .summary
+        .push(["all", "", ""].map(Datum::words).into_iter().chain([4e6; 3].map(Datum::Number)).collect());
+    let text = Exhibit::of("Arms", table).as_text(58);
+    assert_eq!(text.matches("competitor-hard").count(), 2, "it stands whole, above and below:\n{text}");
+    assert_eq!(text.matches("as shipped").count(), 3, "the scenario tells enough:\n{text}");
+    let rules = text.lines().filter(|line| line.starts_with('─')).count();
+    assert_eq!(rules, 4, "a head and a summary in each panel:\n{text}");
+}
+
+#[test]
 fn programs_get_every_number_in_full_and_two_for_an_interval() {
     let rows = exhibit().tables[0].as_csv();
     assert_eq!(rows[0], ["policy", "cash", "cash_interval_low", "cash_interval_high", "survived", "gini"]);

@@ -45,6 +45,8 @@ impl Tabulation {
 struct Sheet<'a> {
     columns: &'a [Column],
     cells: Vec<Vec<String>>,
+    /// How many of them are rows; the others sum them up.
+    rows: usize,
     widths: Vec<usize>,
 }
 
@@ -54,13 +56,13 @@ impl<'a> Sheet<'a> {
             let pairs = row.iter().zip(&table.columns);
             pairs.map(|(cell, column)| cell.written(column.measure(), is_short)).collect()
         };
-        let cells: Vec<Vec<String>> = table.rows.iter().map(write).collect();
+        let cells: Vec<Vec<String>> = table.rows.iter().chain(&table.summary).map(write).collect();
         let width = |(at, column): (usize, &Column)| {
             let own = cells.iter().filter_map(|row| row.get(at)).map(|cell| cell.width()).max().unwrap_or(0);
             own.max(longest_word(&column.heading))
         };
         let widths = table.columns.iter().enumerate().map(width).collect();
-        Sheet { columns: &table.columns, cells, widths }
+        Sheet { columns: &table.columns, cells, rows: table.rows.len(), widths }
     }
 
     fn total(&self) -> usize {
@@ -71,9 +73,15 @@ impl<'a> Sheet<'a> {
         self.total() <= width
     }
 
-    /// With its widest columns of words broken, as far as it must be.
+    /// With its widest columns of words broken, as far as it must be; not where even that leaves no room for all columns.
     fn narrowed(mut self, width: usize) -> Sheet<'a> {
-        while self.total() > width {
+        let least = |at: usize| match self.columns[at].holds {
+            Holds::Words => self.widths[at].min(LEAST),
+            Holds::Numbers(_) | Holds::Intervals(_) => self.widths[at],
+        };
+        let gaps = GAP * self.widths.len().saturating_sub(1);
+        let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
+        while has_room && self.total() > width {
             let words = (0..self.columns.len()).filter(|at| self.columns[*at].holds == Holds::Words);
             let Some(widest) = words.filter(|at| self.widths[*at] > LEAST).max_by_key(|at| self.widths[*at])
             else {
@@ -85,16 +93,35 @@ impl<'a> Sheet<'a> {
         self
     }
 
-    /// Columns that stand beside each other. Those that have no room stand below, after the first one again.
+    /// The leading columns that name a row: as few as tell all rows apart, the first one if more have no room.
+    fn names(&self, width: usize) -> usize {
+        let is_words = |at: &usize| self.columns.get(*at).is_some_and(|own| own.holds == Holds::Words);
+        let words = (0..self.columns.len()).take_while(is_words).count();
+        let tells_apart = |count: &usize| {
+            let mut names: Vec<&[String]> = self.cells.iter().filter_map(|row| row.get(..*count)).collect();
+            names.sort_unstable();
+            names.windows(2).all(|pair| pair[0] != pair[1])
+        };
+        let has_room = |count: &usize| 3 * self.widths_of(*count) <= 2 * width;
+        (1..=words).find(tells_apart).filter(has_room).unwrap_or(1)
+    }
+
+    /// Columns from the first one on, with the gaps after them.
+    fn widths_of(&self, count: usize) -> usize {
+        self.widths.iter().take(count).map(|own| own + GAP).sum()
+    }
+
+    /// Columns that stand beside each other. Those that have no room stand below, after the names of the rows again.
     fn panels(&self, width: usize) -> Vec<Vec<usize>> {
         let mut panels: Vec<Vec<usize>> = vec![Vec::new()];
         let mut taken = 0;
+        let names = self.names(width);
         for at in 0..self.columns.len() {
             let needed = self.widths[at] + if taken > 0 { GAP } else { 0 };
-            let first = self.widths[0] + GAP;
+            let first = self.widths_of(names);
             let is_full = !panels.last().is_none_or(Vec::is_empty) && taken + needed > width;
-            if is_full && first + self.widths[at] <= width {
-                panels.push(vec![0, at]);
+            if is_full && at >= names && first + self.widths[at] <= width {
+                panels.push((0..names).chain([at]).collect());
                 taken = first + self.widths[at];
             } else if is_full {
                 panels.push(vec![at]);
@@ -115,9 +142,13 @@ impl<'a> Sheet<'a> {
         let heads: Vec<Vec<String>> =
             heads.into_iter().map(|own| [vec![String::new(); height - own.len()], own].concat()).collect();
         let mut text = self.lines(panel, &heads);
-        text += &"─".repeat(panel.iter().map(|at| self.widths[*at] + GAP).sum::<usize>().saturating_sub(GAP));
-        text.push('\n');
-        for row in &self.cells {
+        let across = panel.iter().map(|at| self.widths[*at] + GAP).sum::<usize>().saturating_sub(GAP);
+        let rule = "─".repeat(across) + "\n";
+        text += &rule;
+        for (at, row) in self.cells.iter().enumerate() {
+            if at == self.rows {
+                text += &rule;
+            }
             let cell = |at: &usize| broken(row.get(*at).map_or("", String::as_str), self.widths[*at]);
             text += &self.lines(panel, &panel.iter().map(cell).collect::<Vec<_>>());
         }

@@ -1,7 +1,6 @@
 //! What names a run of an experiment: everything its result depends on.
 
 use super::{Arm, Wanted};
-use crate::lab::runner::new_run;
 use crate::session::{Configuration, RunError};
 use crate::world::MECHANICS;
 
@@ -14,11 +13,7 @@ impl ArmKey {
     /// # Errors
     /// There is no such scenario, or a parameter is wrong.
     pub(super) fn of(arm: &Arm, wanted: &Wanted, configuration: &Configuration) -> Result<ArmKey, RunError> {
-        let run = new_run(&arm.policy, &arm.spec);
-        let scenario = configuration.scenario(&run.scenario)?;
-        let params = configuration.parameters(&scenario, &run.overrides, true)?;
-        let (days, cash) = scenario.terms(&params);
-        let (days, cash) = (run.days.unwrap_or(days), run.cash.unwrap_or(cash));
+        let (days, cash, params) = arm.terms(configuration)?;
         let policy = &arm.policy;
         let plays = (&policy.rule_based, &policy.calls, &policy.enterprise);
         let mut hasher = blake3::Hasher::new();

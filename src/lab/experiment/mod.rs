@@ -19,6 +19,7 @@ pub use store::ResultStore;
 use super::policy::Policy;
 use super::runner::{RunSpec, new_run};
 use crate::session::{Configuration, RunError};
+use crate::world::params::Params;
 
 /// One way to play that is compared with others.
 #[derive(Debug, Clone)]
@@ -42,12 +43,16 @@ impl Arm {
         new_run(&self.policy, &self.spec).scenario
     }
 
-    /// Whether its runs could begin: its scenario is there, and its parameters are allowed.
+    /// What its runs are played under: the last day, the cash on day 0 in dollars, and the parameters.
     ///
     /// # Errors
-    /// What is wrong.
-    pub fn check(&self, configuration: &Configuration) -> Result<(), RunError> {
-        key::ArmKey::of(self, &Wanted::default(), configuration).map(|_| ())
+    /// There is no such scenario, or a parameter is wrong: its runs could not begin.
+    pub fn terms(&self, configuration: &Configuration) -> Result<(u32, f64, Params), RunError> {
+        let run = new_run(&self.policy, &self.spec);
+        let scenario = configuration.scenario(&run.scenario)?;
+        let params = configuration.parameters(&scenario, &run.overrides, true)?;
+        let (days, cash) = scenario.terms(&params);
+        Ok((run.days.unwrap_or(days), run.cash.unwrap_or(cash), params))
     }
 }
 

@@ -1,4 +1,5 @@
-//! A file of results, a line a run. Several programs may write into it; a line that was cut off is a run to play again.
+//! A file of results, a line a run. Several programs may write into it; a line that was cut off or changed is a run to play
+//! again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
@@ -21,6 +22,26 @@ pub struct ResultStore {
 struct StoredLine<R> {
     key: String,
     result: R,
+    /// Of key and result as they are written: a line that was changed by accident is not believed.
+    sum: String,
+}
+
+impl<R: Serialize> StoredLine<R> {
+    fn of(key: &str, result: R) -> io::Result<StoredLine<R>> {
+        let sum = sum_of(key, &result)?;
+        Ok(StoredLine { key: key.to_owned(), result, sum })
+    }
+
+    fn is_whole(&self) -> bool {
+        sum_of(&self.key, &self.result).is_ok_and(|sum| sum == self.sum)
+    }
+}
+
+fn sum_of(key: &str, result: &impl Serialize) -> io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(key.as_bytes());
+    hasher.update(&serde_json::to_vec(result).map_err(io::Error::other)?);
+    Ok(hasher.finalize().to_hex()[..16].to_owned())
 }
 
 impl ResultStore {
@@ -41,7 +62,8 @@ impl ResultStore {
         &self.path
     }
 
-    /// The results of these keys; of two with one key, the later. Lines that are not whole are passed over.
+    /// The results of these keys; of two with one key, the later. Lines that are not as they were written are
+    /// passed over.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -50,7 +72,8 @@ impl ResultStore {
         let (mut known, mut line) = (BTreeMap::new(), Vec::new());
         while reader.read_until(b'\n', &mut line)? > 0 {
             let stored: Option<StoredLine<RunResult>> = serde_json::from_slice(&line).ok();
-            if let Some(own) = stored.filter(|own| keys.contains(own.key.as_str())) {
+            let wanted = stored.filter(|own| keys.contains(own.key.as_str()) && own.is_whole());
+            if let Some(own) = wanted {
                 known.insert(own.key, own.result);
             }
             line.clear();
@@ -63,7 +86,7 @@ impl ResultStore {
     /// # Errors
     /// The disk does not take it; the file is then as it was.
     pub(super) fn keep(&self, key: &str, result: &RunResult) -> io::Result<()> {
-        let stored = StoredLine { key: key.to_owned(), result };
+        let stored = StoredLine::of(key, result)?;
         let mut line = serde_json::to_vec(&stored).map_err(io::Error::other)?;
         line.push(b'\n');
         let mut file = self.file.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

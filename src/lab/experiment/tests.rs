@@ -108,6 +108,25 @@ fn a_file_that_was_cut_off_anywhere_loses_one_run_at_most() {
 }
 
 #[test]
+fn a_result_that_was_changed_is_played_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("results.jsonl");
+    let whole = conduct(&experiment(), &path, false, 99).0.expect("results");
+    let text = std::fs::read_to_string(&path).expect("results");
+    for (from, to) in [
+        ("\"cash\":", "\"cash\":1"),
+        ("\"subscribers\":", "\"subscribers\":7"),
+        ("\"key\":\"", "\"key\":\"0"),
+    ] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text);
+        std::fs::write(&path, changed).expect("written");
+        let (again, played) = conduct(&experiment(), &path, false, 99);
+        assert_eq!((again.expect("results"), played), (whole.clone(), 1), "{from}");
+    }
+}
+
+#[test]
 fn figures_of_days_are_kept_where_they_are_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut own = experiment();

@@ -4,7 +4,6 @@ use super::{ResultsRow, ResultsTable};
 use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::report::ranking::Whose;
 
 impl ResultsTable {
     /// The table, and the best runs as bars.
@@ -47,17 +46,13 @@ impl ResultsTable {
 }
 
 fn cells(row: &ResultsRow) -> Vec<Datum> {
-    let source = match row.whose {
-        Whose::Own => "own",
-        Whose::Agent | Whose::Baseline => "published",
-    };
     let bankrupt = match row.bankruptcies {
         Some(count) => Datum::words(format!("{count}/{}", row.runs)),
         None => Datum::Missing,
     };
     vec![
         Datum::words(&*row.name),
-        Datum::words(source),
+        Datum::words(row.player.source()),
         bankrupt,
         Datum::Number(row.best_cash),
         Datum::number(row.max_survival_days),

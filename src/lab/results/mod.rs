@@ -12,7 +12,7 @@ use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play, policy_of};
 use crate::report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
 use crate::report::measures::{survival_days, tool_use};
-use crate::report::ranking::{Whose, beaten, by_result, published};
+use crate::report::ranking::{beaten, by_result, published};
 use crate::session::{Configuration, Ended, Line, Session};
 use crate::statistics::Sample;
 
@@ -66,12 +66,40 @@ pub enum ResultsBy {
     Policy,
 }
 
+/// Whose runs a row holds. A participant may have any label: kinds are told apart by more than names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Player {
+    /// A participant, or somebody who was not named.
+    Participant,
+    /// A policy.
+    Policy,
+    /// The company that nobody runs, played for the table.
+    Idle,
+    /// An agent of the paper, in its words.
+    PublishedAgent,
+    /// The rule-based company of the paper.
+    PublishedBaseline,
+}
+
+impl Player {
+    /// Where the row comes from, in words.
+    pub fn source(self) -> &'static str {
+        match self {
+            Player::Participant => "own",
+            Player::Policy => "own policy",
+            Player::Idle => "reference",
+            Player::PublishedAgent | Player::PublishedBaseline => "published",
+        }
+    }
+}
+
 impl ResultsBy {
-    fn name(self, run: &FinishedRun) -> Option<String> {
-        let policy = run.policy.as_ref().map(|name| format!("policy {name}"));
+    fn player(self, run: &FinishedRun) -> Option<(Player, String)> {
+        let policy = run.policy.clone().map(|name| (Player::Policy, name));
+        let participant = run.participant.clone().map(|label| (Player::Participant, label));
         match self {
             ResultsBy::Participant => {
-                Some(run.participant.clone().or(policy).unwrap_or("unnamed".to_owned()))
+                Some(participant.or(policy).unwrap_or((Player::Participant, "unnamed".to_owned())))
             }
             ResultsBy::Policy => policy,
         }
@@ -83,8 +111,8 @@ impl ResultsBy {
 pub struct ResultsRow {
     /// Whose they are.
     pub name: String,
-    /// Published, or own.
-    pub whose: Whose,
+    /// What they are.
+    pub player: Player,
     /// Runs.
     pub runs: u32,
     /// Those that went bankrupt; none where it was not published.
@@ -147,17 +175,20 @@ impl ResultsTable {
         idle: &FinishedRun,
         by: ResultsBy,
     ) -> ResultsTable {
-        let mut groups: BTreeMap<String, Vec<&FinishedRun>> = BTreeMap::new();
+        let mut groups: BTreeMap<(Player, String), Vec<&FinishedRun>> = BTreeMap::new();
         let mut played_by_people = 0;
         for run in runs {
-            match by.name(run) {
-                Some(name) => groups.entry(name).or_default().push(run),
+            match by.player(run) {
+                Some(player) => groups.entry(player).or_default().push(run),
                 None => played_by_people += 1,
             }
         }
         let mut rows: Vec<ResultsRow> =
-            groups.into_iter().filter_map(|(name, own)| row_of(name, &own)).collect();
-        rows.extend(row_of(IDLE_NAME.to_owned(), &[idle]).map(|row| ResultsRow { best_run: None, ..row }));
+            groups.into_iter().filter_map(|(player, own)| row_of(player, &own)).collect();
+        rows.extend(
+            row_of((Player::Idle, IDLE_NAME.to_owned()), &[idle])
+                .map(|row| ResultsRow { best_run: None, ..row }),
+        );
         rows.extend(published_rows());
         rows.sort_by(|one, other| {
             let result = |row: &ResultsRow| (row.best_cash, row.max_survival_days.unwrap_or(0.0) as u32);
@@ -188,13 +219,13 @@ fn best_of<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     runs.iter().copied().max_by(|one, other| order(one, other))
 }
 
-fn row_of(name: String, runs: &[&FinishedRun]) -> Option<ResultsRow> {
+fn row_of((player, name): (Player, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
     let best = best_of(runs)?;
     let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
     Some(ResultsRow {
         name,
-        whose: Whose::Own,
+        player,
         runs: runs.len() as u32,
         bankruptcies: Some(runs.iter().filter(|run| run.is_bankrupt).count() as u32),
         best_cash: best.score,
@@ -220,7 +251,7 @@ fn published_rows() -> Vec<ResultsRow> {
         .iter()
         .map(|agent| ResultsRow {
             name: agent.name.clone(),
-            whose: Whose::Agent,
+            player: Player::PublishedAgent,
             runs: agent.runs,
             bankruptcies: Some(agent.bankruptcies),
             best_cash: agent.best_cash,
@@ -234,7 +265,7 @@ fn published_rows() -> Vec<ResultsRow> {
         .collect();
     rows.push(ResultsRow {
         name: "rule-based baseline".to_owned(),
-        whose: Whose::Baseline,
+        player: Player::PublishedBaseline,
         runs: 1,
         bankruptcies: None,
         best_cash: paper.rule_based_baseline,
@@ -309,8 +340,18 @@ mod tests {
         assert!(table.notes.iter().any(|note| note.contains("28 days instead of 500")), "{:?}", table.notes);
         assert!(table.rows.is_sorted_by(|one, other| one.best_cash >= other.best_cash));
         let policies = ResultsTable::of(&runs, &[], &idle, ResultsBy::Policy);
-        assert_eq!(named(&policies, "policy mine").runs, 1);
+        assert_eq!(named(&policies, "mine").player, Player::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
+        // A label is not believed: it neither joins the runs of a policy nor the published ones.
+        let named_so = [run("e1", Some("mine"), 9e6, 500), run("e2", Some("idle company"), 8e6, 500)];
+        let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
+        let table = ResultsTable::of(&runs, &[], &idle, ResultsBy::Participant);
+        let of = |name: &str| {
+            let rows = table.rows.iter().filter(|row| row.name == name);
+            rows.map(|row| (row.player.source(), row.runs)).collect::<Vec<_>>()
+        };
+        assert_eq!(of("mine"), [("own", 1), ("own policy", 1)]);
+        assert_eq!(of("idle company"), [("own", 1), ("reference", 1)]);
     }
 
     #[test]

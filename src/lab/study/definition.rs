@@ -234,8 +234,13 @@ fn policies(
     Ok(found)
 }
 
-/// Each scenario once: its runs would be the same.
+/// Each scenario once: its runs would be the same. A list of none says nothing.
 fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
+    if own.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
+        let problem =
+            "an empty list plays nothing; leave the key out, and each policy plays its own scenario";
+        return Err(source.wrong("scenarios", problem));
+    }
     let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
     match (0..own.scenarios.len()).find(twice) {
         Some(at) => {
@@ -292,13 +297,23 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
             }
             let given = flat(&set.set);
             refuse_said_elsewhere(source, "overrides", given.iter().map(|(key, _)| key))?;
-            let overrides = given.into_iter().map(|(key, value)| (key, value_text(value)));
-            sets.push(Level { labels: vec![set.name.clone()], overrides: overrides.collect() });
+            let overrides: Vec<_> = given.into_iter().map(|(key, value)| (key, value_text(value))).collect();
+            if let Some(twin) = sets.iter().find(|other| other.overrides == overrides) {
+                let problem =
+                    format!("{} sets what {} sets: their runs would be the same", set.name, twin.labels[0]);
+                return Err(source.wrong(&format!("overrides.{at}"), problem));
+            }
+            sets.push(Level { labels: vec![set.name.clone()], overrides });
         }
         all = crossed(&all, &sets);
     }
     let grid = flat(&own.grid);
     refuse_said_elsewhere(source, "grid", grid.iter().map(|(key, _)| key))?;
+    let is_set = |key: &String| all.iter().any(|level| level.overrides.iter().any(|(own, _)| own == key));
+    if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
+        let problem = "a set of overrides sets it too, which the grid would replace: vary it in one of them";
+        return Err(source.wrong_override("grid", key, problem));
+    }
     for (key, values) in grid {
         let Value::Array(values) = values else {
             return Err(source.wrong_override("grid", &key, "a list of values is varied"));
@@ -379,7 +394,13 @@ fn check(
     arm: &Arm,
     configuration: &Configuration,
 ) -> Result<(), ParameterError> {
-    let Err(error) = arm.check(configuration) else { return Ok(()) };
+    let error = match (arm.terms(configuration), own.until) {
+        (Ok((days, ..)), Some(until)) if until > days => {
+            return Err(source.wrong("until", format!("its runs end on day {days}")));
+        }
+        (Ok(_), _) => return Ok(()),
+        (Err(error), _) => error,
+    };
     if let RunError::Configuration(wrong) = &error {
         let concerns = |key: &&String| {
             wrong.key == **key || wrong.key.starts_with(&format!("{key}.")) || wrong.source.contains(*key)

@@ -39,10 +39,14 @@ impl Shards {
     /// A file is no shard, is damaged, or of another study; a shard is there twice or is missing.
     pub fn of(places: &[PathBuf]) -> Result<Shards, MergeError> {
         let mut problems = Vec::new();
-        let mut found: Vec<(PathBuf, ShardHead)> = Vec::new();
+        let (mut found, mut damaged): (Vec<(PathBuf, ShardHead)>, Vec<ShardHead>) = Default::default();
         for file in files(places)? {
             match read(&file) {
-                Ok(head) => found.push((file, head)),
+                Ok(ReadShard::Whole(head)) => found.push((file, head)),
+                Ok(ReadShard::Damaged(head)) => {
+                    problems.push(format!("{} is damaged: play shard {} again", file.display(), head.part));
+                    damaged.push(head);
+                }
                 Err(problem) => problems.push(format!("{}: {problem}", file.display())),
             }
         }
@@ -70,9 +74,12 @@ impl Shards {
                 by_number.insert(head.part.shard, file);
             }
         }
-        let is_missing = |shard: &usize| !by_number.contains_key(shard);
+        let is_there = |shard: &usize| {
+            let own = |head: &ShardHead| head.digest == study.digest && head.part.shard == *shard;
+            by_number.contains_key(shard) || damaged.iter().any(own)
+        };
         let name = |shard| ShardHead::file_name(&study.study, Shard { shard, of: study.part.of });
-        let missing: Vec<String> = (1..=study.part.of).filter(is_missing).map(name).collect();
+        let missing: Vec<String> = (1..=study.part.of).filter(|shard| !is_there(shard)).map(name).collect();
         if !missing.is_empty() {
             problems.push(format!("missing: {}", in_short(&missing)));
         }
@@ -80,6 +87,11 @@ impl Shards {
             true => Ok(Shards { files: by_number.into_values().collect() }),
             false => Err(MergeError(problems)),
         }
+    }
+
+    /// The files, in the order of their shards.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// Writes the rows of all shards under the names of their columns, run by run.
@@ -178,8 +190,16 @@ fn is_named_as_shard(path: &Path) -> bool {
         .is_some_and(|(shard, of)| is_number(shard) && is_number(of))
 }
 
-/// The head of a shard that is whole.
-fn read(file: &Path) -> Result<ShardHead, String> {
+/// A shard whose first line was read.
+enum ReadShard {
+    /// Its rows are what the line says.
+    Whole(ShardHead),
+    /// They are not.
+    Damaged(ShardHead),
+}
+
+/// The head of a shard, and whether the rest is what it says.
+fn read(file: &Path) -> Result<ReadShard, String> {
     let mut reader = BufReader::new(File::open(file).map_err(|error| error.to_string())?);
     // A first line is short: a file without line ends is no shard.
     let mut line = Vec::new();
@@ -188,8 +208,6 @@ fn read(file: &Path) -> Result<ShardHead, String> {
     let head = head.ok_or("it is no shard of a study")?;
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut reader, &mut hasher).map_err(|error| error.to_string())?;
-    match hasher.finalize().to_hex()[..32] == *head.checksum {
-        true => Ok(head),
-        false => Err(format!("it is damaged: play shard {} again", head.part)),
-    }
+    let is_whole = hasher.finalize().to_hex()[..32] == *head.checksum;
+    Ok(if is_whole { ReadShard::Whole(head) } else { ReadShard::Damaged(head) })
 }

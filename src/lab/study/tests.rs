@@ -77,14 +77,34 @@ fn wrong_studies_name_line_and_key() {
         ("name = \"x\"\npolicies = [\"P0\"]\nseeds = []\n".to_owned(), Some(3), ["seeds", "at least one"]),
         ("name = \"x\"\npolicies = [\"P0\"]\nseeds = -1\n".to_owned(), Some(3), ["seeds", "a number"]),
         (
-            "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..18446744073709551615\"\n".to_owned(),
+            "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..1000000\"\n".to_owned(),
             Some(3),
             ["seeds", "1,000,000 are played"],
+        ),
+        (
+            "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"0..18446744073709551615\"\n".to_owned(),
+            Some(3),
+            ["seeds", "a seed is at most"],
         ),
         (format!("{begin}days = 3\n"), Some(4), ["days", "between 7"]),
         (format!("{begin}days = \"long\"\n"), Some(4), ["days", "long"]),
         (format!("{begin}cash = -1.0\n"), Some(4), ["cash", "above 0"]),
         (format!("{begin}until = 0\n"), Some(4), ["until", "a day at least"]),
+        (format!("{begin}days = 28\nuntil = 29\n"), Some(5), ["until", "end on day 28"]),
+        (format!("{begin}until = 501\n"), Some(4), ["until", "end on day 500"]),
+        (format!("{begin}scenarios = []\n"), Some(4), ["scenarios", "leave the key out"]),
+        (
+            format!(
+                "{begin}\n[[overrides]]\nname = \"a\"\nset = {{ \"leads.saturation_base\" = 12 }}\n[grid]\nleads.saturation_base = [1, 2]\n"
+            ),
+            Some(9),
+            ["leads.saturation_base", "vary it in one"],
+        ),
+        (
+            format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"b\"\n"),
+            Some(7),
+            ["overrides.1", "b sets what a sets"],
+        ),
         (format!("{begin}scenarios = [\"default\", \"nowhere\"]\n"), Some(4), ["scenarios.1", "nowhere"]),
         (
             format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"a\"\n"),
@@ -216,12 +236,13 @@ fn what_does_not_belong_together_is_refused_by_name() {
     fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
     fails(&[files.clone(), vec![twin]].concat(), &["twin.csv", "no shard"]);
     let bytes = fs::read(&files[2]).expect("a shard");
-    for damaged in
-        [&bytes[..bytes.len() - 1], &bytes[..bytes.len() / 2], &[bytes.as_slice(), b"9,9\n"].concat()]
-    {
+    for damaged in [&bytes[..bytes.len() - 1], &[bytes.as_slice(), b"9,9\n"].concat()] {
         fs::write(&files[2], damaged).expect("a file");
-        fails(&files, &["s.3-of-4.csv"]);
+        fails(&files, &["s.3-of-4.csv is damaged: play shard 3 of 4 again"]);
+        assert!(!merged(&files).expect_err("refused").contains("missing"), "it is there");
     }
+    fs::write(&files[2], &bytes[..20]).expect("a file");
+    fails(&files, &["s.3-of-4.csv: it is no shard", "missing: s.3-of-4.csv"]);
     fails(&[folder.path().join("nowhere")], &["nowhere"]);
     let empty = tempfile::tempdir().expect("a folder");
     fails(&[empty.path().to_owned()], &["there is no shard"]);

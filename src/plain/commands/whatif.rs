@@ -362,7 +362,8 @@ fn futures_as_data(comparison: &BranchComparison, futures: &Futures) -> Value {
                 .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
                 .collect();
             let difference = futures.difference(at, *figure, comparison.until).map(|own| {
-                json!({ "mean": own.mean, "interval": [own.interval.low, own.interval.high], "more": own.more, "of": own.of })
+                let interval = own.interval.map(|own| [own.low, own.high]);
+                json!({ "mean": own.mean, "interval": interval, "more": own.more, "of": own.of })
             });
             (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
         });

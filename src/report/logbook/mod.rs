@@ -20,7 +20,7 @@ use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
 use crate::session::{
     Attendance, Consent, Ended, Line, Mode, ModelStamp, Record, ScoredForecast, Session, SittingCount,
-    StudyStamp, TimeSpent, end_of,
+    StudyStamp, TimeSpent, end_of, is_of_policy,
 };
 use timeline::{Span, Timeline};
 
@@ -59,6 +59,8 @@ pub struct Logbook {
     pub earlier_runs: u32,
     /// Run it branched from.
     pub parent: Option<String>,
+    /// A policy decided its weeks, nobody else.
+    pub is_of_policy: bool,
     /// When it was created, RFC 3339.
     pub created: String,
     /// When its last line was written, RFC 3339.
@@ -187,6 +189,7 @@ impl Logbook {
             voice: manifest.voice.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
+            is_of_policy: is_of_policy(lines),
             created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),
             last_at: last.map(|line| line.at.clone()).unwrap_or_default(),
             ended_at: end.map(|line| line.at.clone()),

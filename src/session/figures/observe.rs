@@ -33,6 +33,8 @@ pub struct Observation {
     /// The language model that lends its voice.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
+    /// It goes on from weeks of another run.
+    pub is_branch: bool,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -131,6 +133,7 @@ impl Session {
             scenario: self.manifest.scenario.clone(),
             has_own_parameters: self.has_own_parameters(),
             voice: self.manifest.voice.clone(),
+            is_branch: self.manifest.parent.is_some(),
             participant: self.manifest.participant.clone(),
             day: self.simulation.world.day,
             last_day: self.manifest.days,

@@ -30,10 +30,20 @@ pub use writer::{Durability, TrajectoryWriter};
 use crate::database::Position;
 use crate::session::error::RunError;
 use line::line_hash;
+use record::Via;
 
 /// The line that says how a run ended, among its lines; none while it is unfinished.
 pub fn end_of(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
+}
+
+/// Whether a policy decided every week among some lines; not without one.
+pub fn is_of_policy(lines: &[Line]) -> bool {
+    let mut weeks = lines.iter().filter_map(|line| match &line.record {
+        Record::Advance(week) => Some(week.via),
+        _ => None,
+    });
+    weeks.next() == Some(Via::Policy) && weeks.all(|via| via == Via::Policy)
 }
 
 /// A trajectory that was read.

@@ -86,6 +86,7 @@ fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Interval;
 
     fn futures(cash: &[[f64; 2]]) -> Futures {
         let week = |value: f64| {
@@ -104,7 +105,7 @@ mod tests {
         let band = futures.band(0, BranchFigure::Cash, 7);
         assert_eq!(band, Some(FutureBand { low: 1.0, median: 5.0, high: 9.0 }));
         let difference = futures.difference(1, BranchFigure::Cash, 7).expect("pairs");
-        assert_eq!((difference.mean, difference.interval.low, difference.interval.high), (2.0, 2.0, 2.0));
+        assert_eq!((difference.mean, difference.interval), (2.0, Some(Interval { low: 2.0, high: 2.0 })));
         assert_eq!((difference.more, difference.of), (11, 11));
         assert_eq!(futures.band(0, BranchFigure::Leads, 7), None);
         assert_eq!(futures.band(0, BranchFigure::Cash, 14), None);

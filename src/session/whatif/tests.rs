@@ -147,7 +147,7 @@ fn futures_are_the_same_for_every_branch_and_for_every_question() {
     // Nobody decides anything after the record, so keeping it is no other branch.
     let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
     let same = difference(2, BranchFigure::Cash);
-    assert_eq!((same.mean, same.interval, same.more), (0.0, Interval { low: 0.0, high: 0.0 }, 0));
+    assert_eq!((same.mean, same.interval, same.more), (0.0, Some(Interval { low: 0.0, high: 0.0 }), 0));
     // At lower prices more stay, whatever the luck.
     let fewer = difference(1, BranchFigure::Cancellations);
     assert!(fewer.mean < 0.0 && fewer.more == 0, "{fewer:?}");

@@ -19,6 +19,8 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         scenario: "default".to_owned(),
         has_own_parameters: false,
         judged_by_model: false,
+        is_branch: false,
+        is_of_policy: false,
         participant: None,
         day: 84,
         days: 500,

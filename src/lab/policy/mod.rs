@@ -1,15 +1,20 @@
 //! Policy files (docs/interfaces/policies.md).
 
+mod rule_based;
+
 use std::fmt;
 
 use serde::Deserialize;
 use toml::Table;
 
+#[cfg(test)]
+pub use rule_based::PriceBook;
+pub use rule_based::{CapacityRule, OperationsRule, RuleBased, Target};
+
 use super::answers::EnterpriseRule;
 use crate::session::Configuration;
 use crate::shipped;
 use crate::tools;
-use crate::world::identifiers::Plan;
 use crate::world::params::ParameterSource;
 
 /// What drives a run without a person.
@@ -41,206 +46,6 @@ pub struct Start {
     pub scenario: Option<String>,
     /// Last day.
     pub days: Option<u32>,
-}
-
-/// The weekly routine; every key has the value of the paper's best configuration unless it is given.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RuleBased {
-    /// Prices, tiers and quotas.
-    pub price_book: PriceBook,
-    /// Groups that get development and ads.
-    pub target: Target,
-    /// Budgets of the target groups.
-    pub spend: Spend,
-    /// Spending is on while cash is above this, dollars; -1: always.
-    pub cash_floor: f64,
-    /// General development while on, dollars a day.
-    pub global_development: f64,
-    /// Operations.
-    pub operations: OperationsRule,
-    /// Capacity.
-    pub capacity: CapacityRule,
-}
-
-impl Default for RuleBased {
-    fn default() -> Self {
-        RuleBased {
-            price_book: PriceBook::Named(BookName::Mid),
-            target: Target::S1Only,
-            spend: Spend::Named(SpendName::Heavy),
-            cash_floor: 100_000.0,
-            global_development: 200.0,
-            operations: OperationsRule::Named(OperationsName::Subscribers),
-            capacity: CapacityRule::Utilisation,
-        }
-    }
-}
-
-/// Prices, tiers and quotas of the three plans.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
-pub enum PriceBook {
-    /// A book of the paper.
-    Named(BookName),
-    /// One of the policy's own.
-    Own {
-        /// Dollars a month.
-        prices: PerPlan<f64>,
-        /// Model tiers.
-        tiers: PerPlan<u8>,
-        /// Units a day.
-        quotas: PerPlan<u64>,
-    },
-}
-
-/// The paper's price books.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BookName {
-    /// A $8 / T1 / 50K, B $18 / T2 / 200K, C $40 / T3 / 1M.
-    Cheap,
-    /// A $12 / T1 / 60K, B $25 / T2 / 250K, C $55 / T4 / 1.2M.
-    Mid,
-}
-
-/// One value per plan.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PerPlan<T> {
-    /// Plan A.
-    #[serde(rename = "A")]
-    pub a: T,
-    /// Plan B.
-    #[serde(rename = "B")]
-    pub b: T,
-    /// Plan C.
-    #[serde(rename = "C")]
-    pub c: T,
-}
-
-impl<T: Copy> PerPlan<T> {
-    /// The value of a plan.
-    pub fn of(&self, plan: Plan) -> T {
-        match plan {
-            Plan::A => self.a,
-            Plan::B => self.b,
-            Plan::C => self.c,
-        }
-    }
-}
-
-impl PriceBook {
-    /// Prices, tiers and quotas.
-    pub fn book(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
-        match self {
-            PriceBook::Named(BookName::Cheap) => (
-                PerPlan { a: 8.0, b: 18.0, c: 40.0 },
-                PerPlan { a: 1, b: 2, c: 3 },
-                PerPlan { a: 50_000, b: 200_000, c: 1_000_000 },
-            ),
-            PriceBook::Named(BookName::Mid) => (
-                PerPlan { a: 12.0, b: 25.0, c: 55.0 },
-                PerPlan { a: 1, b: 2, c: 4 },
-                PerPlan { a: 60_000, b: 250_000, c: 1_200_000 },
-            ),
-            PriceBook::Own { prices, tiers, quotas } => (*prices, *tiers, *quotas),
-        }
-    }
-}
-
-/// Groups that get development and ads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Target {
-    /// S1.
-    S1Only,
-    /// S1, and S3 from day 30 on.
-    S1ThenS3,
-    /// None.
-    None,
-}
-
-/// Budgets of the target groups.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "spend must be light, medium, heavy or a table with the budgets of S1 and S3")]
-pub enum Spend {
-    /// A package of the paper.
-    Named(SpendName),
-    /// Budgets of the policy's own.
-    Own {
-        /// S1.
-        #[serde(rename = "S1")]
-        s1: Budget,
-        /// S3.
-        #[serde(rename = "S3")]
-        s3: Budget,
-    },
-}
-
-/// The paper's packages.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SpendName {
-    /// S1 $2,000 development and $250 ads a day, S3 $1,500 and $600.
-    Light,
-    /// S1 $4,000 and $500, S3 $3,000 and $1,200.
-    Medium,
-    /// S1 $6,000 and $750, S3 $4,500 and $1,800.
-    Heavy,
-}
-
-/// Budgets of one group, dollars a day.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Budget {
-    /// Targeted development.
-    pub development: f64,
-    /// Advertising.
-    pub ads: f64,
-}
-
-impl Spend {
-    /// Budgets of S1 and S3.
-    pub fn budgets(&self) -> (Budget, Budget) {
-        let package = |s1: (f64, f64), s3: (f64, f64)| {
-            (Budget { development: s1.0, ads: s1.1 }, Budget { development: s3.0, ads: s3.1 })
-        };
-        match self {
-            Spend::Named(SpendName::Light) => package((2000.0, 250.0), (1500.0, 600.0)),
-            Spend::Named(SpendName::Medium) => package((4000.0, 500.0), (3000.0, 1200.0)),
-            Spend::Named(SpendName::Heavy) => package((6000.0, 750.0), (4500.0, 1800.0)),
-            Spend::Own { s1, s3 } => (*s1, *s3),
-        }
-    }
-}
-
-/// How much operations get.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
-pub enum OperationsRule {
-    /// max(100, 0.05 x active subscriptions).
-    Named(OperationsName),
-    /// A fixed number of dollars a day.
-    Fixed(f64),
-}
-
-/// Name of the rule for operations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OperationsName {
-    /// With the subscribers.
-    Subscribers,
-}
-
-/// How capacity follows usage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CapacityRule {
-    /// One tier a week towards the smallest that holds the week's usage at 80 %.
-    Utilisation,
-    /// The tier is never touched.
-    Fixed,
 }
 
 /// A call on one or more decision days.
@@ -283,7 +88,7 @@ struct PolicyFile {
     description: String,
     #[serde(default)]
     start: Start,
-    rule_based: Option<RuleBased>,
+    rule_based: Option<toml::Spanned<RuleBased>>,
     #[serde(default)]
     call: Vec<toml::Spanned<CallEntry>>,
     enterprise: Option<toml::Spanned<EnterpriseRule>>,
@@ -317,6 +122,8 @@ pub struct PolicyError {
     pub line: Option<usize>,
     /// What is wrong.
     pub problem: String,
+    /// There is nothing of the name that was asked for.
+    pub is_unknown: bool,
 }
 
 impl fmt::Display for PolicyError {
@@ -337,7 +144,8 @@ impl Policy {
     /// # Errors
     /// There is none, or it is wrong.
     pub fn find(name: &str, configuration: &Configuration) -> Result<Policy, PolicyError> {
-        let wrong = |problem: String| PolicyError { source: name.to_owned(), line: None, problem };
+        let wrong =
+            |problem: String| PolicyError { source: name.to_owned(), line: None, problem, is_unknown: false };
         if name.ends_with(".toml") || name.contains(std::path::is_separator) {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return Policy::parse(&ParameterSource { name: name.to_owned(), text });
@@ -356,7 +164,8 @@ impl Policy {
                 let mut known: Vec<String> =
                     shipped::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
                 known.extend(configuration.names("policies"));
-                Err(wrong(format!("there is no such policy; there are {}", known.join(", "))))
+                let problem = format!("there is no such policy; there are {}", known.join(", "));
+                Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
         }
     }
@@ -370,6 +179,7 @@ impl Policy {
             source: source.name.clone(),
             line: span.map(|span| source.text[..span.start.min(source.text.len())].matches('\n').count() + 1),
             problem,
+            is_unknown: false,
         };
         let file: PolicyFile =
             toml::from_str(&source.text).map_err(|error| at(error.span(), error.message().to_owned()))?;
@@ -385,11 +195,18 @@ impl Policy {
                 Some(entry.into_inner().checked().map_err(|problem| at(Some(span), problem))?)
             }
         };
+        let rule_based = match file.rule_based {
+            None => None,
+            Some(rules) => {
+                let span = rules.span();
+                Some(rules.into_inner().checked().map_err(|problem| at(Some(span), problem))?)
+            }
+        };
         if let Some(cash) = file.start.cash.filter(|cash| !cash.is_finite() || *cash <= 0.0) {
             return Err(at(None, format!("start.cash must be above 0, not {cash}")));
         }
         let (name, description) = (file.name, file.description);
-        Ok(Policy { name, description, start: file.start, rule_based: file.rule_based, calls, enterprise })
+        Ok(Policy { name, description, start: file.start, rule_based, calls, enterprise })
     }
 }
 
@@ -464,6 +281,9 @@ mod tests {
             ("name = \"x\"\nwhat = 1\n", Some(2), "what"),
             ("name = \"x\"\n[rule_based]\nprice_book = \"dear\"\n", Some(3), "cheap, mid"),
             ("name = \"x\"\n[rule_based]\ntargets = \"none\"\n", Some(3), "targets"),
+            ("name = \"x\"\n[rule_based]\ncash_floor = -7e99\n", Some(2), "-1 for always"),
+            ("name = \"x\"\n[rule_based]\nglobal_development = nan\n", Some(2), "dollars a day"),
+            ("name = \"x\"\n[rule_based]\noperations = -5\n", Some(2), "`operations`"),
             ("name = \"x\"\n\n[[call]]\nday = 3\ntool = \"set_prices\"\n", Some(3), "decision day"),
             (
                 "name = \"x\"\n[[call]]\nday = 7\nuntil_day = 14\ntool = \"set_prices\"\n",

@@ -1,0 +1,110 @@
+//! Files that a command writes where it was told to: whole or not at all. A device or a pipe is written to, never replaced.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use super::Failure;
+
+/// Writes a text into a file.
+///
+/// # Errors
+/// The disk does not take it; a file that was there stays.
+pub fn write_text(place: &Path, text: &str) -> Result<(), Failure> {
+    write_file(place, None, |out| out.write_all(text.as_bytes()))
+}
+
+/// Writes a file; `safe` says what is not lost if that fails.
+///
+/// # Errors
+/// The disk does not take it; a file that was there stays.
+pub fn write_file(
+    place: &Path,
+    safe: Option<&str>,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let is_special = std::fs::metadata(place).is_ok_and(|found| !found.is_file());
+    let written = if is_special {
+        File::options().write(true).open(place).and_then(|file| filled(file, write).map(drop))
+    } else {
+        replaced(place, write)
+    };
+    written.map_err(|error| {
+        let safe = safe.map_or(String::new(), |safe| format!(", {safe}"));
+        Failure::failed(format!("{}: {error}; it was not written{safe}", place.display()))
+    })
+}
+
+/// Writes beside the place, and moves there what is whole.
+fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let draft = place.with_file_name(format!(".{name}.draft"));
+    let written = File::create(&draft)
+        .and_then(|file| filled(file, write)?.sync_all())
+        .and_then(|()| std::fs::rename(&draft, place));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&draft);
+    }
+    written
+}
+
+fn filled(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
+    let mut file = BufWriter::new(file);
+    write(&mut file)?;
+    Ok(file.into_inner()?)
+}
+
+/// Whether two paths name one file, which need not be there yet.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let place = |path: &Path| {
+        path.canonicalize().ok().or_else(|| {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            Some(folder.unwrap_or(Path::new(".")).canonicalize().ok()?.join(path.file_name()?))
+        })
+    };
+    place(one).is_some_and(|one| place(other) == Some(one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_when_the_new_one_is_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("report.md");
+        write_text(&place, "one").expect("written");
+        let half = write_file(&place, Some("the run is kept"), |out| {
+            out.write_all(b"two")?;
+            Err(io::Error::other("the disk is full"))
+        });
+        let said = half.expect_err("it fails").to_string();
+        assert!(said.ends_with("the disk is full; it was not written, the run is kept"), "{said}");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "one");
+        write_text(&place, "two").expect("written");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "two");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "no draft is left");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_device_stays_a_device() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let folder = tempfile::tempdir().expect("a folder");
+        let link = folder.path().join("out");
+        symlink("/dev/null", &link).expect("a link");
+        write_text(&link, "text").expect("written");
+        assert!(std::fs::symlink_metadata(&link).expect("a link").file_type().is_symlink());
+        assert!(std::fs::metadata("/dev/null").expect("a device").file_type().is_char_device());
+    }
+
+    #[test]
+    fn one_file_has_many_names() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (there, not_yet) = (folder.path().join("a"), folder.path().join("b"));
+        write_text(&there, "").expect("written");
+        assert!(is_same_file(&there, &folder.path().join("./a")));
+        assert!(is_same_file(&not_yet, &folder.path().join("./b")));
+        assert!(!is_same_file(&there, &not_yet));
+    }
+}

@@ -1,0 +1,237 @@
+//! The weekly routine of the paper's baseline, as a policy file has it (docs/interfaces/policies.md).
+
+use serde::Deserialize;
+
+use crate::world::identifiers::Plan;
+
+/// The cash floor that never stops the spending.
+const ALWAYS: f64 = -1.0;
+
+/// The weekly routine; every key has the value of the paper's best configuration unless it is given.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RuleBased {
+    /// Prices, tiers and quotas.
+    pub price_book: PriceBook,
+    /// Groups that get development and ads.
+    pub target: Target,
+    /// Budgets of the target groups.
+    pub spend: Spend,
+    /// Spending is on while cash is above this, dollars; -1: always.
+    pub cash_floor: f64,
+    /// General development while on, dollars a day.
+    pub global_development: f64,
+    /// Operations.
+    pub operations: OperationsRule,
+    /// Capacity.
+    pub capacity: CapacityRule,
+}
+
+impl Default for RuleBased {
+    fn default() -> Self {
+        RuleBased {
+            price_book: PriceBook::Named(BookName::Mid),
+            target: Target::S1Only,
+            spend: Spend::Named(SpendName::Heavy),
+            cash_floor: 100_000.0,
+            global_development: 200.0,
+            operations: OperationsRule::Named(OperationsName::Subscribers),
+            capacity: CapacityRule::Utilisation,
+        }
+    }
+}
+
+impl RuleBased {
+    /// The routine, if its amounts can be paid.
+    ///
+    /// # Errors
+    /// The key whose amount is none.
+    pub(super) fn checked(self) -> Result<RuleBased, String> {
+        let amounts = |spend: &Spend| {
+            let (s1, s3) = spend.budgets();
+            [s1.development, s1.ads, s3.development, s3.ads]
+        };
+        let fixed = match self.operations {
+            OperationsRule::Fixed(dollars) => dollars,
+            OperationsRule::Named(_) => 0.0,
+        };
+        let is_amount = |dollars: &f64| dollars.is_finite() && *dollars >= 0.0;
+        if self.cash_floor != ALWAYS && !is_amount(&self.cash_floor) {
+            return Err(format!("`cash_floor` is dollars, or -1 for always, not {}", self.cash_floor));
+        }
+        let wrong = [("global_development", self.global_development), ("operations", fixed)]
+            .into_iter()
+            .chain(amounts(&self.spend).map(|dollars| ("spend", dollars)))
+            .find(|(_, dollars)| !is_amount(dollars));
+        match wrong {
+            Some((key, dollars)) => Err(format!("`{key}` is dollars a day, not {dollars}")),
+            None => Ok(self),
+        }
+    }
+}
+
+/// Prices, tiers and quotas of the three plans.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
+pub enum PriceBook {
+    /// A book of the paper.
+    Named(BookName),
+    /// One of the policy's own.
+    Own {
+        /// Dollars a month.
+        prices: PerPlan<f64>,
+        /// Model tiers.
+        tiers: PerPlan<u8>,
+        /// Units a day.
+        quotas: PerPlan<u64>,
+    },
+}
+
+/// The paper's price books.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BookName {
+    /// A $8 / T1 / 50K, B $18 / T2 / 200K, C $40 / T3 / 1M.
+    Cheap,
+    /// A $12 / T1 / 60K, B $25 / T2 / 250K, C $55 / T4 / 1.2M.
+    Mid,
+}
+
+/// One value per plan.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PerPlan<T> {
+    /// Plan A.
+    #[serde(rename = "A")]
+    pub a: T,
+    /// Plan B.
+    #[serde(rename = "B")]
+    pub b: T,
+    /// Plan C.
+    #[serde(rename = "C")]
+    pub c: T,
+}
+
+impl<T: Copy> PerPlan<T> {
+    /// The value of a plan.
+    pub fn of(&self, plan: Plan) -> T {
+        match plan {
+            Plan::A => self.a,
+            Plan::B => self.b,
+            Plan::C => self.c,
+        }
+    }
+}
+
+impl PriceBook {
+    /// Prices, tiers and quotas.
+    pub fn book(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
+        match self {
+            PriceBook::Named(BookName::Cheap) => (
+                PerPlan { a: 8.0, b: 18.0, c: 40.0 },
+                PerPlan { a: 1, b: 2, c: 3 },
+                PerPlan { a: 50_000, b: 200_000, c: 1_000_000 },
+            ),
+            PriceBook::Named(BookName::Mid) => (
+                PerPlan { a: 12.0, b: 25.0, c: 55.0 },
+                PerPlan { a: 1, b: 2, c: 4 },
+                PerPlan { a: 60_000, b: 250_000, c: 1_200_000 },
+            ),
+            PriceBook::Own { prices, tiers, quotas } => (*prices, *tiers, *quotas),
+        }
+    }
+}
+
+/// Groups that get development and ads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Target {
+    /// S1.
+    S1Only,
+    /// S1, and S3 from day 30 on.
+    S1ThenS3,
+    /// None.
+    None,
+}
+
+/// Budgets of the target groups.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "spend must be light, medium, heavy or a table with the budgets of S1 and S3")]
+pub enum Spend {
+    /// A package of the paper.
+    Named(SpendName),
+    /// Budgets of the policy's own.
+    Own {
+        /// S1.
+        #[serde(rename = "S1")]
+        s1: Budget,
+        /// S3.
+        #[serde(rename = "S3")]
+        s3: Budget,
+    },
+}
+
+/// The paper's packages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SpendName {
+    /// S1 $2,000 development and $250 ads a day, S3 $1,500 and $600.
+    Light,
+    /// S1 $4,000 and $500, S3 $3,000 and $1,200.
+    Medium,
+    /// S1 $6,000 and $750, S3 $4,500 and $1,800.
+    Heavy,
+}
+
+/// Budgets of one group, dollars a day.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Budget {
+    /// Targeted development.
+    pub development: f64,
+    /// Advertising.
+    pub ads: f64,
+}
+
+impl Spend {
+    /// Budgets of S1 and S3.
+    pub fn budgets(&self) -> (Budget, Budget) {
+        let package = |s1: (f64, f64), s3: (f64, f64)| {
+            (Budget { development: s1.0, ads: s1.1 }, Budget { development: s3.0, ads: s3.1 })
+        };
+        match self {
+            Spend::Named(SpendName::Light) => package((2000.0, 250.0), (1500.0, 600.0)),
+            Spend::Named(SpendName::Medium) => package((4000.0, 500.0), (3000.0, 1200.0)),
+            Spend::Named(SpendName::Heavy) => package((6000.0, 750.0), (4500.0, 1800.0)),
+            Spend::Own { s1, s3 } => (*s1, *s3),
+        }
+    }
+}
+
+/// How much operations get.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
+pub enum OperationsRule {
+    /// max(100, 0.05 x active subscriptions).
+    Named(OperationsName),
+    /// A fixed number of dollars a day.
+    Fixed(f64),
+}
+
+/// Name of the rule for operations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OperationsName {
+    /// With the subscribers.
+    Subscribers,
+}
+
+/// How capacity follows usage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CapacityRule {
+    /// One tier a week towards the smallest that holds the week's usage at 80 %.
+    Utilisation,
+    /// The tier is never touched.
+    Fixed,
+}

@@ -12,6 +12,10 @@ pub const RESAMPLES: usize = 2_000;
 /// Share of resamples that lies within an interval.
 pub const LEVEL: f64 = 0.95;
 
+/// Fewest numbers that have an interval. Below it even numbers that all agree in their sign leave chance more than 1 - [`LEVEL`]
+/// (of six, 2 in 64), and resampling tells little but their range.
+pub const LEAST: usize = 6;
+
 /// Mean and sample standard deviation of a set of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -88,12 +92,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Where the mean of what these numbers were drawn from lies; none of fewer than two numbers.
+    /// Where the mean of what these numbers were drawn from lies; none of fewer than [`LEAST`].
     pub fn of_mean(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| Some(mean(drawn)))
     }
 
-    /// Where the median of what these numbers were drawn from lies; none of fewer than two numbers.
+    /// Where the median of what these numbers were drawn from lies; none of fewer than [`LEAST`].
     pub fn of_median(values: &[f64]) -> Option<Interval> {
         bootstrap(values, |drawn| {
             drawn.sort_by(f64::total_cmp);
@@ -102,12 +106,12 @@ impl Interval {
     }
 }
 
-/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value, and of one number,
-/// which tells nothing of how far others are from it.
+/// Percentile bootstrap of a statistic, [`LEVEL`] of [`RESAMPLES`] resamples; none where it has no value, and of fewer than
+/// [`LEAST`] numbers.
 ///
 /// The statistic may put the numbers into another order.
 pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
-    let count = u32::try_from(values.len()).ok().filter(|count| *count > 1)?;
+    let count = u32::try_from(values.len()).ok().filter(|_| values.len() >= LEAST)?;
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
     let mut drawn = vec![0.0; values.len()];
     let mut resample = |_| {
@@ -125,7 +129,7 @@ pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) 
 pub struct PairedDifference {
     /// Mean of the differences.
     pub mean: f64,
-    /// Where the mean lies; none of one pair.
+    /// Where the mean lies; none of fewer pairs than [`LEAST`].
     pub interval: Option<Interval>,
     /// Pairs in which the first has more.
     pub more: u32,
@@ -173,7 +177,12 @@ mod tests {
         assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
         assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
         assert_eq!(Interval::of_mean(&[]), None);
-        assert_eq!(Interval::of_mean(&[3.0]), None, "one number does not tell how far others are from it");
+        assert_eq!(
+            Interval::of_mean(&[3.0; LEAST - 1]),
+            None,
+            "too few to tell how far others are from them"
+        );
+        assert_eq!(Interval::of_mean(&[3.0; LEAST]), Some(Interval { low: 3.0, high: 3.0 }));
     }
 
     #[test]
@@ -189,8 +198,9 @@ mod tests {
     #[test]
     fn differences_are_taken_pair_by_pair() {
         let own = PairedDifference::of([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
-        let interval = Some(Interval { low: 2.0, high: 2.0 });
-        assert_eq!(own, PairedDifference { mean: 2.0, interval, more: 2, of: 2 });
+        assert_eq!(own, PairedDifference { mean: 2.0, interval: None, more: 2, of: 2 });
+        let own = PairedDifference::of([(3.0, 1.0); LEAST]).expect("pairs");
+        assert_eq!(own.interval, Some(Interval { low: 2.0, high: 2.0 }));
         assert_eq!(PairedDifference::of([(f64::NAN, 1.0)]), None);
     }
 }

@@ -346,7 +346,7 @@ fn take_full_files_as_errors() {
 ///
 /// # Errors
 /// What went wrong, with the exit code that says so.
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run(mut arguments: Arguments) -> Result<(), Failure> {
     if let Some(command) = &arguments.command
         && arguments.play != play::Options::default()
     {
@@ -355,6 +355,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
              --new --seed 1`; before `{}`, only --runs-dir and --as are allowed",
             command.name()
         )));
+    }
+    #[cfg(feature = "server")]
+    if let (None, Some(Command::Agent(options)), Some(code)) =
+        (&arguments.study, &mut arguments.command, &arguments.code)
+        && std::env::var("NOVAMIND_CODE").as_ref() != Ok(code)
+    {
+        options.take_code(code.clone());
     }
     take_full_files_as_errors();
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);

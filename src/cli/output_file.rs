@@ -1,10 +1,14 @@
-//! Files that a command writes where it was told to: whole or not at all. A device or a pipe is written to, never replaced.
+//! Files that a command writes where it was told to: whole or not at all. A device or a pipe is written to, never replaced, and
+//! neither is a file that begins otherwise than what is written: a run, a policy, a study.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use super::Failure;
+
+/// Bytes by which a drawing, rows, a page, a record and a file of configuration are told apart.
+const BEGINNING: u64 = 2;
 
 /// Writes a text into a file.
 ///
@@ -41,11 +45,28 @@ fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result
     let draft = place.with_file_name(format!(".{name}.draft"));
     let written = File::create(&draft)
         .and_then(|file| filled(file, write)?.sync_all())
+        .and_then(|()| refuse_other(place, &draft))
         .and_then(|()| std::fs::rename(&draft, place));
     if written.is_err() {
         let _ = std::fs::remove_file(&draft);
     }
     written
+}
+
+/// Refuses to replace a file that begins otherwise than the new one: it was not written by the same command.
+fn refuse_other(place: &Path, draft: &Path) -> io::Result<()> {
+    let beginning = |path: &Path| {
+        let mut first = Vec::new();
+        File::open(path)?.take(BEGINNING).read_to_end(&mut first)?;
+        io::Result::Ok(first)
+    };
+    match beginning(place) {
+        Ok(there) if !there.is_empty() && there != beginning(draft)? => Err(io::Error::other(
+            "it is there and holds something else than this command writes: name another file, or delete it",
+        )),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 fn filled(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
@@ -73,16 +94,31 @@ mod tests {
     fn a_file_is_replaced_when_the_new_one_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let place = folder.path().join("report.md");
-        write_text(&place, "one").expect("written");
+        write_text(&place, "# one").expect("written");
         let half = write_file(&place, Some("the run is kept"), |out| {
-            out.write_all(b"two")?;
+            out.write_all(b"# two")?;
             Err(io::Error::other("the disk is full"))
         });
         let said = half.expect_err("it fails").to_string();
         assert!(said.ends_with("the disk is full; it was not written, the run is kept"), "{said}");
-        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "one");
-        write_text(&place, "two").expect("written");
-        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "two");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# one");
+        write_text(&place, "# two").expect("written");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# two");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "no draft is left");
+    }
+
+    #[test]
+    fn what_begins_otherwise_is_not_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = folder.path().join("trajectory.jsonl");
+        for there in ["{\"seq\":0}\n", "name = \"mine\"\n", "run,policy\n"] {
+            std::fs::write(&place, there).expect("a file");
+            let said = write_text(&place, "<svg>").expect_err("refused").to_string();
+            assert!(said.contains("holds something else"), "{said}");
+            assert_eq!(std::fs::read_to_string(&place).expect("a file"), there);
+        }
+        std::fs::write(&place, "").expect("an empty file");
+        write_text(&place, "<svg>").expect("nothing was there");
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "no draft is left");
     }
 

@@ -46,7 +46,7 @@ use super::tour::Tour;
 use super::viewer::Viewer;
 use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
-use crate::console::request::Request;
+use crate::console::request::{Request, SCRIPT_RUNS};
 use crate::report::Story;
 use crate::report::opponents::PlayOpponents;
 use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
@@ -119,6 +119,13 @@ pub struct Busy {
     pub days: Option<DaysRun>,
     /// When it began.
     pub since: Instant,
+}
+
+impl Busy {
+    /// Whether a script runs, which can be stopped.
+    pub fn is_script(&self) -> bool {
+        self.what == SCRIPT_RUNS
+    }
 }
 
 /// Where the person is.

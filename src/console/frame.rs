@@ -14,6 +14,7 @@ use super::keys::written;
 use super::screens::{Look, ScreenId};
 use super::text::{arrow, short_dollars, wrapped};
 use super::theme::Role;
+use super::viewer::EntriesShown;
 use super::widgets::spark::bar;
 use crate::notation::{compact, dollars, grouped};
 use crate::session::{Ended, TimeLeft};
@@ -132,7 +133,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         let page = canvas.page;
         if beside > 0 {
             let own = Rect { x: screen.right(), width: beside, ..body };
-            viewer.draw_decisions(canvas, own, &look);
+            viewer.draw_decisions(canvas, own, &look, EntriesShown::All);
         }
         canvas.page = page;
         viewer.draw_strip(canvas, Rect { y: body.bottom(), height: 1, ..area });
@@ -326,7 +327,10 @@ fn badge(run: &Run, screen: ScreenId) -> String {
 
 fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.note) {
-        (Some(busy), _) => Some((waiting(busy, row.width), Role::Warning)),
+        (Some(busy), _) => {
+            let stop = app.keys.label(Action::Close).unwrap_or_default();
+            Some((waiting(busy, row.width, &stop), Role::Warning))
+        }
         (None, Some(note)) if note.bad => Some((format!("! {}", note.text), Role::Bad)),
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
@@ -402,10 +406,15 @@ fn actions_shown(app: &App) -> Vec<Action> {
     actions
 }
 
-/// What one waits for, and how far it has come; where there is room, what the days so far came to.
-fn waiting(busy: &Busy, width: u16) -> String {
+/// What one waits for, and how far it has come; where there is room, what the days so far came to. A script is stopped by a key.
+fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
     let seconds = busy.since.elapsed().as_secs_f64();
-    let Some(days) = busy.days else { return format!("{} …", busy.what) };
+    let Some(days) = busy.days else {
+        return match busy.is_script() {
+            true => format!("{} {seconds:.0} s · {stop} stops it", busy.what),
+            false => format!("{} …", busy.what),
+        };
+    };
     let (done, all) = (days.now.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
     let gauge = bar(f64::from(done) / f64::from(all), 10);
     let came_to = days.told.filter(|_| width >= 80).map_or(String::new(), |told| {
@@ -427,17 +436,18 @@ mod tests {
         let told = Some(DayTold { cash: 1_234_567.0, subscribers: 12_345 });
         let days = DaysRun { from: 70, to: 77, now: 73, told };
         let busy = |days| Busy { what: "the week runs", days: Some(days), since: Instant::now() };
-        let text = waiting(&busy(days), 80);
+        let text = waiting(&busy(days), 80, "esc");
         assert!(text.starts_with("the week runs day 3 of 7 "), "{text}");
         assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");
         assert!(text.width() < 76, "{text}");
-        assert!(!waiting(&busy(days), 60).contains("cash"));
+        assert!(!waiting(&busy(days), 60, "esc").contains("cash"));
         // Nothing is told before it is known.
-        let begun = waiting(&busy(DaysRun::between(70, 77)), 120);
+        let begun = waiting(&busy(DaysRun::between(70, 77)), 120, "esc");
         assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
         // The last week is shorter.
         assert!(
-            waiting(&busy(DaysRun { now: 500, ..DaysRun::between(497, 500) }), 80).contains("day 3 of 3")
+            waiting(&busy(DaysRun { now: 500, ..DaysRun::between(497, 500) }), 80, "esc")
+                .contains("day 3 of 3")
         );
     }
 }

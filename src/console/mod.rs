@@ -155,7 +155,7 @@ impl Console {
                     if let Some(interrupt) = self.app.run().and_then(|run| run.interrupt.as_ref()) {
                         interrupt.stop();
                     }
-                    self.workers.stop_asking_inside();
+                    self.workers.stop_what_runs();
                 }
                 Order::Copy(text) => self.screen.copy(&text),
                 Order::Write(files) => files::write_behind(files, self.sender.clone()),

@@ -7,7 +7,7 @@ use super::company::Company;
 use super::screens::Look;
 use super::text::short_dollars;
 use super::theme::Role;
-use super::viewer::Viewer;
+use super::viewer::{EntriesShown, Viewer};
 use super::widgets::chart::zero_if_near;
 use super::widgets::{Axis, Line, Side, Unit, chart};
 use crate::notation::compact;
@@ -74,7 +74,8 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &Viewer, look: &Look<'_
     let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
     let left = Rect { width: below.width * 3 / 5, ..below };
     draw_cash(canvas, left, look.company);
-    viewer.draw_decisions(canvas, Rect { x: left.right(), width: below.width - left.width, ..below }, look);
+    let right = Rect { x: left.right(), width: below.width - left.width, ..below };
+    viewer.draw_decisions(canvas, right, look, EntriesShown::Decisions);
 }
 
 fn figures(company: &Company) -> [(&'static str, String, Role); 4] {

@@ -148,6 +148,9 @@ pub enum Recorded {
     File(PathBuf),
 }
 
+/// What the screen is busy with while a script runs.
+pub const SCRIPT_RUNS: &str = "the script runs";
+
 impl Request {
     /// Whether it would change the run.
     pub fn changes_run(&self) -> bool {
@@ -208,6 +211,7 @@ impl Request {
             Request::Lesson(LessonRequest::BeginPart(_)) => "starting the next part",
             Request::Advance { .. } => "the week runs",
             Request::RunDays(_) => "simulating",
+            Request::Call { tool, .. } if tool.runs_code() => SCRIPT_RUNS,
             Request::Visit(VisitRequest::Play) => "opening the run",
             _ => return None,
         })

@@ -110,8 +110,8 @@ pub enum Job {
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
-    /// Stops the question that the session's thread asks the tables of the x-ray, while it does.
-    inside_stop: Arc<Mutex<Option<Interrupt>>>,
+    /// Stops the script that the session's thread runs, or its question to the tables of the x-ray, while it does.
+    running_stop: Arc<Mutex<Option<Interrupt>>>,
     session: Option<JoinHandle<()>>,
 }
 
@@ -126,8 +126,8 @@ impl Workers {
         let (jobs, todo) = channel();
         let queries = QueryThreads::start(&news, &jobs);
         let for_session = queries.clone();
-        let inside_stop: Arc<Mutex<Option<Interrupt>>> = Arc::default();
-        let stop = inside_stop.clone();
+        let running_stop: Arc<Mutex<Option<Interrupt>>> = Arc::default();
+        let stop = running_stop.clone();
         let session = std::thread::spawn(move || {
             let thread = SessionThread {
                 open: None,
@@ -143,7 +143,7 @@ impl Workers {
                 branches: Arc::default(),
                 inside: None,
                 inside_has_rows: false,
-                inside_stop: stop,
+                running_stop: stop,
                 news,
                 first_runs: runs.clone(),
                 runs,
@@ -152,7 +152,7 @@ impl Workers {
             };
             thread.run(&todo);
         });
-        Workers { jobs, queries, inside_stop, session: Some(session) }
+        Workers { jobs, queries, running_stop, session: Some(session) }
     }
 
     /// Hands over a job.
@@ -165,9 +165,9 @@ impl Workers {
         self.queries.ask(question);
     }
 
-    /// Stops the question that the tables of the x-ray are asked.
-    pub fn stop_asking_inside(&self) {
-        let stop = self.inside_stop.lock().unwrap_or_else(PoisonError::into_inner);
+    /// Stops the script that runs, and the question that the tables of the x-ray are asked.
+    pub fn stop_what_runs(&self) {
+        let stop = self.running_stop.lock().unwrap_or_else(PoisonError::into_inner);
         stop.iter().for_each(Interrupt::stop);
     }
 
@@ -233,8 +233,8 @@ struct SessionThread {
     inside: Option<Box<Session>>,
     /// It has a database.
     inside_has_rows: bool,
-    /// Stops what is asked of the tables of the x-ray.
-    inside_stop: Arc<Mutex<Option<Interrupt>>>,
+    /// Stops the script that runs, and what is asked of the tables of the x-ray.
+    running_stop: Arc<Mutex<Option<Interrupt>>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
@@ -400,8 +400,11 @@ impl SessionThread {
 
     /// Works on the run that is open, if there is one, and reports what comes of it.
     fn with_run(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> Option<News>) {
-        let SessionThread { open: Some(open), company: shown, news, queries, .. } = self else { return };
-        let news = work(&mut OpenRun { session: open.session(), shown, news, queries });
+        let SessionThread { open: Some(open), company: shown, news, queries, running_stop: stop, .. } = self
+        else {
+            return;
+        };
+        let news = work(&mut OpenRun { session: open.session(), shown, news, queries, stop });
         let loss = self.open.as_mut().and_then(|open| open.session().record_loss().map(str::to_owned));
         if let Some(words) = loss {
             // Before what came of the work: nothing goes on from here.

@@ -86,7 +86,9 @@ fn unknown_table(name: &str, scope: Scope) -> String {
 fn unknown_column(column: &str, sql: &str, scope: Scope) -> String {
     let mentioned = mentioned_tables(sql, scope);
     if mentioned.is_empty() {
-        return format!("there is no column {column}; the table browser lists the columns of every table");
+        return format!(
+            "there is no column {column}; describe_tables and the table browser list the columns of every table"
+        );
     }
     let alone = column.rsplit('.').next().unwrap_or(column);
     let columns = mentioned.iter().flat_map(|table| &table.columns).map(|own| own.name.as_str());

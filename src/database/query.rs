@@ -438,7 +438,8 @@ const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at 
 /// What is said of a query that the person stopped.
 pub const CANCELLED: &str = "the query was cancelled";
 
-const SCHEMA_WORDS: &str = "schema statements are not allowed; the table browser describes all tables";
+const SCHEMA_WORDS: &str =
+    "schema statements are not allowed; describe_tables and the table browser show all tables";
 
 fn refusal(code: &'static str, message: &str) -> QueryError {
     QueryError { code, message: message.to_owned(), position: None }

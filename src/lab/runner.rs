@@ -12,24 +12,10 @@ use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
 use crate::session::{
-    Configuration, DayReport, Ended, Line, Mode, NewRun, Record, Refusal, RunError as SessionError, Session,
-    Storage, Via, WeekFigures, is_of_policy,
+    Configuration, DayReport, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
+    WeekFigures, policy_rationale,
 };
 use crate::tools::{Answer, ToolId};
-
-/// What the rationale of a policy's week says before the policy's name.
-const POLICY_RATIONALE: &str = "policy ";
-
-/// The policy that played a run, by the rationales of its weeks; none where somebody else decided one of them.
-pub(super) fn policy_of(lines: &[Line]) -> Option<&str> {
-    let mut weeks = lines.iter().filter_map(|line| match &line.record {
-        Record::Advance(week) => Some(week),
-        _ => None,
-    });
-    let rationale = &weeks.next()?.rationale;
-    let is_one = is_of_policy(lines) && weeks.all(|week| week.rationale == *rationale);
-    rationale.strip_prefix(POLICY_RATIONALE).filter(|_| is_one)
-}
 
 /// What to run.
 #[derive(Debug, Clone)]
@@ -316,7 +302,7 @@ pub(super) fn advance(
         session.step(until - day, watch)
     } else {
         let forecasts = session.naive_forecasts();
-        session.advance(&format!("{POLICY_RATIONALE}{}", policy.name), &forecasts, Via::Policy, watch)
+        session.advance(&policy_rationale(&policy.name), &forecasts, Via::Policy, watch)
     };
     ran.map(|_| ()).map_err(|refusal| RunError::Refused {
         seed,

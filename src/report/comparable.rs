@@ -60,7 +60,7 @@ impl<'a> RunTerms<'a> {
             judged_by_model: run.judged_by_model,
             is_lesson: run.mode == Some(Mode::Lesson),
             is_branch: run.is_branch,
-            showed_hidden_state: run.mode == Some(Mode::Debug) && !run.is_of_policy,
+            showed_hidden_state: run.mode == Some(Mode::Debug) && run.policy.is_none(),
         }
     }
 
@@ -74,7 +74,7 @@ impl<'a> RunTerms<'a> {
             judged_by_model: book.voice.as_ref().is_some_and(|model| model.judge),
             is_lesson: book.mode == Mode::Lesson,
             is_branch: book.parent.is_some(),
-            showed_hidden_state: book.mode == Mode::Debug && !book.is_of_policy,
+            showed_hidden_state: book.mode == Mode::Debug && book.policy.is_none(),
         }
     }
 

@@ -14,6 +14,7 @@ mod owner;
 mod page;
 mod remote;
 mod request;
+mod running;
 mod schema;
 mod transcript;
 

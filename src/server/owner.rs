@@ -11,6 +11,7 @@ use tokio::sync::oneshot;
 
 use super::answering::answer;
 use super::request::{Answer, Request, Status};
+use super::running::Running;
 use crate::session::record::LeavingCause;
 use crate::session::{Access, Interface, ModelSettings, RunError, Session, Via};
 
@@ -30,6 +31,7 @@ pub struct Door {
 
 /// A request and where its answer goes.
 struct Asked {
+    number: u64,
     request: Request,
     reply: oneshot::Sender<Answer>,
 }
@@ -37,6 +39,7 @@ struct Asked {
 /// The thread that owns a session. It ends when nobody can ask any more.
 pub struct Owner {
     thread: JoinHandle<Result<(), RunError>>,
+    running: Running,
 }
 
 impl Owner {
@@ -44,11 +47,18 @@ impl Owner {
     pub fn start(session: Session, door: Door) -> (Owner, Handle) {
         let (sender, receiver) = channel();
         let advancing = Arc::new(AtomicBool::new(false));
-        let handle = Handle { sender, advancing: advancing.clone() };
+        let running = Running::default();
+        let handle =
+            Handle { sender, advancing: advancing.clone(), asked: Arc::default(), running: running.clone() };
         let (folder, model) = (session.folder().map(PathBuf::from), session.model_settings().cloned());
-        let owned = Owned { folder, model, session: Some(session), door };
+        let owned = Owned { folder, model, session: Some(session), door, running: running.clone() };
         let thread = std::thread::spawn(move || owned.work(&receiver, &advancing));
-        (Owner { thread }, handle)
+        (Owner { thread, running }, handle)
+    }
+
+    /// Stops the script or the statement that runs: a server that is to end does not wait for it.
+    pub fn stop_code(&self) {
+        self.running.stop();
     }
 
     /// Waits until every request is answered and the run is left. All handles must be gone.
@@ -65,10 +75,14 @@ impl Owner {
 pub struct Handle {
     sender: Sender<Asked>,
     advancing: Arc<AtomicBool>,
+    /// Requests so far.
+    asked: Arc<AtomicU64>,
+    running: Running,
 }
 
 impl Handle {
-    /// Asks, and waits for the answer. A week is simulated to its end even if nobody waits any more.
+    /// Asks, and waits for the answer. A week is simulated to its end even if nobody waits any more; a script or a statement
+    /// is stopped then.
     pub async fn ask(&self, request: Request) -> Answer {
         let is_week = matches!(request, Request::NextWeek { .. });
         if is_week && self.advancing.swap(true, Ordering::AcqRel) {
@@ -79,10 +93,14 @@ impl Handle {
             );
         }
         let (reply, answer) = oneshot::channel();
-        if self.sender.send(Asked { request, reply }).is_err() {
+        let number = self.asked.fetch_add(1, Ordering::Relaxed);
+        let watch = self.running.watch(number);
+        if self.sender.send(Asked { number, request, reply }).is_err() {
             return gone();
         }
-        answer.await.unwrap_or_else(|_| gone())
+        let answer = answer.await.unwrap_or_else(|_| gone());
+        watch.is_over();
+        answer
     }
 }
 
@@ -98,6 +116,7 @@ struct Owned {
     /// The language model that speaks in it.
     model: Option<ModelSettings>,
     door: Door,
+    running: Running,
 }
 
 impl Owned {
@@ -106,9 +125,18 @@ impl Owned {
         if let Some(session) = &mut self.session {
             session.take_up(interface);
         }
-        while let Ok(Asked { request, reply }) = asked.recv() {
+        while let Ok(Asked { number, request, reply }) = asked.recv() {
             let is_week = matches!(request, Request::NextWeek { .. });
+            if reply.is_closed() && request.runs_code() {
+                // Whoever asked has gone before it began.
+                continue;
+            }
+            if request.runs_code() {
+                let interrupt = self.session.as_mut().and_then(|session| session.interrupt().ok());
+                self.running.begin(number, interrupt);
+            }
             let answer = self.answer(request);
+            self.running.end();
             if is_week {
                 advancing.store(false, Ordering::Release);
             }

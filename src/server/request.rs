@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::session::Refusal;
+use crate::tools::{ToolId, find};
 
 /// What a program asks of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +49,33 @@ pub enum Request {
     },
     /// The notes of the run.
     Memo,
+}
+
+impl Request {
+    /// What a call of a tool asks: a statement and a week have requests of their own, whichever door they come through.
+    pub fn of_tool(name: &str, args: Value) -> Request {
+        let mut fields = match args {
+            Value::Object(fields) => fields,
+            given => return Request::Call { tool: name.to_owned(), args: given },
+        };
+        let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
+        if name == ToolId::NextWeek.name() {
+            return Request::NextWeek { rationale: take("rationale"), predictions: take("predictions") };
+        }
+        if name == ToolId::Query.name() {
+            return Request::Query { sql: take("sql") };
+        }
+        Request::Call { tool: name.to_owned(), args: fields.into() }
+    }
+
+    /// Whether it runs a script or a statement, which changes nothing and may be stopped.
+    pub fn runs_code(&self) -> bool {
+        match self {
+            Request::Query { .. } => true,
+            Request::Call { tool, .. } => find(tool).is_some_and(|tool| tool.spec().id.runs_code()),
+            _ => false,
+        }
+    }
 }
 
 /// Whether a request was answered, and how not.

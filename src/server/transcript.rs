@@ -3,8 +3,8 @@
 use serde_json::{Map, Value};
 
 use super::answering::answer;
-use super::mcp::request;
-use crate::session::{Session, Via};
+use super::request::Request;
+use crate::session::{PYTHON_NOT_RUN, Session, Via};
 use crate::tools::{ToolId, find};
 
 /// What somebody did with the tools of this program, in order.
@@ -46,6 +46,8 @@ pub struct PlayedTranscript {
     pub made: usize,
     /// Calls that were answered otherwise than the transcript says, or that the run no longer took: place, tool, what it said.
     pub otherwise: Vec<(usize, String, String)>,
+    /// Programs in Python that were accepted where they were run, and are not run here.
+    pub not_run: usize,
 }
 
 impl ForeignTranscript {
@@ -69,9 +71,13 @@ impl ForeignTranscript {
         let mut played = PlayedTranscript::default();
         session.keep_python_out();
         for call in &self.calls {
-            let said = answer(session, request(&call.tool, call.arguments.clone()), Via::Script);
+            let said =
+                answer(session, Request::of_tool(&call.tool, call.arguments.clone().into()), Via::Script);
             let accepted = said.succeeded();
-            if call.accepted.is_some_and(|before| before != accepted) {
+            let is_not_run = || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_NOT_RUN));
+            if call.accepted == Some(true) && is_not_run() {
+                played.not_run += 1;
+            } else if call.accepted.is_some_and(|before| before != accepted) {
                 let told = said.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
                 played.otherwise.push((call.place, call.tool.clone(), told));
             }
@@ -216,7 +222,7 @@ mod tests {
         let new = NewRun { days: Some(28), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let played = read.play(&mut session, &mut |_| {});
-        assert!(played.otherwise[0].2.contains("Python is not started here"), "{played:?}");
+        assert_eq!((played.made, played.not_run, played.otherwise.len()), (1, 1, 0), "{played:?}");
     }
 
     #[test]

@@ -117,6 +117,7 @@ pub use play::undo::undone_calls;
 pub use playback::Playback;
 pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
+pub use python::PYTHON_NOT_RUN;
 pub use resume::look::record_look;
 pub use resume::open::Access;
 pub use resume::rebuild::rebuild_database;
@@ -144,8 +145,8 @@ pub use study::visit_log::{
 };
 pub use trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via};
 pub use trajectory::{
-    Line, Record, ScriptedClock, Trajectory, end_of, is_of_policy, nanoseconds as nanoseconds_of, record,
-    steady, written_moment,
+    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
+    policy_rationale, record, steady, written_moment,
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,

@@ -118,6 +118,11 @@ impl ToolId {
         self.tool().spec()
     }
 
+    /// Whether a call of it runs code at once, which may take its time.
+    pub fn runs_code(self) -> bool {
+        matches!(self, ToolId::PythonExec | ToolId::RunScript)
+    }
+
     /// All of them, in the order in which they are shown.
     pub fn all() -> impl Iterator<Item = ToolId> {
         CATALOGUE.iter().map(|tool| tool.spec().id)

@@ -242,5 +242,5 @@ fn records_hold_what_was_said_and_run_nothing() {
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());
     let said = &branch.calculated()[0].output;
-    assert!(said.starts_with("failed: Python is not started here"), "{said}");
+    assert!(said.starts_with("failed: Python is not run"), "{said}");
 }

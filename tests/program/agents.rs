@@ -248,4 +248,7 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
         assert!(!run.join("server.json").exists());
     }
     shell.agent(&[&words[..], &["--out", &folder]].concat()).fails(2, &["not empty"]);
+    let none = shell.home.0.path().join("none");
+    let said = shell.agent(&["batch", "--command", "true", "--days", "3", "--out", &none.to_string_lossy()]);
+    assert!(said.code != 0 && !none.exists(), "a batch that cannot begin leaves nothing: {}", said.err);
 }

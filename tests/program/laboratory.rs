@@ -59,7 +59,7 @@ fn what_is_not_there_is_refused_with_what_is() {
         (vec!["lab", "laws", "c_max", "--of", "S9"], 2, "S1, S2"),
         (vec!["lab", "laws", "lead_noise", "--of", "S1"], 2, "leave out --of"),
         (vec!["lab", "curves", "S9"], 2, "S1, S2"),
-        (vec!["lab", "bound", "--slack", "5"], 2, "1..=4"),
+        (vec!["lab", "bound", "--slack", "2.5"], 2, "1, 2, 3 or 4"),
         (vec!["lab", "bound", "--scenario", "short"], 2, "runs of 500 days"),
         (vec!["lab", "bound", "--set", "run.total_days=200"], 2, "these parameters are of 200 days"),
         (vec!["lab", "baseline", "--grid", "none"], 2, "content-ads, paper"),

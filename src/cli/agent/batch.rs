@@ -43,6 +43,7 @@ pub struct Options {
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let out = std::path::absolute(&options.out).map_err(|error| cannot_write(&options.out, &error))?;
+    let was_there = out.is_dir();
     std::fs::create_dir_all(&out).map_err(|error| cannot_write(&out, &error))?;
     if std::fs::read_dir(&out).map_err(|error| cannot_write(&out, &error))?.next().is_some() {
         return Err(Failure::usage(format!("{} is not empty: name a new folder with --out", out.display())));
@@ -51,7 +52,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut tries = Vec::new();
     for number in 1..=options.tries {
         let work = out.join(format!("try-{number}"));
-        let own = AgentRun::begin(&options.made_of, context)?;
+        let own = AgentRun::begin(&options.made_of, context).inspect_err(|_| {
+            // A folder in which nothing has begun says nothing; one with tries in it stays.
+            if !was_there {
+                let _ = std::fs::remove_dir(&out);
+            }
+        })?;
         of_run(&own, Some(&work))?;
         write_client(&work.join("client"))?;
         eprintln!("try {number} of {}: run {} in {}", options.tries, own.id, work.display());

@@ -74,6 +74,15 @@ enum AgentCommand {
     Batch(batch::Options),
 }
 
+impl Options {
+    /// Gives `--code` to the tool that is called: without a study there is no code of one.
+    pub fn take_code(&mut self, code: String) {
+        if let AgentCommand::Call { arguments, .. } = &mut self.command {
+            arguments.splice(0..0, ["--code".to_owned(), code]);
+        }
+    }
+}
+
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let named = options.run.as_deref();

@@ -9,6 +9,7 @@ use crate::cli::{Context, Failure};
 use crate::lab::RunSpec;
 use crate::lab::baseline::{Grid, GridPoint, PAPER, baseline_exhibit, is_shared, leaders};
 use crate::lab::experiment::{Arm, Experiment, ExperimentResults, Prepared};
+use crate::report::comparable::PUBLISHED_DAYS;
 use crate::session::DEFAULT_SCENARIO;
 
 /// Options of `lab baseline`.
@@ -36,7 +37,10 @@ pub struct Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let grid = Grid::find(&options.grid)?;
     let results = played(&grid, options, context)?;
-    options.output.show(&baseline_exhibit(&grid, options.grid == PAPER, &results))
+    let is_of_the_paper = options.grid == PAPER
+        && options.days.is_none_or(|days| days == PUBLISHED_DAYS)
+        && options.scenario.as_deref().is_none_or(|name| name == DEFAULT_SCENARIO);
+    options.output.show(&baseline_exhibit(&grid, is_of_the_paper, &results))
 }
 
 /// Plays the leaders first: most other configurations then turn out to be known.

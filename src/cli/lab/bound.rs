@@ -11,12 +11,18 @@ use crate::lab::bound::{BoundAccount, Premises, bound_exhibit, sensitivity};
 #[derive(Debug, Args)]
 pub struct Options {
     /// So many times over is targeted development paid that is just enough.
-    #[arg(long, default_value = "3", value_name = "1..4", value_parser = clap::value_parser!(u8).range(1..=4))]
+    #[arg(long, default_value = "3", value_name = "1..4", value_parser = parse_slack)]
     slack: u8,
     #[command(flatten)]
     world: WorldOptions,
     #[command(flatten)]
     output: OutputOptions,
+}
+
+/// Reads a slack.
+fn parse_slack(text: &str) -> Result<u8, String> {
+    let whole = text.parse::<u8>().ok().filter(|slack| (1..=4).contains(slack));
+    whole.ok_or_else(|| format!("{text} is no slack: 1, 2, 3 or 4"))
 }
 
 /// Runs the command; nothing is played.

@@ -38,9 +38,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         [one, other] => [find(one)?, find(other)?],
         _ => return Err(Failure::usage("--policy is given twice or not at all")),
     };
+    let spec = |seeds| ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
+    if let Some(obstacle) = spec(Vec::new()).obstacle(&policies) {
+        return Err(Failure::usage(obstacle));
+    }
+    options.output.refuse_graphs()?;
     let seeds: Vec<u64> = (options.seeds.first..=options.seeds.last).collect();
     let progress = progress_bar(seeds.len() as u64 * PLAYS_OF_A_SEED, "runs");
-    let spec = ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
+    let spec = spec(seeds);
     let on_played = || progress.inc(1);
     let check = thread_pool(options.jobs)?
         .install(|| check_consistency(&policies, &spec, &context.configuration, &on_played))?;

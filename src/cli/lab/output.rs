@@ -36,6 +36,17 @@ impl OutputOptions {
         !self.json && self.svg.is_none()
     }
 
+    /// For commands that draw nothing: better known before they play than after it.
+    ///
+    /// # Errors
+    /// A drawing is asked for.
+    pub fn refuse_graphs(&self) -> Result<(), Failure> {
+        match self.svg {
+            Some(_) => Err(Failure::usage("this command has no graph: leave out --svg")),
+            None => Ok(()),
+        }
+    }
+
     /// The file that the graphs are drawn into, if they are asked for.
     pub fn graphs(&self) -> Option<&Path> {
         self.svg.as_deref()

@@ -36,7 +36,13 @@ enum Whom {
 
 /// Runs the command; nothing of the runs is changed.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let finished = finished_runs(&context.runs()?)?;
+    let runs = context.runs()?;
+    // Whoever has a folder of their own is shown that one.
+    let folders = match context.participant {
+        Some(_) => vec![runs],
+        None => all_run_folders(&runs),
+    };
+    let finished = finished_runs(&folders)?;
     let mut left_out: Vec<Vec<Obstacle>> = Vec::new();
     let mut comparable = Vec::new();
     for (folder, summary) in &finished {
@@ -52,7 +58,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 Ok(None) => {}
                 Ok(Some(result)) => {
                     // The list has seen its last weeks alone; somebody may have played before the policy did.
-                    let whole = RunSummary { is_of_policy: result.policy.is_some(), ..summary.clone() };
+                    let whole = RunSummary { policy: result.policy.clone(), ..summary.clone() };
                     let obstacles = RunTerms::of_summary(&whole).obstacles();
                     if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
                 }
@@ -77,18 +83,18 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&exhibit)
 }
 
-/// Runs that are over, of everybody whose runs belong with this folder's.
-fn finished_runs(runs: &Path) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
+/// Runs of some folders that are over.
+fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
-    for folder in all_run_folders(runs) {
+    for folder in folders {
         // A copy of a folder is the same run once more.
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
                 && run.copy_of.is_none()
                 && matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson))
         };
-        let own = list_runs(&folder)?.into_iter().filter(is_over);
-        finished.extend(own.map(|run| (run_folder(&folder, &run.id), run)));
+        let own = list_runs(folder)?.into_iter().filter(is_over);
+        finished.extend(own.map(|run| (run_folder(folder, &run.id), run)));
     }
     Ok(finished)
 }

@@ -23,14 +23,14 @@ pub struct Options {
     #[arg(long)]
     daily: bool,
     /// Play only this part of it, as 2/4; all parts together are the study.
-    #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out")]
+    #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out", conflicts_with_all = ["json", "csv", "svg"])]
     shard: Option<Shard>,
     /// File of the rows, and the arms are told in the terminal [default: the rows go to standard output]; with --shard, the
     /// folder of all shards.
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
     /// Tell what would be played, and play nothing.
-    #[arg(long, conflicts_with_all = ["shard", "out"])]
+    #[arg(long, conflicts_with_all = ["shard", "out", "json", "csv", "svg"])]
     check: bool,
     #[command(flatten)]
     play: PlayOptions,

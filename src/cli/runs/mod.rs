@@ -197,7 +197,9 @@ fn line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
         return format!("{}  cannot be read: {}\n", printable(&run.id), printable(problem));
     }
     let state = run.ended.map_or("open", |ended| ended.id());
-    let who = run.participant.as_deref().map(|who| format!("  {}", printable(who))).unwrap_or_default();
+    let policy = run.policy.as_ref().map(|name| format!("policy {name}"));
+    let who = run.participant.clone().or(policy);
+    let who = who.map(|who| format!("  {}", printable(&who))).unwrap_or_default();
     let origin =
         origin.map(|origin| format!("  {}", printable(&origin_in_words(origin)))).unwrap_or_default();
     let served = if run.is_served { "  played by a program" } else { "" };

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
+use crate::report::count;
 use crate::server::ForeignTranscript;
 use crate::session::{Mode, NewRun, Session};
 
@@ -46,14 +47,21 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     for (place, tool, said) in played.otherwise.iter().take(LISTED) {
         print(&format!("step {place}: {tool} is answered otherwise than in the transcript: {said}\n"))?;
     }
-    match played.otherwise.len() {
-        0 if read.state_hash.as_ref().is_some_and(|own| *own != hash) => Err(Failure::failed(
+    if played.not_run > 0 {
+        let scripts = count(played.not_run as u32, "script");
+        print(&format!("{scripts} in Python not run: what a transcript holds is never started\n"))?;
+    }
+    let ends_otherwise = read.state_hash.as_ref().is_some_and(|own| *own != hash);
+    match played.otherwise.len() as u32 {
+        0 if ends_otherwise => Err(Failure::failed(
             "every call is answered as in the transcript, which ended in another state: its program or its parameters \
              were others; the run is kept",
         )),
         0 => Ok(()),
-        count => Err(Failure::failed(format!(
-            "{count} calls are answered otherwise: the run is kept, and is not the one of the transcript"
+        calls => Err(Failure::failed(format!(
+            "{} answered otherwise than in the transcript{}; the run is kept",
+            count(calls, "call"),
+            if ends_otherwise { ", which ended in another state" } else { "" }
         ))),
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Position;
 
-use super::{App, Closing, Layer, Order, Stage};
+use super::{App, Busy, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::attention::Edit;
 use crate::console::canvas::Click;
@@ -26,6 +26,9 @@ use crate::console::resimulation::WhyAsked;
 use crate::console::screens::{Figure, Look, ScreenId};
 use crate::console::text::number;
 use crate::console::worker::Job;
+
+/// What stops a script that runs.
+const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
 
 impl App {
     pub(super) fn input(&mut self, event: Event) {
@@ -214,6 +217,10 @@ impl App {
         }
         if !self.layers.is_empty() {
             return self.in_dialog(|dialog, look| dialog.act(action, look));
+        }
+        if self.busy.as_ref().is_some_and(Busy::is_script) && STOPS_SCRIPT.contains(&action) {
+            self.orders.push(Order::CancelQuery);
+            return;
         }
         if let Stage::Menu(menu) = &mut self.stage {
             let effects = menu.act(action);
@@ -430,8 +437,12 @@ impl App {
             return;
         }
         let Stage::Run(run) = &mut self.stage else { return };
-        if self.busy.is_some() {
-            return self.complain("a week is running; its report opens when it is done");
+        match &self.busy {
+            Some(busy) if busy.is_script() => {
+                return self.complain("a script is running; no week runs until it ends");
+            }
+            Some(_) => return self.complain("a week is running; its report opens when it is done"),
+            None => {}
         }
         if !run.company.is_running() {
             return self.show_end();

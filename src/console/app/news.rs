@@ -168,6 +168,8 @@ impl App {
             News::Checked(..) => self.checker,
             News::Answered(..) => ScreenId::Sql,
             News::Called(tool, answer, company) => {
+                // A run that is left meanwhile goes on being saved.
+                self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.changed(company.clone());
                 match answer {
                     Ok(_) => self.say(format!("{tool}: done")),

@@ -207,8 +207,11 @@ impl App {
             return;
         }
         self.note_request(&request);
-        if request.waits_for_week() && self.busy.is_some() {
-            return self.complain("a week is running; nothing was sent: try again when it is done");
+        if request.waits_for_week()
+            && let Some(busy) = &self.busy
+        {
+            let what = if busy.is_script() { "a script is running" } else { "a week is running" };
+            return self.complain(format!("{what}; nothing was sent: try again when it is done"));
         }
         let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
         if leaves_run || matches!(request, Request::Replay { .. }) {

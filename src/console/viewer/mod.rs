@@ -9,6 +9,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+pub use pane::EntriesShown;
+
 use crate::session::PlaybackPosition;
 
 /// Pauses between two weeks, in milliseconds, and how fast that is.

@@ -2,17 +2,33 @@
 
 use ratatui::layout::Rect;
 
-use super::{Viewer, told};
+use super::Viewer;
 use crate::console::action::Action;
 use crate::console::canvas::{Canvas, Click, rows_of};
 use crate::console::screens::Look;
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
+use crate::session::{Record, RecordView};
 
 /// Columns a screen needs beside the decisions.
 const OF_SCREEN: u16 = 80;
 /// Columns of the decisions.
 const COLUMNS: (u16, u16) = (40, 60);
+
+/// What of the record is told beside the figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EntriesShown {
+    /// Everything that was done.
+    All,
+    /// What was decided: from far away nobody reads what was asked.
+    Decisions,
+}
+
+impl EntriesShown {
+    fn holds(self, entry: &RecordView) -> bool {
+        self == EntriesShown::All || !matches!(entry.record, Record::Query(_))
+    }
+}
 
 impl Viewer {
     /// Columns that the decisions take from the screen; none where they are hidden or there is no room.
@@ -25,20 +41,21 @@ impl Viewer {
     }
 
     /// Draws the decisions; what was not done yet at this moment is dim.
-    pub fn draw_decisions(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    pub fn draw_decisions(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, shown: EntriesShown) {
         let chapter = &self.place.chapter;
         let note = format!("{}/{} done", chapter.done, chapter.entries.len());
-        let inside = canvas.pane(area, &told::title(chapter), &note, false);
+        let inside = canvas.pane(area, &super::told::title(chapter), &note, false);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows: Vec<(String, Role)> = Vec::new();
         // The row at which the next action stands.
         let mut next = None;
-        for (at, entry) in chapter.entries.iter().enumerate() {
+        for (at, entry) in chapter.entries.iter().enumerate().filter(|(_, entry)| shown.holds(entry)) {
             let done = at < chapter.done;
             if at == chapter.done {
                 next = Some(rows.len());
             }
-            for (part, (text, role)) in told::brief(entry, &look.company.names).into_iter().enumerate() {
+            for (part, (text, role)) in super::told::brief(entry, &look.company.names).into_iter().enumerate()
+            {
                 let mark = match (part, done) {
                     (0, true) => "✓ ",
                     (0, false) if at == chapter.done => "▸ ",

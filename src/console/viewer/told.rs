@@ -5,6 +5,7 @@ use crate::console::screens::journal::entries::in_words;
 use crate::console::text::short_dollars;
 use crate::console::theme::Role;
 use crate::notation::{dollars, grouped};
+use crate::report::count;
 use crate::report::deals::deals_in_words;
 use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
 use crate::session::{
@@ -27,7 +28,7 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
         Record::Query(query) => {
             let sql = query.sql.split_whitespace().collect::<Vec<_>>().join(" ");
             let answer = match answered(query) {
-                Ok(rows) => format!("{} rows, {:.0} ms", grouped(rows as f64, 0), query.took_ms),
+                Ok(rows) => format!("{}, {:.0} ms", count(rows as u32, "row"), query.took_ms),
                 Err(code) => format!("refused: {code}"),
             };
             vec![(sql, Role::Keyword), (answer, Role::Dim)]
@@ -163,7 +164,7 @@ fn in_full(entry: &RecordView, names: &CompanyNames) -> String {
             let sql = query.sql.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
             match answered(query) {
                 Ok(rows) => {
-                    format!("asked\n{sql}\n  {} rows in {:.1} ms", grouped(rows as f64, 0), query.took_ms)
+                    format!("asked\n{sql}\n  {} in {:.1} ms", count(rows as u32, "row"), query.took_ms)
                 }
                 Err(code) => format!("asked\n{sql}\n  refused: {code}"),
             }

@@ -36,7 +36,7 @@ impl SessionThread {
     /// Asks the database and the tables of the x-ray. In a replay the table that shows one day shows that of the moment.
     pub(super) fn ask_inside(&mut self, number: u64, sql: &str) {
         let started = Instant::now();
-        let stop = self.inside_stop.clone();
+        let stop = self.running_stop.clone();
         let hold = |own| *stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
         let day = match &self.open {
             Some(Open::Replayed(playback)) => Some(playback.session().day()).filter(|day| *day > 0),

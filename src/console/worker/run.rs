@@ -1,7 +1,7 @@
 //! The session's thread with the run that is open: calls, weeks, notes, story and report.
 
-use std::sync::Arc;
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use serde_json::Value;
@@ -13,7 +13,7 @@ use crate::console::look_inside::DaysRan;
 use crate::console::message::{DayTold, Message, News};
 use crate::report::xray::stop_in_words;
 use crate::report::{Story, as_html, as_markdown};
-use crate::session::{Breakpoint, DayReport, Forecasts, Session, Via};
+use crate::session::{Breakpoint, DayReport, Forecasts, Interrupt, Session, Via};
 use crate::tools::ToolId;
 
 /// The run that is open, and where news of it go.
@@ -23,6 +23,8 @@ pub(super) struct OpenRun<'a> {
     pub(super) shown: &'a mut Option<Arc<Company>>,
     pub(super) news: &'a Sender<Message>,
     pub(super) queries: &'a QueryThreads,
+    /// Stops the script that runs.
+    pub(super) stop: &'a Mutex<Option<Interrupt>>,
 }
 
 impl OpenRun<'_> {
@@ -34,7 +36,10 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn call(&mut self, tool: ToolId, arguments: &Value) -> Option<News> {
+        let hold = |own| *self.stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        hold(self.session.interrupt().ok().filter(|_| tool.runs_code()));
         let answer = self.session.call(tool, arguments, Via::Form).map(Box::new);
+        hold(None);
         Some(News::Called(tool, answer, self.company()))
     }
 

@@ -6,7 +6,7 @@ use crate::lab::exhibit::{
 };
 use crate::lab::experiment::{ExperimentResults, RunResult};
 use crate::report::count;
-use crate::statistics::{Interval, PairedDifference, mean, median};
+use crate::statistics::{Interval, LEAST, PairedDifference, mean, median};
 
 /// One axis of the ablation, played.
 pub struct Axis<'a> {
@@ -61,7 +61,7 @@ pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> 
             .to_owned(),
     );
     exhibit.notes.push(format!(
-        "An event applies what it copies only if that is more than its own size. Subscribers are those at the end of day {day}; a run that went bankrupt before has none."
+        "An event applies what it copies only if that is more than its own size. Subscribers are those at the end of day {day}; a run that went bankrupt before counts with 0. Intervals and verdicts need {LEAST} seeds or more."
     ));
     exhibit
 }
@@ -76,8 +76,8 @@ fn arms(axis: &Axis<'_>, day: u32) -> Tabulation {
         Column::words("rivals", "rivals"),
         Column::numbers("subscribers", &format!("mean subscribers, day {day}"), Measure::Count),
         Column::intervals("subscribers_interval", "95 % interval", Measure::Count),
-        Column::numbers("difference", "less default", Measure::Count),
-        Column::intervals("difference_interval", "95 % interval of it", Measure::Count),
+        Column::numbers("difference", "minus default", Measure::Count),
+        Column::intervals("difference_interval", "95 % interval of the difference", Measure::Count),
         Column::numbers("cash", "median final cash", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Share),
     ];
@@ -126,7 +126,7 @@ fn steps(axis: &Axis<'_>, day: u32) -> Tabulation {
 
 fn verdict(own: &PairedDifference) -> &'static str {
     match own.interval {
-        None => "one seed tells no order",
+        None => "too few seeds",
         Some(Interval { low, .. }) if low > 0.0 => "loses",
         Some(Interval { high, .. }) if high < 0.0 => "gains",
         Some(Interval { low, high }) if low == 0.0 && high == 0.0 => "identical",

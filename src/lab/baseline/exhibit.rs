@@ -25,8 +25,9 @@ pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentRes
     if count > 1 {
         exhibit.tables.push(stability(grid, &board));
         exhibit.tables.push(best_by_seed(grid, &board));
-        exhibit.graphs.push(spread(&board));
     }
+    exhibit.graphs.push(if count > 1 { spread(&board) } else { bars(&board) });
+    exhibit.tables.push(every_run(grid, &board));
     exhibit.notes.extend(notes(grid, is_published, &board));
     exhibit
 }
@@ -101,7 +102,7 @@ fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut columns = head(grid);
     columns.extend([
         Column::numbers("median_cash", "median cash", Measure::Dollars),
-        Column::intervals("median_cash_interval", "95 % interval of it", Measure::Dollars),
+        Column::intervals("median_cash_interval", "95 % interval of the median", Measure::Dollars),
         Column::numbers("lower_quartile", "lower quartile", Measure::Dollars),
         Column::numbers("upper_quartile", "upper quartile", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Share),
@@ -128,7 +129,7 @@ fn stability(grid: &Grid, board: &Board<'_>) -> Tabulation {
     columns.extend([
         Column::numbers("survival", "mean survival, days", Measure::Number(1)),
         Column::numbers("peak", "median peak subscribers", Measure::Count),
-        Column::numbers("first", "first in", Measure::Share),
+        Column::numbers("first", "best in", Measure::Share),
         Column::numbers("place", "mean place", Measure::Number(1)),
     ]);
     let mut table = Tabulation::new("stability", "Survival, size, and places by final cash", columns);
@@ -147,7 +148,7 @@ fn stability(grid: &Grid, board: &Board<'_>) -> Tabulation {
 
 fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let columns = vec![
-        Column::numbers("seed", "seed", Measure::Count),
+        Column::words("seed", "seed"),
         Column::words("configuration", "best configuration"),
         Column::numbers("cash", "its cash", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Count),
@@ -161,7 +162,7 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
         let bankrupt =
             board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
         table.rows.push(vec![
-            Datum::number(*seed as f64),
+            Datum::words(seed.to_string()),
             Datum::words(labels(grid, &first)),
             Datum::number(best),
             Datum::number(bankrupt as f64),
@@ -178,6 +179,52 @@ fn labels(grid: &Grid, first: &[usize]) -> String {
         [one, rest @ ..] => {
             format!("{} and {} equal to it", grid.configurations[*one].label(), rest.len())
         }
+    }
+}
+
+/// Every run with its levels, for programs: people read the tables above.
+fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
+    let mut columns: Vec<Column> = grid.axes.iter().map(|axis| Column::words(axis, axis)).collect();
+    columns.extend([
+        Column::words("seed", "seed"),
+        Column::numbers("cash", "final cash", Measure::Dollars),
+        Column::numbers("survival", "survival, days", Measure::Days),
+        Column::words("bankrupt", "bankrupt"),
+        Column::numbers("peak", "peak subscribers", Measure::Count),
+        Column::numbers("peak_day", "on day", Measure::Days),
+    ]);
+    let mut table = Tabulation { is_for_programs: true, ..Tabulation::new("runs", "Every run", columns) };
+    for (arm, point) in grid.configurations.iter().enumerate() {
+        for run in board.runs(arm) {
+            let mut row: Vec<Datum> = point.levels.iter().map(Datum::words).collect();
+            row.extend([
+                Datum::words(run.seed.to_string()),
+                Datum::number(run.cash),
+                Datum::number(f64::from(run.day)),
+                Datum::words(if run.is_bankrupt() { "yes" } else { "no" }),
+                Datum::number(f64::from(run.peak_subscribers)),
+                Datum::number(f64::from(run.peak_day)),
+            ]);
+            table.rows.push(row);
+        }
+    }
+    table
+}
+
+/// Final cash of each configuration on one seed, the best first.
+fn bars(board: &Board<'_>) -> Graph {
+    let cash =
+        |(at, arm): (usize, &usize)| board.runs(*arm).first().map(|run| ((at + 1) as f64, run.cash.max(0.0)));
+    Graph {
+        title: "Final cash of the configurations, the best first".to_owned(),
+        summary: "Final cash by the place of the configuration in the table".to_owned(),
+        across: GraphAxis { label: "place in the table", scale: AxisScale::Whole },
+        up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
+        series: vec![Series {
+            name: "final cash".to_owned(),
+            points: board.order.iter().enumerate().filter_map(cash).collect(),
+        }],
+        form: GraphForm::Bars,
     }
 }
 

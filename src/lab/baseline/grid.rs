@@ -10,6 +10,9 @@ use crate::world::params::ParameterSource;
 /// Most combinations of a grid.
 pub const MOST: usize = 2_000;
 
+/// What stands between the levels of a combination.
+const BETWEEN_LEVELS: &str = " / ";
+
 /// A grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
@@ -35,7 +38,7 @@ pub struct GridPoint {
 impl GridPoint {
     /// Its levels in a line.
     pub fn label(&self) -> String {
-        self.levels.join(" / ")
+        self.levels.join(BETWEEN_LEVELS)
     }
 }
 
@@ -113,8 +116,10 @@ impl Grid {
         for axis in file.axis {
             let span = axis.span();
             let axis = axis.into_inner();
-            if axis.name.is_empty() || axes.iter().any(|(name, _)| *name == axis.name) {
-                return Err(reader.at(Some(span), "axes have names, each another one"));
+            if !is_label(&axis.name) || axes.iter().any(|(name, _)| *name == axis.name) {
+                return Err(
+                    reader.at(Some(span), &format!("axes have names, each another one; a name {LABEL}"))
+                );
             }
             let levels = reader.levels(&axis.name, axis.level, span)?;
             axes.push((axis.name, levels));
@@ -135,6 +140,14 @@ impl Grid {
             description: file.description,
         })
     }
+}
+
+/// What a name is.
+const LABEL: &str = "is one line of text without \" / \", which stands between the levels of a combination";
+
+/// Whether a name can stand in a label of a combination, and be found there again.
+fn is_label(name: &str) -> bool {
+    !name.trim().is_empty() && !name.contains(BETWEEN_LEVELS) && !name.chars().any(char::is_control)
 }
 
 /// Reads the parts of a file and says where they are wrong.
@@ -165,8 +178,8 @@ impl Reader<'_> {
                 let problem = format!("axis {axis} has two levels of the name {name}");
                 return Err(self.at(Some(span), &problem));
             }
-            if name.is_empty() {
-                return Err(self.at(Some(span), &format!("axis {axis} has a level without a name")));
+            if !is_label(&name) {
+                return Err(self.at(Some(span), &format!("axis {axis}: the name of a level {LABEL}")));
             }
             levels.push(GridLevel { name, set, calls: call, span });
         }
@@ -213,7 +226,8 @@ impl Reader<'_> {
             })?;
         }
         let levels: Vec<String> = chosen.iter().map(|level| level.name.clone()).collect();
-        let policy = policy_of(table, &levels.join(" / ")).map_err(|problem| self.at(None, &problem))?;
+        let policy =
+            policy_of(table, &levels.join(BETWEEN_LEVELS)).map_err(|problem| self.at(None, &problem))?;
         Ok(GridPoint { levels, policy })
     }
 
@@ -310,7 +324,7 @@ mod tests {
                 "decision day",
             ),
             (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"x\"\n"), Some(6), "two levels"),
-            (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"\"\n"), Some(6), "without a name"),
+            (format!("name = \"g\"\n{level}[[axis.level]]\nname = \"\"\n"), Some(6), "one line of text"),
             (format!("name = \"g\"\n{level}{level}"), Some(6), "each another one"),
             (format!("name = \"g\"\n[policy.rule_based]\nprice = 1\n{level}"), Some(3), "price"),
             (format!("name = \"g\"\n{level}sets = {{}}\n"), Some(6), "sets"),

@@ -10,9 +10,9 @@ pub(super) const MOST_WITH_CUSTOMERS: usize = 4;
 
 /// For each participant the cash of their runs; for each of a few runs its customers by group.
 pub(super) fn graphs(runs: &[ObservedRun]) -> Vec<Graph> {
-    let mut players: BTreeMap<&str, Vec<&ObservedRun>> = BTreeMap::new();
+    let mut players: BTreeMap<Option<String>, Vec<&ObservedRun>> = BTreeMap::new();
     runs.iter().for_each(|run| players.entry(who(run)).or_default().push(run));
-    let mut graphs: Vec<Graph> = players.into_iter().map(|(who, own)| cash(who, &own)).collect();
+    let mut graphs: Vec<Graph> = players.into_iter().map(|(who, own)| cash(who.as_deref(), &own)).collect();
     let few = if runs.len() > MOST_WITH_CUSTOMERS { &[] } else { runs };
     graphs.extend(few.iter().filter(|run| !run.groups.is_empty()).map(customers));
     graphs
@@ -32,12 +32,12 @@ fn lines(
     Graph { title, summary, across, up, series, form: GraphForm::Lines }
 }
 
-fn cash(who: &str, runs: &[&ObservedRun]) -> Graph {
+fn cash(who: Option<&str>, runs: &[&ObservedRun]) -> Graph {
     let series = runs.iter().map(|run| Series {
         name: run.book.run.clone(),
         points: (0u32..).map(f64::from).zip(run.cash_by_day.iter().copied()).collect(),
     });
-    let title = if who == "–" { "Cash by day".to_owned() } else { format!("Cash by day, {who}") };
+    let title = who.map_or("Cash by day".to_owned(), |who| format!("Cash by day, {who}"));
     let summary = format!("Cash of {} runs, from the first day to the last.", runs.len());
     lines(title, summary, "day", "dollars", series.collect())
 }

@@ -116,7 +116,7 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
         |run: &ObservedRun| figures.iter().map(|(figure, _)| figure.value(&run.book)).collect::<Vec<_>>();
     let by_run: Vec<Vec<Option<f64>>> = runs.iter().map(values).collect();
     let row = |(run, own): (&ObservedRun, &Vec<Option<f64>>)| {
-        let mut cells = vec![Datum::words(&*run.book.run), Datum::words(who(run))];
+        let mut cells = vec![Datum::words(&*run.book.run), who(run).map_or(Datum::Missing, Datum::Words)];
         cells.extend(own.iter().map(|value| Datum::number(*value)));
         cells
     };
@@ -131,13 +131,13 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
             [Datum::words(name), Datum::words("")].into_iter().chain(cells).collect()
         };
         summary.push(told("mean", 1, |own| own.mean));
-        summary.push(told("± sd", 2, |own| own.std));
+        summary.push(told("± sd (n − 1)", 2, |own| own.std));
     }
     Tabulation { rows, summary, ..Tabulation::new("measures", "", columns) }
 }
 
-fn who(run: &ObservedRun) -> &str {
-    run.book.participant.as_deref().unwrap_or("–")
+fn who(run: &ObservedRun) -> Option<String> {
+    run.book.player()
 }
 
 /// The ten tools that were used most, over all runs.
@@ -233,12 +233,12 @@ fn cash(runs: &[ObservedRun]) -> Tabulation {
         Column::numbers("last", "at the end", Measure::Dollars),
     ];
     let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
-    ordered.sort_by(|one, other| who(one).cmp(who(other)));
+    ordered.sort_by_key(|run| who(run));
     let row = |run: &ObservedRun| {
         let of = |fold: fn(f64, f64) -> f64| run.cash_by_day.iter().copied().reduce(fold);
         vec![
             Datum::words(&*run.book.run),
-            Datum::words(who(run)),
+            who(run).map_or(Datum::Missing, Datum::Words),
             Datum::words(curve(run)),
             Datum::number(of(f64::min)),
             Datum::number(of(f64::max)),

@@ -9,9 +9,6 @@ use crate::lab::exhibit::{
 use crate::notation::percent;
 use crate::report::ranking::published;
 
-/// Millions of dollars.
-const MILLIONS: Measure = Measure::Number(1);
-
 /// The account, with the same account under other slacks.
 pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {
     let title = format!(
@@ -29,6 +26,11 @@ pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {
     if account.premises.slack != PUBLISHED_SLACK {
         exhibit.notes.push(format!("The published account has slack {PUBLISHED_SLACK}."));
     }
+    exhibit.notes.push(
+        "The estimate is the published share of what is left before the discount, and no limit of what can be played; \
+         before the discount is the account itself."
+            .to_owned(),
+    );
     exhibit.notes.push(format!("Published: {}.", published().source));
     exhibit
 }
@@ -36,8 +38,8 @@ pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {
 fn lines(account: &BoundAccount) -> Tabulation {
     let columns = vec![
         Column::words("line", "line"),
-        Column::numbers("own", "here, M$", MILLIONS),
-        Column::numbers("published", "published, M$", MILLIONS),
+        Column::numbers("own", "here, M$", Measure::Millions),
+        Column::numbers("published", "published, M$", Measure::Millions),
         Column::numbers("ratio", "here / published", Measure::Share),
     ];
     let mut table = Tabulation::new("account", "Millions of dollars", columns);
@@ -57,11 +59,11 @@ fn lines(account: &BoundAccount) -> Tabulation {
 fn sensitivity_table(slacks: &[SlackRow]) -> Tabulation {
     let columns = vec![
         Column::numbers("slack", "slack", Measure::Number(1)),
-        Column::numbers("targeted", "targeted development, M$", MILLIONS),
+        Column::numbers("targeted", "targeted development, M$", Measure::Millions),
         Column::numbers("renewals", "renewals of groups", Measure::Count),
         Column::numbers("satisfied", "of which nearly all renew", Measure::Count),
         Column::numbers("mean_share", "mean share that renews", Measure::Share),
-        Column::numbers("estimate", "estimate, M$", MILLIONS),
+        Column::numbers("estimate", "estimate, M$", Measure::Millions),
     ];
     let caption = format!("Sensitivity to slack; nearly all: more than {}", percent(NEARLY_ALL, 0));
     let mut table = Tabulation::new("slack", caption, columns);
@@ -89,7 +91,7 @@ fn groups(account: &BoundAccount) -> Tabulation {
         Column::numbers("least_spending", "T0 a day", Measure::Dollars),
         Column::numbers("spending", "T a day", Measure::Dollars),
         Column::numbers("least_share", "least r", Measure::Share),
-        Column::numbers("revenue", "revenue, M$", MILLIONS),
+        Column::numbers("revenue", "revenue, M$", Measure::Millions),
     ];
     let caption = "Groups: N customers or seats at price p; the gap of quality that T a day closes; r: share that renews";
     let mut table = Tabulation::new("groups", caption, columns);

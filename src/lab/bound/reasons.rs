@@ -54,7 +54,7 @@ impl BoundAccount {
                 let unknown = Group::all().filter(|group| !group.initially_known()).count();
                 let law = &params.market_research;
                 format!(
-                    "{} attempts find {unknown} groups in the mean; the published figure pays for {}",
+                    "{} attempts find {unknown} groups on average; the published figure pays for {}",
                     grouped(unknown as f64 / law.market_research_discover_prob, 1),
                     grouped(1e6 * line.published() / law.discovery_cost_level_1, 0)
                 )
@@ -64,7 +64,10 @@ impl BoundAccount {
                 self.premises.study_level
             ),
             AccountLine::Costs => "the sum of the costs above".to_owned(),
-            AccountLine::Subtotal | AccountLine::Estimate => "follows from revenue and costs".to_owned(),
+            AccountLine::Subtotal => "the cash of day 0 and revenue, less costs".to_owned(),
+            AccountLine::Estimate => {
+                format!("{} of what is left before the discount, as published", self.premises.reported_share)
+            }
             AccountLine::Capacity | AccountLine::GlobalDevelopment | AccountLine::Research => {
                 "the parameters in force are not the published ones".to_owned()
             }

@@ -19,7 +19,7 @@ pub fn beside(runs: &[Logbook]) -> Comparison {
     figures.extend(figures::by_group(runs));
     Comparison {
         runs: runs.iter().map(|run| run.run.clone()).collect(),
-        participants: runs.iter().map(|run| run.participant.clone()).collect(),
+        participants: runs.iter().map(Logbook::player).collect(),
         order: order(runs),
         ends: runs.iter().map(|run| (run.day, run.ended)).collect(),
         figures,

@@ -30,7 +30,7 @@ pub(super) fn one_a_row(beside: &Comparison) -> Exhibit {
         .collect();
     let has_labels = beside.participants.iter().any(Option::is_some);
     let mut columns = vec![Column::words("run", "run"), Column::numbers("place", "#", Measure::Count)];
-    columns.extend(has_labels.then(|| Column::words("participant", "participant")));
+    columns.extend(has_labels.then(|| Column::words("participant", "who")));
     columns.push(Column::words("end", "end"));
     columns.extend(figures.iter().map(|(row, heading)| Column::numbers(&row.figure, heading, row.measure())));
     let row = |(place, run): (usize, &usize)| {

@@ -29,7 +29,7 @@ fn side_by_side(beside: &Comparison) -> String {
     head.extend(beside.runs.iter().cloned());
     head.push("published".to_owned());
     let mut rows = vec![head];
-    let mut players = vec!["participant".to_owned()];
+    let mut players = vec!["who".to_owned()];
     players.extend(beside.participants.iter().map(|who| who.clone().unwrap_or_else(|| "-".to_owned())));
     players.push(String::new());
     rows.push(players);

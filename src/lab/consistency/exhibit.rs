@@ -13,8 +13,14 @@ impl ConsistencyCheck {
             let first = own.first_difference.as_ref()?;
             Some(format!("Fails: {}. The first that differs: {first}.", own.claim))
         }));
+        if self.equalises_surges {
+            exhibit.notes.push(
+                "One of the policies switches demand surges off; both are played with them, so that both play one world."
+                    .to_owned(),
+            );
+        }
         exhibit.with_note(
-            "Each value is read of a world in which the policy was played. Another seed shows that a claim could have failed: \
+            "Each value is read from a world in which the policy was played. Another seed shows that a claim could have failed: \
              the last column counts what differs from the same policy under it.",
         )
     }

@@ -112,7 +112,7 @@ const CLAIMS: &[Claim] = &[
         name: |[tier, number]| format!("project {number} of tier {tier}"),
     },
     Claim {
-        says: "quality trembles alike from day to day",
+        says: "the daily noise of quality is the same",
         counts: ("day", "days"),
         of: |luck| &luck.noise,
         compared: Compared::OfBoth,
@@ -198,6 +198,8 @@ pub struct ConsistencyCheck {
     pub policies: [String; 2],
     /// What each of them made of the luck of the first seed: so different are they.
     pub ends: [LuckEnd; 2],
+    /// One of the policies switches demand surges off, and is played with them all the same.
+    pub equalises_surges: bool,
     /// The claims.
     pub claims: Vec<TriedClaim>,
 }
@@ -237,6 +239,31 @@ pub struct ConsistencySpec {
     pub until: Option<u32>,
 }
 
+impl ConsistencySpec {
+    /// Demand surges for both, where one of the policies switches them off: else the two would play different worlds.
+    fn surges(policies: &[Policy; 2]) -> Option<bool> {
+        let [one, other] = policies;
+        (one.start.surges != other.start.surges).then_some(true)
+    }
+
+    /// What keeps two policies from playing the same world under this.
+    pub fn obstacle(&self, policies: &[Policy; 2]) -> Option<&'static str> {
+        let [one, other] = policies.each_ref().map(|policy| &policy.start);
+        match self.scenario {
+            _ if policies[0] == policies[1] => {
+                Some("that is one policy twice: give two that decide differently")
+            }
+            None if one.scenario != other.scenario => {
+                Some("the policies play different scenarios: name one with --scenario")
+            }
+            _ if one.days != other.days => Some(
+                "the policies play runs of different lengths, and the calendar of rivals depends on the length",
+            ),
+            _ => None,
+        }
+    }
+}
+
 /// Plays two policies and tries every claim.
 ///
 /// # Errors
@@ -256,6 +283,7 @@ pub fn check_consistency(
     let ends = plays.first().map(|first| [first.one.end, first.other.end]).unwrap_or_default();
     Ok(ConsistencyCheck {
         policies: policies.clone().map(|policy| policy.name),
+        equalises_surges: ConsistencySpec::surges(policies).is_some(),
         ends,
         claims: CLAIMS.iter().map(|claim| claim.tried(&plays)).collect(),
     })
@@ -284,8 +312,12 @@ impl SeedPlays {
         on_played: &(dyn Fn() + Sync),
     ) -> Result<SeedPlays, RunError> {
         let play = |policy: &Policy, seed: u64| {
-            let run =
-                RunSpec { scenario: spec.scenario.clone(), until: spec.until, ..RunSpec::of_seed(seed) };
+            let run = RunSpec {
+                scenario: spec.scenario.clone(),
+                until: spec.until,
+                surges: ConsistencySpec::surges(policies),
+                ..RunSpec::of_seed(seed)
+            };
             let luck = play_for_luck(policy, &run, configuration);
             on_played();
             luck

@@ -32,6 +32,16 @@ pub struct GraphAxis {
     pub scale: AxisScale,
 }
 
+impl GraphAxis {
+    /// What it counts, and that its values are logarithms if they are.
+    fn in_words(&self) -> String {
+        match self.scale {
+            AxisScale::Logarithmic => format!("{} (logarithmic)", self.label),
+            AxisScale::Linear | AxisScale::Whole => self.label.to_owned(),
+        }
+    }
+}
+
 /// A series of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -51,7 +61,7 @@ pub enum GraphForm {
 }
 
 /// Signs of the series in a terminal, in their order.
-const SIGNS: [char; 8] = ['*', '+', 'o', 'x', '#', '~', '%', '@'];
+const SIGNS: [char; 16] = ['*', '+', 'o', 'x', '#', '~', '%', '@', '=', '&', 'a', 'b', 'c', 'd', 'e', 'f'];
 
 /// Most bars in a terminal.
 const MOST_BARS: usize = 40;
@@ -79,7 +89,7 @@ impl Graph {
                     .map(|(own, drawn)| format!("{} {}", drawn.sign, own.name))
                     .collect();
                 let legend =
-                    format!("{} across, {} up: {}", self.across.label, self.up.label, names.join("; "));
+                    format!("x: {}, y: {}: {}", self.across.in_words(), self.up.in_words(), names.join("; "));
                 text += &(broken(&legend, width).join("\n") + "\n");
             }
         }
@@ -99,7 +109,7 @@ impl Graph {
             _ => Plot::Lines { curves: self.series.iter().map(curve).collect(), band: None },
         };
         let chart = Chart {
-            title: format!("{}: {} up", self.title, self.up.label),
+            title: format!("{}: {}", self.title, self.up.in_words()),
             summary: self.summary.clone(),
             across: self.across.label,
             dollars: self.up.label.starts_with("dollars"),

@@ -42,6 +42,8 @@ pub struct Tabulation {
     pub rows: Vec<Vec<Datum>>,
     /// Rows that sum the others up: people read them below a rule, programs apart from the rows.
     pub summary: Vec<Vec<Datum>>,
+    /// It is too long for people, who are told how to get it.
+    pub is_for_programs: bool,
 }
 
 /// A column of a table.
@@ -77,6 +79,8 @@ pub enum Measure {
     Days,
     /// A part of a whole, 1 for all of it.
     Share,
+    /// Millions of dollars, with a decimal.
+    Millions,
     /// Anything else, with so many decimals.
     Number(usize),
 }
@@ -129,6 +133,7 @@ impl Measure {
             Measure::Count => "count",
             Measure::Days => "days",
             Measure::Share => "share",
+            Measure::Millions => "millions of dollars",
             Measure::Number(_) => "number",
         }
     }
@@ -140,6 +145,7 @@ impl Measure {
             Measure::Dollars => dollars(value),
             Measure::Count | Measure::Days => grouped(value + 0.0, 0),
             Measure::Share => percent(value, 1),
+            Measure::Millions => grouped(value + 0.0, 1),
             Measure::Number(decimals) => grouped(value + 0.0, decimals),
         }
     }
@@ -212,6 +218,7 @@ impl Tabulation {
             columns,
             rows: Vec::new(),
             summary: Vec::new(),
+            is_for_programs: false,
         }
     }
 }

@@ -17,8 +17,11 @@ impl Exhibit {
     pub fn as_text(&self, width: usize) -> String {
         let width = width.max(40);
         let mut parts = vec![broken(&self.title, width).join("\n")];
-        parts.extend(self.tables.iter().map(|table| table.as_text(width)));
+        parts.extend(self.tables.iter().filter(|own| !own.is_for_programs).map(|own| own.as_text(width)));
         parts.extend(self.graphs.iter().map(|graph| graph.as_text(width, GRAPH_ROWS)));
+        let apart = self.tables.iter().filter(|table| table.is_for_programs);
+        let how = |table: &Tabulation| format!("{}: --csv --table {}", table.caption, table.name);
+        parts.extend(apart.flat_map(|table| broken(&how(table), width)));
         let notes: Vec<String> = self.notes.iter().flat_map(|note| broken(note, width)).collect();
         parts.push(notes.join("\n"));
         let parts: Vec<&str> =
@@ -73,7 +76,8 @@ impl<'a> Sheet<'a> {
         self.total() <= width
     }
 
-    /// With its widest columns of words broken, as far as it must be; not where even that leaves no room for all columns.
+    /// With its widest columns of words broken, as far as it must be; where even that leaves no room for all columns, those
+    /// that name the rows, so that the others can stand after them.
     fn narrowed(mut self, width: usize) -> Sheet<'a> {
         let least = |at: usize| match self.columns[at].holds {
             Holds::Words => self.widths[at].min(LEAST),
@@ -81,8 +85,12 @@ impl<'a> Sheet<'a> {
         };
         let gaps = GAP * self.widths.len().saturating_sub(1);
         let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
-        while has_room && self.total() > width {
-            let words = (0..self.columns.len()).filter(|at| self.columns[*at].holds == Holds::Words);
+        let (among, beside) = match has_room {
+            true => (self.columns.len(), 0),
+            false => (self.telling(), self.widest_from(self.telling()) + GAP),
+        };
+        while self.widths_of(among) - GAP.min(self.widths_of(among)) + beside > width {
+            let words = (0..among).filter(|at| self.columns[*at].holds == Holds::Words);
             let Some(widest) = words.filter(|at| self.widths[*at] > LEAST).max_by_key(|at| self.widths[*at])
             else {
                 break;
@@ -93,8 +101,8 @@ impl<'a> Sheet<'a> {
         self
     }
 
-    /// The leading columns that name a row: as few as tell all rows apart, the first one if more have no room.
-    fn names(&self, width: usize) -> usize {
+    /// How many leading columns of words tell all rows apart; one if none do.
+    fn telling(&self) -> usize {
         let is_words = |at: &usize| self.columns.get(*at).is_some_and(|own| own.holds == Holds::Words);
         let words = (0..self.columns.len()).take_while(is_words).count();
         let tells_apart = |count: &usize| {
@@ -102,8 +110,18 @@ impl<'a> Sheet<'a> {
             names.sort_unstable();
             names.windows(2).all(|pair| pair[0] != pair[1])
         };
-        let has_room = |count: &usize| 3 * self.widths_of(*count) <= 2 * width;
-        (1..=words).find(tells_apart).filter(has_room).unwrap_or(1)
+        (1..=words).find(tells_apart).unwrap_or(1)
+    }
+
+    /// The leading columns that name a row, if there is room beside them.
+    fn names(&self, width: usize) -> usize {
+        let telling = self.telling();
+        if self.widths_of(telling) + self.widest_from(telling) <= width { telling } else { 1 }
+    }
+
+    /// Width of the widest column from one on.
+    fn widest_from(&self, first: usize) -> usize {
+        self.widths.iter().skip(first).copied().max().unwrap_or(0)
     }
 
     /// Columns from the first one on, with the gaps after them.
@@ -180,7 +198,8 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(UnicodeWidthStr::width).max().unwrap_or(0)
 }
 
-/// A text in lines no wider than that, broken at blanks; a longer word is broken where it must be. Nothing for nothing.
+/// A text in lines no wider than that, broken at blanks; a longer word is broken behind a sign that joins its parts, else where
+/// it must be. Nothing for nothing.
 pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -194,7 +213,21 @@ pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
 
 fn pieces(word: &str, width: usize) -> Vec<String> {
     let mut pieces = vec![String::new()];
-    for letter in word.chars() {
+    for part in word.split_inclusive(['_', '.', '/', '-', ',']) {
+        let has_room = |piece: &String| piece.width() + part.width() <= width;
+        match pieces.last_mut().filter(|piece| has_room(piece)) {
+            Some(piece) => *piece += part,
+            None if part.width() <= width => pieces.push(part.to_owned()),
+            None => letters(part, width, &mut pieces),
+        }
+    }
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// Adds letters to the last piece, and to new ones where it is full.
+fn letters(part: &str, width: usize, pieces: &mut Vec<String>) {
+    for letter in part.chars() {
         let mut own = [0; 4];
         let letter: &str = letter.encode_utf8(&mut own);
         match pieces.last_mut().filter(|piece| piece.width() + letter.width() <= width || piece.is_empty()) {
@@ -202,5 +235,4 @@ fn pieces(word: &str, width: usize) -> Vec<String> {
             None => pieces.push(letter.to_owned()),
         }
     }
-    pieces
 }

@@ -228,10 +228,12 @@ impl Prepared<'_> {
             return Ok(None);
         }
         let spec = RunSpec { seed, save: None, projection: false, ..arm.spec.clone() };
-        let mut watch = DayWatch::of(&self.experiment.wanted);
+        let in_arm = |error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) };
+        let (_, cash, _) = arm.terms(with.configuration).map_err(|error| in_arm(RunError::Start(error)))?;
+        let mut watch = DayWatch::of(&self.experiment.wanted, cash);
         let mut day = |report: &DayReport<'_>| watch.day(report);
-        let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
-            .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) })?;
+        let session =
+            runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day).map_err(in_arm)?;
         let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
         Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
     }

@@ -16,6 +16,8 @@ pub struct RunResult {
     pub days: u32,
     /// Last simulated day.
     pub day: u32,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
     /// How it ended.
     pub ended: RunEnd,
     /// Cash at the end, dollars.
@@ -24,6 +26,8 @@ pub struct RunResult {
     pub subscribers: u32,
     /// Seats of active companies at the end.
     pub seats: u32,
+    /// Monthly recurring revenue at the end of the last day, dollars.
+    pub mrr: f64,
     /// Most active subscriptions of individuals at the end of a day.
     pub peak_subscribers: u32,
     /// The first day that had them.
@@ -78,8 +82,10 @@ pub struct DayPoint {
     pub cancellations: u32,
     /// Payments of subscribers, dollars.
     pub payments: f64,
-    /// Running costs, dollars.
-    pub costs: f64,
+    /// Running costs, dollars: capacity, compute, operations, development, advertising.
+    pub running_costs: f64,
+    /// Every other change of cash since the day before, dollars: purchases, prices of leads, revenue of ads.
+    pub other: f64,
     /// Units used.
     pub usage: u64,
 }
@@ -115,15 +121,21 @@ pub(super) struct DayWatch {
     daily: Option<Vec<DayPoint>>,
     collector: Collector,
     peak: (u32, u32),
+    start_cash: f64,
+    /// Cash at the end of the day before, dollars.
+    cash: f64,
+    mrr: f64,
 }
 
 impl DayWatch {
-    pub(super) fn of(wanted: &Wanted) -> DayWatch {
+    /// Of a run that begins with so much cash.
+    pub(super) fn of(wanted: &Wanted, start_cash: f64) -> DayWatch {
         let collector = match wanted.figures_on.is_empty() {
             true => Collector::idle(),
             false => Collector::new(Some(wanted.figures_on.clone())),
         };
-        DayWatch { daily: wanted.daily.then(Vec::new), collector, peak: (0, 0) }
+        let daily = wanted.daily.then(Vec::new);
+        DayWatch { daily, collector, peak: (0, 0), start_cash, cash: start_cash, mrr: 0.0 }
     }
 
     pub(super) fn day(&mut self, report: &DayReport<'_>) {
@@ -144,10 +156,12 @@ impl DayWatch {
                 new_subscribers: own.new_individual_subscribers,
                 cancellations: own.cancellations,
                 payments: own.payments_received,
-                costs: own.total_costs,
+                running_costs: own.total_costs,
+                other: own.cash - self.cash - own.payments_received + own.total_costs,
                 usage: own.total_usage,
             });
         });
+        (self.cash, self.mrr) = (own.cash, own.mrr);
     }
 
     /// What is kept of the run, once it is over.
@@ -169,10 +183,12 @@ impl DayWatch {
             seed: outcome.seed,
             days: outcome.days,
             day: outcome.day,
+            start_cash: self.start_cash,
             ended: outcome.ended,
             cash: outcome.cash,
             subscribers: outcome.subscribers,
             seats: outcome.seats,
+            mrr: self.mrr,
             peak_subscribers: self.peak.0,
             peak_day: self.peak.1,
             state_hash: outcome.state_hash,

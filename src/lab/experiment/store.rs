@@ -53,6 +53,10 @@ impl ResultStore {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
+        // A device or a pipe has no end, or none to read.
+        if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            return Err(io::Error::other("it is no file: delete it, and results are kept in a new one"));
+        }
         let file = OpenOptions::new().create(true).read(true).append(true).open(path)?;
         Ok(ResultStore { path: path.to_owned(), file: Mutex::new(file) })
     }

@@ -206,6 +206,9 @@ impl Policy {
             return Err(at(None, format!("start.cash must be above 0, not {cash}")));
         }
         let (name, description) = (file.name, file.description);
+        if name.trim().is_empty() || name.chars().any(char::is_control) {
+            return Err(at(None, "a policy has a name of one line".to_owned()));
+        }
         Ok(Policy { name, description, start: file.start, rule_based, calls, enterprise })
     }
 }

@@ -5,15 +5,15 @@ mod exhibit;
 #[cfg(feature = "server")]
 mod tries;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::metrics::Collector;
 use super::policy::Policy;
-use super::runner::{RunEnd, RunError, RunSpec, play, policy_of};
+use super::runner::{RunEnd, RunError, RunSpec, play};
 use crate::report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
 use crate::report::measures::{survival_days, tool_use};
 use crate::report::ranking::{beaten, by_result, published};
-use crate::session::{Configuration, Ended, Line, Session};
+use crate::session::{Configuration, Ended, Line, Session, policy_of};
 use crate::statistics::Sample;
 
 #[cfg(feature = "server")]
@@ -69,8 +69,10 @@ pub enum ResultsBy {
 /// Whose runs a row holds. A participant may have any label: kinds are told apart by more than names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Player {
-    /// A participant, or somebody who was not named.
+    /// A participant.
     Participant,
+    /// Somebody who was not named.
+    Unnamed,
     /// A policy.
     Policy,
     /// The company that nobody runs, played for the table.
@@ -85,7 +87,7 @@ impl Player {
     /// Where the row comes from, in words.
     pub fn source(self) -> &'static str {
         match self {
-            Player::Participant => "own",
+            Player::Participant | Player::Unnamed => "own",
             Player::Policy => "own policy",
             Player::Idle => "reference",
             Player::PublishedAgent | Player::PublishedBaseline => "published",
@@ -99,7 +101,7 @@ impl ResultsBy {
         let participant = run.participant.clone().map(|label| (Player::Participant, label));
         match self {
             ResultsBy::Participant => {
-                Some(participant.or(policy).unwrap_or((Player::Participant, "unnamed".to_owned())))
+                Some(participant.or(policy).unwrap_or((Player::Unnamed, UNNAMED.to_owned())))
             }
             ResultsBy::Policy => policy,
         }
@@ -145,6 +147,9 @@ pub struct ResultsTable {
 /// The policy that does nothing at all.
 pub const IDLE_POLICY: &str = "P0";
 
+/// Name of the row of everybody who was not named.
+const UNNAMED: &str = "(no label)";
+
 /// Name of the row of the idle company.
 const IDLE_NAME: &str = "idle company";
 
@@ -183,6 +188,15 @@ impl ResultsTable {
                 None => played_by_people += 1,
             }
         }
+        let has_one_twice = |own: &Vec<&FinishedRun>| {
+            let seeds: BTreeSet<u64> = own.iter().map(|run| run.seed).collect();
+            seeds.len() < own.len()
+        };
+        let again: Vec<&str> =
+            groups.iter().filter(|(_, own)| has_one_twice(own)).map(|((_, name), _)| name.as_str()).collect();
+        let again = (!again.is_empty()).then(|| {
+            format!("Several runs of one seed: {}. Whoever plays a seed again knows what comes; a policy does the same again.", again.join(", "))
+        });
         let mut rows: Vec<ResultsRow> =
             groups.into_iter().filter_map(|(player, own)| row_of(player, &own)).collect();
         rows.extend(
@@ -196,6 +210,10 @@ impl ResultsTable {
         });
         let mut notes = notes();
         notes.extend(not_ranked_in_words(left_out));
+        if rows.iter().any(|row| row.player == Player::Policy) {
+            notes.push("Policies are told apart by the names in their files alone.".to_owned());
+        }
+        notes.extend(again);
         if played_by_people > 0 {
             notes.push(format!("Runs that people played are left out: {played_by_people}."));
         }
@@ -232,7 +250,7 @@ fn row_of((player, name): (Player, String), runs: &[&FinishedRun]) -> Option<Res
         best_run: Some(best.run.clone()),
         max_survival_days: lives.iter().copied().reduce(f64::max),
         mean_survival_days: Some(Sample::of(&lives).mean),
-        std_survival_days: Some(spread_of_all(&lives)),
+        std_survival_days: (lives.len() > 1).then(|| spread_of_all(&lives)),
         calls_per_week: Some(Sample::of(&calls).mean),
         beats: beaten(best.score).0,
     })

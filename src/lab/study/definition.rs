@@ -11,7 +11,7 @@ use crate::lab::policy::Policy;
 use crate::lab::runner::RunSpec;
 use crate::lab::seeds::parse_seeds;
 use crate::session::{Configuration, DEFAULT_SCENARIO, RunError, check_cash, check_days};
-use crate::world::params::{ParameterError, line_of_key};
+use crate::world::params::{ParameterError, Params, Replayed, line_of_key};
 
 /// Most runs of a study.
 const MOST_RUNS: u64 = 1_000_000;
@@ -25,6 +25,8 @@ pub struct StudyPlan {
     pub factors: Vec<String>,
     /// The values of the factors, by arm.
     pub levels: Vec<Vec<String>>,
+    /// A scenario replays recorded luck.
+    pub replays_a_record: bool,
     /// Arms and seeds.
     pub experiment: Experiment,
 }
@@ -152,12 +154,13 @@ impl StudyPlan {
         let seeds = seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
         let mut factors = vec!["policy".to_owned(), "scenario".to_owned()];
         factors.extend(levels.names.iter().cloned());
-        let (mut arms, mut labels) = (Vec::new(), Vec::new());
+        let (mut arms, mut labels, mut replays_a_record) = (Vec::new(), Vec::new(), false);
         for policy in &policies {
             for scenario in scenarios(&own, policy) {
                 for level in &levels.all {
                     let arm = own.arm(policy, &scenario, level);
-                    check(source, &own, &arm, configuration)?;
+                    let params = checked(source, &own, &arm, configuration)?;
+                    replays_a_record |= params.series.replayed != Replayed::None;
                     arms.push(arm);
                     let words = [policy.name.clone(), scenario.clone()];
                     labels.push(words.into_iter().chain(level.labels.iter().cloned()).collect());
@@ -169,6 +172,7 @@ impl StudyPlan {
             name: own.name,
             factors,
             levels: labels,
+            replays_a_record,
             experiment: Experiment { arms, seeds, wanted },
         })
     }
@@ -244,7 +248,7 @@ fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), Para
     let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
     match (0..own.scenarios.len()).find(twice) {
         Some(at) => {
-            let problem = format!("scenario {} stands twice", own.scenarios[at]);
+            let problem = format!("scenario {} appears twice", own.scenarios[at]);
             Err(source.wrong(&format!("scenarios.{at}"), problem))
         }
         None => Ok(()),
@@ -273,7 +277,7 @@ fn refuse_said_elsewhere<'a>(
 fn is_same(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (number(one), number(other)) {
-        (Some(one), Some(other)) => one.total_cmp(&other).is_eq(),
+        (Some(one), Some(other)) => one == other,
         _ => one == other,
     }
 }
@@ -324,7 +328,7 @@ fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, Parameter
         if let Some(at) =
             (0..values.len()).find(|at| values[..*at].iter().any(|own| is_same(own, &values[*at])))
         {
-            let problem = format!("the value {} stands twice", value_text(&values[at]));
+            let problem = format!("the value {} appears twice", value_text(&values[at]));
             return Err(source.wrong_override("grid", &key, problem));
         }
         let level = |value: &Value| {
@@ -368,7 +372,7 @@ fn seeds(
     let mut sorted = seeds.clone();
     sorted.sort_unstable();
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(source.wrong("seeds", format!("seed {} stands twice", pair[0])));
+        return Err(source.wrong("seeds", format!("seed {} appears twice", pair[0])));
     }
     match seeds.len() as u64 {
         0 => Err(source.wrong("seeds", "a study has at least one seed")),
@@ -387,18 +391,18 @@ fn check_terms(source: &StudySource<'_>, own: &StudyText) -> Result<(), Paramete
     }
 }
 
-/// Whether an arm could begin.
-fn check(
+/// The parameters of an arm that can begin.
+fn checked(
     source: &StudySource<'_>,
     own: &StudyText,
     arm: &Arm,
     configuration: &Configuration,
-) -> Result<(), ParameterError> {
+) -> Result<Params, ParameterError> {
     let error = match (arm.terms(configuration), own.until) {
         (Ok((days, ..)), Some(until)) if until > days => {
             return Err(source.wrong("until", format!("its runs end on day {days}")));
         }
-        (Ok(_), _) => return Ok(()),
+        (Ok((.., params)), _) => return Ok(params),
         (Err(error), _) => error,
     };
     if let RunError::Configuration(wrong) = &error {

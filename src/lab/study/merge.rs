@@ -200,6 +200,9 @@ enum ReadShard {
 
 /// The head of a shard, and whether the rest is what it says.
 fn read(file: &Path) -> Result<ReadShard, String> {
+    if std::fs::metadata(file).is_ok_and(|found| !found.is_file()) {
+        return Err("it is no file".to_owned());
+    }
     let mut reader = BufReader::new(File::open(file).map_err(|error| error.to_string())?);
     // A first line is short: a file without line ends is no shard.
     let mut line = Vec::new();

@@ -78,7 +78,8 @@ impl ShardHead {
     /// Of the first line of a file; none if it is no shard.
     pub(super) fn of_line(line: &str) -> Option<ShardHead> {
         let head: ShardHead = serde_json::from_str(line.strip_prefix(MARK)?).ok()?;
-        (head.part.shard >= 1 && head.part.shard <= head.part.of).then_some(head)
+        (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MOST_SHARDS)
+            .then_some(head)
     }
 
     /// The name under which a shard is written.

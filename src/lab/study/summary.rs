@@ -6,7 +6,7 @@ use crate::lab::exhibit::{
 };
 use crate::lab::experiment::{Experiment, RunResult};
 use crate::report::count;
-use crate::statistics::{Interval, LEVEL, Quartiles, RESAMPLES, median};
+use crate::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
 
 /// Most arms whose curves can be told apart.
 const MOST_CURVES: usize = 8;
@@ -16,6 +16,9 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
     let seeds = plan.experiment.seeds.len();
     let by_arm: Vec<&[RunResult]> = results.chunks(seeds).collect();
     let mut columns: Vec<Column> = plan.factors.iter().map(|name| Column::words(name, name)).collect();
+    let start = |runs: &[RunResult]| runs.first().map(|run| run.start_cash);
+    let differs = by_arm.iter().any(|runs| start(runs) != start(by_arm[0]));
+    columns.extend(differs.then(|| Column::numbers("start_cash", "cash on day 0", Measure::Dollars)));
     columns.extend([
         Column::numbers("alive", "not bankrupt", Measure::Share),
         Column::numbers("cash_lower_quartile", "lower quartile", Measure::Dollars),
@@ -31,6 +34,7 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
         let alive = runs.iter().filter(|run| !run.is_bankrupt()).count() as f64;
         let middle = Quartiles::of(&cash);
         let mut row: Vec<Datum> = levels.iter().map(Datum::words).collect();
+        row.extend(differs.then(|| Datum::number(start(runs))));
         row.extend([
             Datum::number(alive / runs.len().max(1) as f64),
             Datum::number(middle.map(|own| own.lower)),
@@ -42,15 +46,25 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
         table.rows.push(row);
     }
     let mut exhibit = Exhibit::of(format!("{}: {}", plan.name, size(plan)), table);
-    if (1..=MOST_CURVES).contains(&by_arm.len()) {
-        exhibit.graphs.push(curves(plan, &by_arm));
-    }
-    let luck = "Seeds are in common: the runs of one seed have the same luck in every arm.";
+    exhibit.graphs.push(curves(plan, &by_arm));
+    let luck = match plan.replays_a_record {
+        false => "Seeds are in common: the runs of one seed have the same luck in every arm.",
+        true => {
+            "Seeds are in common, but a scenario that replays recorded luck does not share it with the others, and its seeds differ \
+             only in what is not recorded."
+        }
+    };
     let interval = format!(
-        "Intervals: percentile bootstrap over seeds, {RESAMPLES} resamples, {:.0} %. Final cash is what a run ends with, on its \
+        "Intervals: percentile bootstrap over {LEAST} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is what a run ends with, on its \
          last day or in bankruptcy.",
         LEVEL * 100.0
     );
+    if differs {
+        exhibit.notes.push(
+            "The arms begin with different cash; final cash does not tell them apart by what they earned."
+                .to_owned(),
+        );
+    }
     exhibit.with_note(luck).with_note(interval)
 }
 
@@ -60,8 +74,22 @@ pub fn size(plan: &StudyPlan) -> String {
     format!("{} by {}", count(arms.len() as u32, "arm"), count(seeds.len() as u32, "seed"))
 }
 
+/// The arms that are drawn: those with the most cash at the end, in the order of the study.
+fn drawn(by_arm: &[&[RunResult]]) -> Vec<usize> {
+    let middle = |arm: &usize| {
+        let cash: Vec<f64> = by_arm[*arm].iter().map(|run| run.cash).collect();
+        median(&cash).unwrap_or(f64::NEG_INFINITY)
+    };
+    let mut arms: Vec<usize> = (0..by_arm.len()).collect();
+    arms.sort_by(|one, other| middle(other).total_cmp(&middle(one)));
+    arms.truncate(MOST_CURVES);
+    arms.sort_unstable();
+    arms
+}
+
 fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
-    let series = by_arm.iter().zip(&plan.experiment.arms).map(|(runs, arm)| {
+    let series = drawn(by_arm).into_iter().map(|arm| {
+        let (runs, arm) = (by_arm[arm], &plan.experiment.arms[arm]);
         let mut days: Vec<u32> = runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.day)).collect();
         days.sort_unstable();
         days.dedup();
@@ -74,8 +102,11 @@ fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
         Series { name: arm.name.clone(), points: points.collect() }
     });
     Graph {
-        title: "Median cash by week".to_owned(),
-        summary: "The median over seeds of the cash at the end of each week, for every arm.".to_owned(),
+        title: match by_arm.len() <= MOST_CURVES {
+            true => "Median cash by week".to_owned(),
+            false => format!("Median cash by week, the {MOST_CURVES} arms with the most at the end"),
+        },
+        summary: "The median over seeds of the cash at the end of each week, by arm.".to_owned(),
         across: GraphAxis { label: "day", scale: AxisScale::Whole },
         up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: series.collect(),

@@ -4,7 +4,8 @@ use super::StudyPlan;
 use crate::lab::experiment::{DayPoint, RunResult};
 use crate::lab::runner::RunEnd;
 
-const OF_RUN: [&str; 10] = [
+const OF_RUN: [&str; 11] = [
+    "start_cash",
     "days",
     "day",
     "ended",
@@ -17,7 +18,7 @@ const OF_RUN: [&str; 10] = [
     "state_hash",
 ];
 
-const OF_DAY: [&str; 12] = [
+const OF_DAY: [&str; 13] = [
     "day",
     "cash",
     "mrr",
@@ -28,7 +29,8 @@ const OF_DAY: [&str; 12] = [
     "new_subscribers",
     "cancellations",
     "payments",
-    "costs",
+    "running_costs",
+    "other",
     "usage",
 ];
 
@@ -58,8 +60,8 @@ fn of_run(own: &RunResult) -> Vec<String> {
         RunEnd::Until => "until",
         RunEnd::Bankruptcy => "bankruptcy",
     };
-    let mrr = own.weeks.last().map(|week| week.mrr.to_string()).unwrap_or_default();
     vec![
+        own.start_cash.to_string(),
         own.days.to_string(),
         own.day.to_string(),
         ended.to_owned(),
@@ -68,7 +70,7 @@ fn of_run(own: &RunResult) -> Vec<String> {
         own.seats.to_string(),
         own.peak_subscribers.to_string(),
         own.peak_day.to_string(),
-        mrr,
+        own.mrr.to_string(),
         own.state_hash.clone(),
     ]
 }
@@ -85,7 +87,8 @@ fn of_day(own: &DayPoint) -> Vec<String> {
         own.new_subscribers.to_string(),
         own.cancellations.to_string(),
         own.payments.to_string(),
-        own.costs.to_string(),
+        own.running_costs.to_string(),
+        own.other.to_string(),
         own.usage.to_string(),
     ]
 }

@@ -72,7 +72,7 @@ fn wrong_studies_name_line_and_key() {
         (
             "name = \"x\"\npolicies = [\"P0\"]\nseeds = [1, 2, 1]\n".to_owned(),
             Some(3),
-            ["seeds", "seed 1 stands twice"],
+            ["seeds", "seed 1 appears twice"],
         ),
         ("name = \"x\"\npolicies = [\"P0\"]\nseeds = []\n".to_owned(), Some(3), ["seeds", "at least one"]),
         ("name = \"x\"\npolicies = [\"P0\"]\nseeds = -1\n".to_owned(), Some(3), ["seeds", "a number"]),
@@ -130,7 +130,7 @@ fn wrong_studies_name_line_and_key() {
         (
             format!("{begin}\n[grid]\n\"leads.saturation_base\" = [1, 1.0]\n"),
             Some(6),
-            ["leads", "stands twice"],
+            ["leads", "appears twice"],
         ),
         (
             format!("{begin}\n[grid]\n\"run.total_days\" = [100, 200]\n"),
@@ -140,7 +140,7 @@ fn wrong_studies_name_line_and_key() {
         (
             format!("{begin}scenarios = [\"default\", \"default\"]\n"),
             Some(4),
-            ["scenarios.1", "stands twice"],
+            ["scenarios.1", "appears twice"],
         ),
         ("name = \"x\"\npolicies = [\"P0\"\nseeds = 1\n".to_owned(), Some(3), ["", ""]),
     ] {

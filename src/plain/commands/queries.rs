@@ -45,7 +45,7 @@ impl Interpreter {
         tool: ToolId,
         arguments: &Value,
     ) -> Result<tools::Answer, Refusal> {
-        if matches!(tool, ToolId::PythonExec | ToolId::RunScript)
+        if tool.runs_code()
             && let Ok(interrupt) = self.session.interrupt()
         {
             self.watch.enter_query(interrupt);

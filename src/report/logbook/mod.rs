@@ -20,7 +20,7 @@ use super::measures::{Measures, Wording};
 use crate::session::record::FiledForecast;
 use crate::session::{
     Attendance, Consent, Ended, Line, Mode, ModelStamp, Record, ScoredForecast, Session, SittingCount,
-    StudyStamp, TimeSpent, end_of, is_of_policy,
+    StudyStamp, TimeSpent, end_of, policy_of,
 };
 use timeline::{Span, Timeline};
 
@@ -59,8 +59,8 @@ pub struct Logbook {
     pub earlier_runs: u32,
     /// Run it branched from.
     pub parent: Option<String>,
-    /// A policy decided its weeks, nobody else.
-    pub is_of_policy: bool,
+    /// The policy that decided its weeks, if nobody else decided one.
+    pub policy: Option<String>,
     /// When it was created, RFC 3339.
     pub created: String,
     /// When its last line was written, RFC 3339.
@@ -159,6 +159,12 @@ pub struct WeekLog {
 }
 
 impl Logbook {
+    /// Who played: the participant as the experimenter named them, else the policy; none of an unnamed person.
+    pub fn player(&self) -> Option<String> {
+        let policy = || self.policy.as_ref().map(|name| format!("policy {name}"));
+        self.participant.clone().or_else(policy)
+    }
+
     /// The logbook of a run from its lines, those of what was done after its end, and the run as they make it. Asks the database what ads brought.
     pub fn of(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
         let timeline = Timeline::of(lines);
@@ -189,7 +195,7 @@ impl Logbook {
             voice: manifest.voice.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
-            is_of_policy: is_of_policy(lines),
+            policy: policy_of(lines).map(str::to_owned),
             created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),
             last_at: last.map(|line| line.at.clone()).unwrap_or_default(),
             ended_at: end.map(|line| line.at.clone()),

@@ -28,7 +28,7 @@ impl Guard {
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
         if !origin.is_none_or(is_loopback) {
-            let message = "pages of other machines may not ask";
+            let message = "requests from pages of other sites are refused";
             return Some(Answer::wrong(Status::Forbidden, "origin", message));
         }
         let expected = self.token.as_deref()?;

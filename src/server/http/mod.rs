@@ -95,7 +95,7 @@ pub fn serve_http(
         ready(&announcement);
         let router =
             routes::router(handle, Guard { token }, numbers, Served { run, stop: shutdown.asking() });
-        take_connections(&listener, router, shutdown).await;
+        take_connections(&listener, router, shutdown, &owner).await;
         Ok(())
     });
     // Requests that were cut off hold handles of the owner.
@@ -123,7 +123,12 @@ fn token_of(path: &Path) -> Result<String, RunError> {
     }
 }
 
-async fn take_connections(listener: &TcpListener, router: axum::Router, mut shutdown: Shutdown) {
+async fn take_connections(
+    listener: &TcpListener,
+    router: axum::Router,
+    mut shutdown: Shutdown,
+    owner: &Owner,
+) {
     let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
     let open = GracefulShutdown::new();
     let mut http = hyper::server::conn::http1::Builder::new();
@@ -153,6 +158,7 @@ async fn take_connections(listener: &TcpListener, router: axum::Router, mut shut
             drop(place);
         });
     }
+    owner.stop_code();
     tokio::select! {
         () = open.shutdown() => {}
         () = tokio::time::sleep(LAST_REQUESTS) => {}

@@ -119,7 +119,7 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
             Value::Null => json!({}),
             given => given,
         };
-        Request::Call { tool, args }
+        Request::of_tool(&tool, args)
     })
     .await
 }

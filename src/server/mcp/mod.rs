@@ -3,8 +3,6 @@
 mod resources;
 mod tools;
 
-pub(super) use tools::request;
-
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,6 +19,7 @@ use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use super::page::{PageOf, goal_and_rules};
+use super::request::Request;
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
 
@@ -91,7 +90,7 @@ impl ServerHandler for McpDoor {
         request: CallToolRequestParams,
         _: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
-        let request = tools::request(&request.name, request.arguments.unwrap_or_default());
+        let request = Request::of_tool(&request.name, request.arguments.unwrap_or_default().into());
         Ok(tools::result(self.handle.ask(request).await).into())
     }
 

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use rmcp::model::{CallToolResult, Tool, ToolAnnotations};
-use serde_json::{Map, Value};
 
-use crate::server::request::{Answer, Request};
+use crate::server::request::Answer;
 use crate::server::schema;
 use crate::tools::describe::manual;
-use crate::tools::{Kind, Numbers, Spec, ToolId};
+use crate::tools::{Kind, Numbers, Spec};
 
 /// Every tool.
 pub fn all(numbers: &Numbers) -> Vec<Tool> {
@@ -32,18 +31,6 @@ fn hints(spec: &Spec) -> ToolAnnotations {
         .destructive(matches!(spec.kind, Kind::Purchase | Kind::Time))
         .idempotent(settles)
         .open_world(false)
-}
-
-/// What a call asks of the run.
-pub fn request(name: &str, mut arguments: Map<String, Value>) -> Request {
-    let mut take = |field: &str| arguments.remove(field).unwrap_or(Value::Null);
-    if name == ToolId::NextWeek.name() {
-        return Request::NextWeek { rationale: take("rationale"), predictions: take("predictions") };
-    }
-    if name == ToolId::Query.name() {
-        return Request::Query { sql: take("sql") };
-    }
-    Request::Call { tool: name.to_owned(), args: arguments.into() }
 }
 
 /// An answer as the result of a call: a refusal is an error that the client reads, never one of the protocol.

@@ -15,7 +15,7 @@ use crate::session::state::Session;
 use crate::session::study::stamp::EarlierRun;
 use crate::session::trajectory::record::Ended;
 use crate::session::trajectory::{Line, Record};
-use crate::session::trajectory::{is_of_policy, open_regular_file, read_regular_file};
+use crate::session::trajectory::{open_regular_file, policy_of, read_regular_file};
 
 /// A run in the list.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,9 +40,9 @@ pub struct RunSummary {
     /// It goes on from weeks of another run.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_branch: bool,
-    /// A policy decides its weeks, nobody else.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub is_of_policy: bool,
+    /// The policy that decides its weeks; none where somebody else decides one, as far as its last lines tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub policy: Option<String>,
     /// Who plays.
     pub participant: Option<String>,
     /// Last simulated day.
@@ -167,7 +167,7 @@ fn summarise(folder: &Path) -> RunSummary {
             || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
         judged_by_model: manifest.voice.as_ref().is_some_and(|model| model.judge),
         is_branch: manifest.parent.is_some(),
-        is_of_policy: is_of_policy(&last),
+        policy: policy_of(&last).map(str::to_owned),
         created: manifest.created.clone(),
         played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
@@ -212,7 +212,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
         has_own_parameters: false,
         judged_by_model: false,
         is_branch: false,
-        is_of_policy: false,
+        policy: None,
         participant: None,
         day: 0,
         days: 0,

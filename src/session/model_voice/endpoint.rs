@@ -90,7 +90,7 @@ mod over_http {
     fn key_in(variable: &str) -> Result<String, String> {
         let key = std::env::var(variable).unwrap_or_default();
         match key.trim() {
-            "" => Err(format!("the environment variable {variable} is to hold its key and is not set")),
+            "" => Err(format!("the environment variable {variable} must hold its key, but is not set")),
             key => Ok(key.to_owned()),
         }
     }
@@ -99,7 +99,7 @@ mod over_http {
         match error {
             Error::Timeout(_) => "it did not answer in time".to_owned(),
             Error::BodyExceedsLimit(_) => format!("what it sent is longer than {MOST_BYTES} bytes"),
-            other => format!("it cannot be asked ({})", printable(&other.to_string())),
+            other => format!("it could not be reached: {}", printable(&other.to_string())),
         }
     }
 }

@@ -23,6 +23,10 @@ fn failed(message: impl Into<String>) -> Refusal {
     Refusal::at("code", "script_failed", message)
 }
 
+/// What is said where a program in Python is not run.
+pub const PYTHON_NOT_RUN: &str =
+    "Python is not run for policies, nor for decisions that somebody made elsewhere";
+
 /// Refuses where nobody plays: a record, a policy or a lesson must not start programs.
 ///
 /// # Errors
@@ -30,9 +34,7 @@ fn failed(message: impl Into<String>) -> Refusal {
 pub(in crate::session) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
     match is_played {
         true => Ok(()),
-        false => Err(failed(
-            "Python is not started here: decisions are played that somebody else made, or a policy",
-        )),
+        false => Err(failed(PYTHON_NOT_RUN)),
     }
 }
 

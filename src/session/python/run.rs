@@ -110,7 +110,8 @@ fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said
             Err(failed(format!("{what}{}{}", part("", &traceback), printed(process))))
         }
         ScriptEnd::TimedOut => {
-            let seconds = time.as_secs_f64();
+            let seconds = crate::notation::grouped((10.0 * time.as_secs_f64()).round() / 10.0, 1);
+            let seconds = seconds.trim_end_matches(".0");
             let message = format!("it did not end in {seconds} s and was stopped{}", printed(process));
             Err(Refusal::at("code", "script_timeout", message))
         }

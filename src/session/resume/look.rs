@@ -32,7 +32,7 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
         Err(RunError::InUse { id, holder }) => {
             // A run of a study is watched by nobody but its experimenter.
             let watch = if manifest.study.is_none() {
-                format!(", or watch it with `novamind play --watch {id}`")
+                format!(", or watch it with `novamind play --run {id} --watch`")
             } else {
                 String::new()
             };

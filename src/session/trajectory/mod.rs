@@ -7,6 +7,7 @@
 mod clock;
 mod line;
 mod medium;
+mod policy;
 pub mod record;
 mod regular_file;
 mod time;
@@ -19,6 +20,7 @@ pub use line::Line;
 pub(super) use line::hash_of_first_line;
 #[cfg(test)]
 pub(super) use medium::Medium;
+pub use policy::{policy_of, policy_rationale};
 pub use record::Record;
 pub(super) use regular_file::{
     append_to_regular_file, open_regular_file, read_regular_file, read_regular_text,
@@ -30,20 +32,10 @@ pub use writer::{Durability, TrajectoryWriter};
 use crate::database::Position;
 use crate::session::error::RunError;
 use line::line_hash;
-use record::Via;
 
 /// The line that says how a run ended, among its lines; none while it is unfinished.
 pub fn end_of(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
-}
-
-/// Whether a policy decided every week among some lines; not without one.
-pub fn is_of_policy(lines: &[Line]) -> bool {
-    let mut weeks = lines.iter().filter_map(|line| match &line.record {
-        Record::Advance(week) => Some(week.via),
-        _ => None,
-    });
-    weeks.next() == Some(Via::Policy) && weeks.all(|via| via == Via::Policy)
 }
 
 /// A trajectory that was read.

@@ -20,7 +20,7 @@ pub(in crate::console) fn summary(id: &str) -> RunSummary {
         has_own_parameters: false,
         judged_by_model: false,
         is_branch: false,
-        is_of_policy: false,
+        policy: None,
         participant: None,
         day: 84,
         days: 500,

@@ -12,7 +12,7 @@ use crate::console::attention::BETWEEN_CELLS;
 use crate::console::company::Company;
 use crate::console::effect::Effect;
 use crate::console::keys::Chord;
-use crate::console::widgets::Field;
+use crate::console::widgets::{Editor, Field};
 use crate::console::widgets::field::ONLY_NUMBERS;
 use crate::notation::{dollars, parse_number};
 use crate::report::count;
@@ -33,6 +33,8 @@ pub struct Form {
     pub at: CellPlace,
     /// The cell is being typed into; what it held before.
     pub typing: Option<Option<Field>>,
+    /// The lines of the code that is being written; the cell's draft follows them.
+    writing: Option<Box<Editor>>,
     /// The cell that enter has just left: what is copied down then is what was typed.
     left: Option<CellPlace>,
     /// A customer number is being typed, to add a row to a block.
@@ -56,6 +58,7 @@ impl Form {
             sheet: Sheet::of(spec, company),
             at: CellPlace::default(),
             typing: None,
+            writing: None,
             left: None,
             adding: None,
             dropped: BTreeMap::new(),
@@ -75,6 +78,11 @@ impl Form {
         self.typing.is_some() || self.adding.is_some()
     }
 
+    /// The editor of the code that is being written.
+    pub fn writing(&self) -> Option<&Editor> {
+        self.writing.as_deref()
+    }
+
     /// Takes over what holds now; drafts stay.
     pub fn renew(&mut self, company: &Company) {
         self.is_offered = company.has_tool(self.spec.id);
@@ -88,7 +96,7 @@ impl Form {
     pub fn reset(&mut self, company: &Company) {
         self.sheet = Sheet::of(self.spec, company);
         self.at = CellPlace::default();
-        (self.typing, self.left, self.adding, self.preview) = (None, None, None, None);
+        (self.typing, self.writing, self.left, self.adding, self.preview) = (None, None, None, None, None);
         self.dropped.clear();
         self.keep_inside();
     }
@@ -152,7 +160,7 @@ impl Form {
 
     /// Sends the call, or says why not.
     pub fn apply(&mut self) -> Vec<Effect> {
-        self.typing = None;
+        (self.typing, self.writing) = (None, None);
         let arguments = match self.sheet.arguments() {
             Ok(arguments) => arguments,
             Err(place) => {
@@ -208,6 +216,10 @@ impl Form {
                 self.adding = None;
                 return self.check();
             }
+            Action::LeaveEditor => {
+                self.stop_typing();
+                return self.check();
+            }
             Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
                 return self.commit(action);
             }
@@ -222,9 +234,11 @@ impl Form {
             return;
         }
         let text = self.is_at_text();
+        let is_code = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_code);
         if let Some(slot) = self.sheet.slot_mut(self.at) {
             self.typing = Some(slot.draft.clone());
             let held = slot.text();
+            self.writing = is_code.then(|| Box::new(Editor::of(&held).unwrapped()));
             // A number is replaced by what is typed; words are changed.
             slot.draft = Some(if text { Field::of(held) } else { Field::to_replace(held) });
         }
@@ -302,6 +316,7 @@ impl Form {
     /// Ends typing where it is; what was typed stays a draft.
     pub fn stop_typing(&mut self) {
         self.adding = None;
+        self.writing = None;
         if self.typing.is_some() {
             self.settle();
         }
@@ -401,6 +416,10 @@ impl Form {
             field.key(key);
             return Vec::new();
         }
+        if let Some(editor) = &mut self.writing {
+            editor.key(key);
+            return self.take_written();
+        }
         let text = self.is_at_text();
         if self.typing.is_some()
             && let Some(slot) = self.sheet.slot_mut(self.at)
@@ -416,6 +435,14 @@ impl Form {
         Vec::new()
     }
 
+    /// Takes what the editor holds as the draft of its cell.
+    fn take_written(&mut self) -> Vec<Effect> {
+        if let (Some(editor), Some(slot)) = (&self.writing, self.sheet.slot_mut(self.at)) {
+            slot.draft = Some(Field::of(editor.text()));
+        }
+        self.check()
+    }
+
     /// Takes pasted text.
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         if self.typing.is_none() && self.adding.is_none() {
@@ -424,6 +451,10 @@ impl Form {
             if let Some(slot) = self.sheet.slot_mut(self.at).filter(|_| typing) {
                 slot.draft = Some(Field::default());
             }
+        }
+        if let Some(editor) = &mut self.writing {
+            editor.insert(text);
+            return self.take_written();
         }
         if let Some((_, field)) = &mut self.adding {
             field.insert(text.trim());

@@ -16,6 +16,7 @@ use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::text::wrapped;
 use crate::console::theme::Role;
+use crate::console::widgets::Editor;
 use crate::tools::{Numbers, Spec, ToolId, When, describe};
 
 /// The form.
@@ -24,6 +25,9 @@ pub struct FormPane;
 impl Pane<Tools> for FormPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
         let typing = tools.seen_form().is_some_and(Form::is_typing);
+        if tools.seen_form().is_some_and(|form| form.writing().is_some()) {
+            return vec![Scope::Editor, Scope::Form];
+        }
         if typing { vec![Scope::Field, Scope::Form] } else { vec![Scope::Form, Scope::List] }
     }
 
@@ -32,6 +36,9 @@ impl Pane<Tools> for FormPane {
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
+        if tools.seen_form().is_some_and(|form| form.writing().is_some()) {
+            return vec![Action::Apply, Action::LeaveEditor];
+        }
         if tools.seen_form().is_some_and(Form::is_typing) {
             return vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard];
         }
@@ -109,6 +116,9 @@ impl Pane<Tools> for FormPane {
         let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
         let Laid { head, outcome, gap } = lay_out(tools, form, inside, look);
         let lines = form_lines(form);
+        if let Some(editor) = form.writing() {
+            return draw_code(editor, canvas, inside, seat.focused);
+        }
         let below = draw_head(&head, canvas, inside);
         // In a dense form what is typed has to be seen; otherwise half of the room is for what comes of it.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
@@ -121,6 +131,14 @@ impl Pane<Tools> for FormPane {
         let used = draw_earlier(&form.earlier, canvas, below);
         draw_manual(form.spec, canvas, under(below, used), look);
     }
+}
+
+/// The code that is being written: it has the whole form.
+fn draw_code(editor: &Editor, canvas: &mut Canvas<'_>, area: Rect, focused: bool) {
+    let (row, _) = editor.cursor();
+    let words = format!("code, line {} of {}", row + 1, editor.lines().len());
+    canvas.text(Rect { height: area.height.min(1), ..area }, &words, Role::Header);
+    editor.draw(canvas, under(area, 1), focused, "SQL, or Python that begins with #");
 }
 
 /// What is left of an area below its first rows.
@@ -228,11 +246,12 @@ fn keys(form: &Form, look: &Look<'_>) -> String {
     }
     match form.sheet.blocks.is_empty() {
         true => "enter runs it".to_owned(),
+        false if form.writing().is_some() => look.hints(&[Action::Apply, Action::LeaveEditor]),
         false if form.is_typing() => look.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
         false => format!(
             "{} {} · {} · {} · {} · {}",
             look.hint(Action::EditCell),
-            if form.sheet.blocks.iter().all(Block::is_text) { "the list (JSON)" } else { "the value" },
+            form.sheet.blocks.get(form.at.block).map_or("the value", Block::edited),
             look.hint(Action::Apply),
             look.hint(Action::ResetForm),
             look.hint(Action::CopyCall),

@@ -213,7 +213,7 @@ fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: b
     if let Some(field) = slot.draft.as_ref().filter(|_| here && form.typing.is_some()) {
         return field.draw(canvas, row);
     }
-    let text = slot.text();
+    let text = in_a_line(&slot.text());
     let role = match (here, text.is_empty()) {
         (true, _) => Role::Selection,
         (false, true) => Role::Dim,
@@ -221,6 +221,14 @@ fn draw_text(form: &Form, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: b
     };
     canvas.clear(row, if here { Role::Selection } else { Role::Text });
     canvas.text(row, if text.is_empty() { "·" } else { &text }, role);
+}
+
+/// A text in one line: of several the first, and how many there are.
+fn in_a_line(text: &str) -> String {
+    match text.split_once('\n') {
+        None => text.to_owned(),
+        Some((first, _)) => format!("{first} … {} lines", text.lines().count()),
+    }
 }
 
 fn draw_cell(form: &Form, place: CellPlace, canvas: &mut Canvas<'_>, area: Rect, here: bool) {

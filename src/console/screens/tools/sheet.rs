@@ -12,6 +12,9 @@ use crate::notation::json_number;
 use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
 use crate::world::identifiers::{Channel, Plan};
 
+/// The argument that holds a program or a statement.
+const CODE: &str = "code";
+
 /// A value that can be typed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slot {
@@ -123,9 +126,24 @@ impl Block {
         matches!(self.argument.kind, ArgumentKind::Number(_) | ArgumentKind::Integer(_))
     }
 
-    /// Whether it is one line of text: words, or a list written as JSON.
+    /// Whether it is text: words, code, or a list written as JSON.
     pub fn is_text(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
+    }
+
+    /// Whether it is a program or a statement of several lines.
+    pub fn is_code(&self) -> bool {
+        self.argument.kind == ArgumentKind::Text && self.argument.name == CODE
+    }
+
+    /// What is edited in it, in words.
+    pub fn edited(&self) -> &'static str {
+        match self.argument.kind {
+            _ if self.is_code() => "the code",
+            ArgumentKind::Text => "the text",
+            ArgumentKind::Structure(_) | ArgumentKind::Deals(_) => "the list (JSON)",
+            _ => "the value",
+        }
     }
 
     /// Whether rows can be added: customers are too many to list.

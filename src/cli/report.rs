@@ -154,7 +154,7 @@ mod tests {
         assert!(markdown.contains("“wait and see”"), "{markdown}");
         assert!(written(ReportFormat::Html, "report.html").contains("<svg "));
         let card = |format: Option<ReportFormat>| {
-            let path = runs.path().join("card");
+            let path = runs.path().join(format!("card-{format:?}"));
             let options = Options {
                 run: "latest".to_owned(),
                 session: false,

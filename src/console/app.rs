@@ -368,9 +368,9 @@ impl App {
         }
     }
 
-    /// Whether the person waits for the answer to a query.
-    pub fn is_asking(&self) -> bool {
-        self.run().is_some_and(|run| run.screens.sql.is_running())
+    /// Whether the person waits: for a query, a script, a week. What is waited for shows how long it has taken.
+    pub fn is_waiting(&self) -> bool {
+        self.busy.is_some() || self.run().is_some_and(|run| run.screens.sql.is_running())
     }
 
     /// Scopes of the place that has the focus, the innermost first.

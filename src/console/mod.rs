@@ -106,8 +106,7 @@ impl Console {
                 return Ok(end);
             }
             self.screen.draw(&mut self.app)?;
-            // A query that is being answered shows how long it has taken.
-            let patience = if self.app.is_asking() { BETWEEN_SECONDS } else { FOREVER };
+            let patience = if self.app.is_waiting() { BETWEEN_SECONDS } else { FOREVER };
             match self
                 .messages
                 .recv_timeout(self.app.wakes_after().map_or(patience, |wake| wake.min(patience)))

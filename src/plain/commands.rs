@@ -360,10 +360,8 @@ impl Interpreter {
 
     fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
         match self.call_stoppable(tool, arguments) {
-            // What a script says is read as it is, line by line.
             Ok(tools::Answer::PythonExec(said) | tools::Answer::RunScript(said)) => {
-                let text = [&said.stdout, &said.stderr].map(|part| part.trim_end()).join("\n");
-                Answer::done(tool.name(), text.trim_end().to_owned(), json!(said))
+                queries::of_script(tool, &said)
             }
             Ok(data) => {
                 let shown = groups::with_ranges(&self.session, &data);

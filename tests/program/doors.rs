@@ -119,6 +119,52 @@ pub fn of_plain_mode() -> String {
 
 #[cfg(unix)]
 #[test]
+fn a_statement_and_a_week_can_be_called_as_tools() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let call = |tool: &str, args: Value| server.post("/call", &json!({ "tool": tool, "args": args }));
+    let (status, rows) = call("query", json!({ "sql": "SELECT 5 AS x" }));
+    assert_eq!((status, &rows["rows"]), (200, &json!([{ "x": 5 }])), "{rows}");
+    for sql in ["SELEC", "SELECT * FROM sqlite_master"] {
+        let (status, refused) = call("query", json!({ "sql": sql }));
+        assert_eq!((status, &refused["success"]), (200, &json!(false)), "{refused}");
+    }
+    let (_, week) = call("next_week", json!({ "rationale": "on", "predictions": predictions() }));
+    assert_eq!((&week["success"], &week["day"]), (&json!(true), &json!(7)), "{week}");
+    assert_eq!(server.stop(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_script_nobody_waits_for_is_stopped() {
+    if !Command::new("python3").args(["-c", ""]).output().is_ok_and(|done| done.status.success()) {
+        eprintln!("SKIPPED: there is no python3 on the path");
+        return;
+    }
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let endless = json!({ "name": "endless", "code": "# python\nwhile True:\n    pass" });
+    assert_eq!(server.post("/call", &json!({ "tool": "register_script", "args": endless })).0, 200);
+    let body = json!({ "tool": "run_script", "args": { "name": "endless" } }).to_string();
+    let request =
+        format!("POST /call HTTP/1.1\r\nhost: 127.0.0.1\r\ncontent-length: {}\r\n\r\n{body}", body.len());
+    let begin = || {
+        let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
+        stream.write_all(request.as_bytes()).expect("sent");
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        stream
+    };
+    // Its client goes away: others are answered again. It would run for ten minutes.
+    drop(begin());
+    assert_eq!(server.get("/vars")["current_day"], 0);
+    // The server is told to end while it runs.
+    let waiting = begin();
+    assert_eq!(server.stop(), 0);
+    drop(waiting);
+}
+
+#[cfg(unix)]
+#[test]
 fn the_same_decisions_over_http_are_the_same_run() {
     let home = Home::new();
     let server = Server::start(&home, &NEW);

@@ -1,6 +1,7 @@
 //! `novamind lab opponents`: what the strong policies make of the world of a run.
 
 use clap::Args;
+use serde_json::json;
 
 use crate::cli::{Context, Failure, print};
 use crate::database::text::aligned;
@@ -27,25 +28,30 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let found = play_opponents(&folder, &context.configuration, &|| true);
     let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
     let opponents = found.ok_or_else(|| Failure::failed("stopped"))?;
+    let run = Session::open(&folder, Access::Read, false)?;
     if options.json {
-        let text =
-            serde_json::to_string_pretty(&opponents).map_err(|error| Failure::failed(error.to_string()))?;
-        return print(&format!("{text}\n"));
+        let manifest = run.manifest();
+        let object = json!({
+            "run": { "id": manifest.id, "seed": manifest.seed, "scenario": manifest.scenario, "score": run.score() },
+            "day": opponents.day,
+            "policies": opponents.policies,
+        });
+        return print(&format!("{object:#}\n"));
     }
-    print(&as_text(&opponents, &Session::open(&folder, Access::Read, false)?))
+    print(&as_text(&opponents, &run))
 }
 
-/// The policies and the run itself, if it has a score, the best first.
+/// The policies and the run itself, the best first.
 fn as_text(opponents: &Opponents, run: &Session) -> String {
     let policy = |own: &Opponent| (own.score(), own.policy.clone(), ended_in_words(own));
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
-    if let Some(score) = run.score() {
-        let ended = match run.ended() {
-            Some(Ended::Bankruptcy) => format!("bankrupt on day {}", run.day()),
-            _ => format!("alive on day {}", run.day()),
-        };
-        places.push((score, format!("this run, {}", run.manifest().id), ended));
-    }
+    let ended = match run.ended() {
+        Some(Ended::Bankruptcy) => format!("bankrupt on day {}", run.day()),
+        Some(_) => format!("alive on day {}", run.day()),
+        None => format!("at day {}, not over: its cash", run.day()),
+    };
+    let cash = run.observe().cash;
+    places.push((run.score().unwrap_or(cash), format!("this run, {}", run.manifest().id), ended));
     places.sort_by(|one, other| other.0.total_cmp(&one.0));
     let row =
         |(score, name, ended): &(f64, String, String)| vec![name.clone(), dollars(*score), ended.clone()];

@@ -113,7 +113,9 @@ fn graphs_fit_their_room_in_letters_and_stand_alone_as_a_drawing() {
     let own = Exhibit { graphs: vec![graph, bars], ..exhibit() };
     let text = own.as_text(60);
     assert!(text.lines().all(|line| line.width() <= 60), "{text}");
-    assert!(text.contains("* off; + hard <1>") && text.contains('█'), "{text}");
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let legend = "x: day (logarithmic), y: subscribers (logarithmic): * off; + hard <1>";
+    assert!(words.contains(legend) && text.contains('█'), "{text}");
     let svg = own.as_svg().expect("graphs");
     assert!(svg.contains("hard &lt;1&gt;") && svg.contains("<rect class=\"part f1\""), "{svg}");
     assert_eq!(own.as_json()["graphs"][0]["series"][1]["points"][0], serde_json::json!([1, 1]));

@@ -11,7 +11,8 @@ impl ResultsTable {
         let columns = vec![
             Column::words("name", "who"),
             Column::words("source", "source"),
-            Column::words("bankrupt", "bankrupt"),
+            Column::numbers("bankrupt", "bankrupt", Measure::Count),
+            Column::numbers("runs", "of runs", Measure::Count),
             Column::numbers("best_cash", "best run, cash", Measure::Dollars),
             Column::numbers("max_survival_days", "longest life, days", Measure::Days),
             Column::numbers("mean_survival_days", "mean life, days", Measure::Number(1)),
@@ -46,14 +47,11 @@ impl ResultsTable {
 }
 
 fn cells(row: &ResultsRow) -> Vec<Datum> {
-    let bankrupt = match row.bankruptcies {
-        Some(count) => Datum::words(format!("{count}/{}", row.runs)),
-        None => Datum::Missing,
-    };
     vec![
         Datum::words(&*row.name),
         Datum::words(row.player.source()),
-        bankrupt,
+        Datum::number(row.bankruptcies.map(f64::from)),
+        Datum::Number(f64::from(row.runs)),
         Datum::Number(row.best_cash),
         Datum::number(row.max_survival_days),
         Datum::number(row.mean_survival_days),

@@ -8,7 +8,7 @@ use super::super::signals::Phase;
 use super::{Interpreter, problem};
 use crate::session::library::NamedQuery;
 use crate::session::{QuerySource, Refusal, Via};
-use crate::tools::{self, ToolId};
+use crate::tools::{self, ScriptOutput, ToolId};
 
 impl Interpreter {
     /// `queries`
@@ -54,4 +54,10 @@ impl Interpreter {
         self.watch.enter(Phase::Working);
         answer
     }
+}
+
+/// What a script says, as it is, line by line.
+pub(super) fn of_script(tool: ToolId, said: &ScriptOutput) -> Answer {
+    let text = [&said.stdout, &said.stderr].map(|part| part.trim_end()).join("\n");
+    Answer::done(tool.name(), format!("ok {tool}\n{}", text.trim_end()), json!(said))
 }

@@ -108,20 +108,21 @@ async fn ask_with(door: &Routed, body: Body, request: impl FnOnce(Fields) -> Req
 }
 
 async fn call(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| {
-        // Where the name of the tool is no text, it names no tool.
-        let tool = match fields.take("tool") {
-            Value::String(name) => name,
-            Value::Null => String::new(),
-            other => other.to_string(),
-        };
-        let args = match fields.take("args") {
-            Value::Null => json!({}),
-            given => given,
-        };
-        Request::of_tool(&tool, args)
-    })
-    .await
+    let mut fields = match read_object(body).await {
+        Ok(fields) => Fields(fields),
+        Err(wrong) => return closing(response(&wrong)),
+    };
+    // Where the name of the tool is no text, it names no tool.
+    let tool = match fields.take("tool") {
+        Value::String(name) => name,
+        Value::Null => String::new(),
+        other => other.to_string(),
+    };
+    let args = match fields.take("args") {
+        Value::Null => json!({}),
+        given => given,
+    };
+    response(&door.handle.ask(Request::of_tool(&tool, args)).await.as_of_a_call())
 }
 
 async fn next_week(State(door): State<Routed>, body: Body) -> Response {

@@ -18,6 +18,9 @@ const MOST_OUTPUT: usize = 5000;
 /// Characters of warnings and hints that a script may give.
 const MOST_REMARKS: usize = 2000;
 
+/// What is remarked of longer output.
+const OUTPUT_IS_CUT: &str = "stdout is cut after 5,000 characters\n";
+
 /// What code said.
 #[derive(Debug, Default)]
 pub(in crate::session) struct Said {
@@ -78,10 +81,12 @@ impl Session {
                 self.run_python(&script.code, time, true)?
             }
         };
+        let stdout = first(&said.results, MOST_OUTPUT);
+        let cut = if stdout.len() < said.results.len() { OUTPUT_IS_CUT } else { "" };
         Ok(ScriptOutput {
             returncode: 0,
-            stdout: first(&said.results, MOST_OUTPUT),
-            stderr: first(&said.remarks, MOST_REMARKS),
+            stdout,
+            stderr: first(&format!("{cut}{}", said.remarks), MOST_REMARKS),
         })
     }
 

@@ -122,7 +122,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
         "name = \"x\"\n[[call]]\nday = 0\ntool = \"set_prices\"\nargs = { A = 0 }\n",
     );
     home.run(&["run", "--policy", "mine", "--days", "28"]).fails(1, &["day 0", "price_not_positive"]);
-    home.run(&["run", "--policy", "nothere", "--days", "28"]).fails(3, &["nothere", "baseline"]);
+    home.run(&["run", "--policy", "nothere", "--days", "28"]).fails(2, &["nothere", "baseline"]);
 }
 
 /// What is done to a trajectory of ten lines.

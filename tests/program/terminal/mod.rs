@@ -5,3 +5,4 @@ mod kill;
 mod play;
 mod pty;
 mod record;
+mod scripts;

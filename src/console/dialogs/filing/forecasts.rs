@@ -17,7 +17,7 @@ impl FilingDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let (company, roomy) = (look.company, area.height >= 12);
         let question = format!(
-            "Cash now {}. What will it be? Make each range wide enough to contain the actual cash 95 times out of 100.",
+            "Cash now {}. What will it be? Choose ranges that contain the actual cash 95 times in 100.",
             dollars(company.seen.cash)
         );
         let asked = wrapped(&question, area.width as usize);

@@ -405,3 +405,26 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
         }
     }
 }
+
+#[test]
+fn code_is_written_in_lines_and_pasted_as_it_is() {
+    let keys = ["enter", "#", "space", "p", "enter", "x"];
+    let (tools, _) = typed(ToolId::PythonExec, &keys);
+    assert_eq!(tools.scopes()[0], Scope::Editor);
+    let text = drawn(&tools, &company(), 80, 21);
+    assert!(text.contains("code, line 2 of 2"), "{text}");
+    let (_, effects) = typed(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
+    let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(arguments["code"], "# p\nx");
+    // Left and come back to, it holds what was written; the form shows how many lines there are.
+    let (mut tools, _) = typed(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
+    let (company, bindings) = (company(), Keys::shipped());
+    let text = drawn(&tools, &company, 80, 21);
+    assert!(tools.holds_unsent_text() && text.contains("# p … 2 lines"), "{text}");
+    let look = Look { company: &company, keys: &bindings, page: 10 };
+    tools.act(Action::ResetForm, &look);
+    tools.paste("# python\nfor day in range(2):\n    print(day)\n", &look);
+    let effects = tools.act(Action::Apply, &look);
+    let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(arguments["code"], "# python\nfor day in range(2):\n    print(day)\n");
+}

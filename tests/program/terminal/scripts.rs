@@ -1,0 +1,46 @@
+//! Scripts in the console: written in lines, stopped by a key, and no reason to wait when the program is left.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use super::pty::Terminal;
+
+fn has_python() -> bool {
+    Command::new("python3").args(["-c", ""]).output().is_ok_and(|done| done.status.success())
+}
+
+/// Opens the form of python_exec and pastes an endless script into it.
+fn run_an_endless_script(terminal: &mut Terminal) {
+    terminal.type_keys("8");
+    terminal.wait_for("set_prices");
+    terminal.type_keys("/python_exec\r\r");
+    terminal.wait_for("enter edit the code");
+    terminal.type_keys("\r");
+    terminal.wait_for("code, line 1 of 1");
+    terminal.type_keys("\x1b[200~# python\nwhile True:\n    pass\x1b[201~");
+    terminal.wait_for("code, line 3 of 3");
+    terminal.type_keys("\x13");
+    terminal.wait_for("the script runs");
+}
+
+#[test]
+fn a_script_is_stopped_by_a_key_and_keeps_nobody_from_leaving() {
+    if !has_python() {
+        eprintln!("SKIPPED: there is no python3 on the path");
+        return;
+    }
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "1"], (100, 30));
+    terminal.wait_for("day 0/500");
+    run_an_endless_script(&mut terminal);
+    terminal.wait_for("esc stops it");
+    terminal.type_keys("\x1b");
+    terminal.wait_for("the script was cancelled");
+    let begun = Instant::now();
+    terminal.type_keys("\x13");
+    terminal.wait_for("the script runs");
+    terminal.signal("-TERM");
+    terminal.end();
+    // A script may take minutes; this bound is no measure of speed.
+    assert!(begun.elapsed() < Duration::from_secs(100), "nobody waits for a script that is given up");
+}

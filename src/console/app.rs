@@ -3,6 +3,7 @@
 //! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
 
 mod branches;
+mod busy;
 mod curve;
 mod guide;
 mod input;
@@ -24,7 +25,7 @@ mod visit;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use ratatui::layout::Rect;
 
@@ -46,12 +47,13 @@ use super::tour::Tour;
 use super::viewer::Viewer;
 use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
-use crate::console::request::{Request, SCRIPT_RUNS};
+use crate::console::request::Request;
 use crate::report::Story;
 use crate::report::opponents::PlayOpponents;
 use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
 
 pub use super::attention::Layer;
+pub use busy::Busy;
 use leaving::Closing;
 pub use settings::Settings;
 pub use stopped::Cover;
@@ -107,24 +109,6 @@ impl DaysRun {
     /// None is simulated yet.
     pub fn between(from: u32, to: u32) -> DaysRun {
         DaysRun { from, to, now: from, told: None }
-    }
-}
-
-/// Work that the person may have to wait for.
-#[derive(Debug, Clone)]
-pub struct Busy {
-    /// What it is.
-    pub what: &'static str,
-    /// How far a week, or a way through a record, has come.
-    pub days: Option<DaysRun>,
-    /// When it began.
-    pub since: Instant,
-}
-
-impl Busy {
-    /// Whether a script runs, which can be stopped.
-    pub fn is_script(&self) -> bool {
-        self.what == SCRIPT_RUNS
     }
 }
 
@@ -339,7 +323,12 @@ impl App {
             Message::Input(event) => self.take_input(event),
             Message::News(news) => self.news(news),
             Message::Signal(number) => self.leave(Closing::BySignal(number)),
-            Message::Time => self.pass_time(),
+            Message::Time => {
+                if self.busy.as_ref().is_some_and(|busy| busy.stops_script) {
+                    self.orders.push(Order::CancelQuery);
+                }
+                self.pass_time();
+            }
         }
         self.settle_tour();
         self.settle_limit();

@@ -425,8 +425,6 @@ fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
-
     use super::*;
     use crate::console::app::DaysRun;
     use crate::console::message::DayTold;
@@ -435,7 +433,7 @@ mod tests {
     fn a_week_that_runs_tells_its_days() {
         let told = Some(DayTold { cash: 1_234_567.0, subscribers: 12_345 });
         let days = DaysRun { from: 70, to: 77, now: 73, told };
-        let busy = |days| Busy { what: "the week runs", days: Some(days), since: Instant::now() };
+        let busy = |days| Busy { days: Some(days), ..Busy::with("the week runs") };
         let text = waiting(&busy(days), 80, "esc");
         assert!(text.starts_with("the week runs day 3 of 7 "), "{text}");
         assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");

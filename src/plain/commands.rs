@@ -360,16 +360,11 @@ impl Interpreter {
 
     fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
         match self.call_stoppable(tool, arguments) {
-            Ok(tools::Answer::PythonExec(said) | tools::Answer::RunScript(said)) => {
-                queries::of_script(tool, &said)
-            }
+            Ok(data) if tool.runs_code() => queries::of_script(tool, &data),
             Ok(data) => {
                 let shown = groups::with_ranges(&self.session, &data);
                 let answer = Answer::call_shown(tool.name(), data.to_json(), shown);
-                match tool {
-                    ToolId::StartResearchProject => answer.with_notes(&self.late_projects(&data)),
-                    _ => answer,
-                }
+                answer.with_notes(&self.late_projects(&data))
             }
             Err(refusal) => Answer::refused(tool.name(), refusal),
         }

@@ -24,7 +24,7 @@ next naive
         "{}",
         told.out
     );
-    assert!(told.out.contains("\nx\n5\n(1 row)"), "{}", told.out);
+    assert!(told.out.contains("ok python_exec\nx\n5\n"), "{}", told.out);
     assert!(told.out.contains("day:\n  failed: python3 is not on the path"), "{}", told.out);
 }
 

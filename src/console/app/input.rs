@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Position;
 
-use super::{App, Busy, Closing, Layer, Order, Stage};
+use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::attention::Edit;
 use crate::console::canvas::Click;
@@ -218,9 +218,11 @@ impl App {
         if !self.layers.is_empty() {
             return self.in_dialog(|dialog, look| dialog.act(action, look));
         }
-        if self.busy.as_ref().is_some_and(Busy::is_script) && STOPS_SCRIPT.contains(&action) {
-            self.orders.push(Order::CancelQuery);
-            return;
+        if let Some(busy) = self.busy.as_mut().filter(|busy| busy.is_script())
+            && STOPS_SCRIPT.contains(&action)
+        {
+            busy.stops_script = true;
+            return self.orders.push(Order::CancelQuery);
         }
         if let Stage::Menu(menu) = &mut self.stage {
             let effects = menu.act(action);

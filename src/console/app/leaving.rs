@@ -1,7 +1,5 @@
 //! Leaving a run: what is open counts as left, the run is saved and closed, and then comes the menu or the shell.
 
-use std::time::Instant;
-
 use super::{App, Busy, Order, Stage};
 use crate::console::dialogs::confirm::Confirm;
 use crate::console::effect::Effect;
@@ -84,7 +82,7 @@ impl App {
         self.closing = Some(closing);
         match &self.stage {
             Stage::Run(_) => {
-                self.busy = Some(Busy { what: "saving", days: None, since: Instant::now() });
+                self.busy = Some(Busy { stops_script: true, ..Busy::with("saving") });
                 self.orders.push(Order::CancelQuery);
                 self.orders.push(Order::Job(Job::Close(closing.cause())));
             }

@@ -1,7 +1,5 @@
 //! From effects to orders.
 
-use std::time::Instant;
-
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
 use crate::console::company::Company;
 use crate::console::dialogs::confirm::Confirm;
@@ -238,7 +236,7 @@ impl App {
                 .filter(|_| is_advance)
                 .map(|run| DaysRun::between(run.company.seen.day, last_day_of(&request, &run.company)))
                 .or_else(|| days_of_start(&request));
-            self.busy = Some(Busy { what, days, since: Instant::now() });
+            self.busy = Some(Busy { days, ..Busy::with(what) });
         }
         self.send_texts(&request);
         if matches!(request, Request::WriteReport) {

@@ -1,7 +1,6 @@
 //! What the keys of a replay do, and what its arrivals change.
 
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 use super::{App, Busy, Closing, DaysRun, Order, Run, Stage};
 use crate::console::action::{Action, Scope};
@@ -173,11 +172,8 @@ impl App {
         viewer.stop.store(false, Ordering::Relaxed);
         viewer.goes = true;
         let stop = viewer.stop.clone();
-        self.busy = Some(Busy {
-            what: "seeking",
-            days: Some(DaysRun::between(from, target.max(from))),
-            since: Instant::now(),
-        });
+        let days = Some(DaysRun::between(from, target.max(from)));
+        self.busy = Some(Busy { days, ..Busy::with("seeking") });
         self.orders.push(Order::Job(Job::Go(goal, stop)));
     }
 

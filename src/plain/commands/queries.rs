@@ -8,7 +8,7 @@ use super::super::signals::Phase;
 use super::{Interpreter, problem};
 use crate::session::library::NamedQuery;
 use crate::session::{QuerySource, Refusal, Via};
-use crate::tools::{self, ScriptOutput, ToolId};
+use crate::tools::{self, ToolId};
 
 impl Interpreter {
     /// `queries`
@@ -57,7 +57,9 @@ impl Interpreter {
 }
 
 /// What a script says, as it is, line by line.
-pub(super) fn of_script(tool: ToolId, said: &ScriptOutput) -> Answer {
-    let text = [&said.stdout, &said.stderr].map(|part| part.trim_end()).join("\n");
-    Answer::done(tool.name(), format!("ok {tool}\n{}", text.trim_end()), json!(said))
+pub(super) fn of_script(tool: ToolId, answer: &tools::Answer) -> Answer {
+    let data = answer.to_json();
+    let part = |name: &str| data[name].as_str().unwrap_or_default().trim_end().to_owned();
+    let text = ["stdout", "stderr"].map(part).join("\n");
+    Answer::done(tool.name(), format!("ok {tool}\n{}", text.trim_end()), data)
 }

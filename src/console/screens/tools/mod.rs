@@ -223,7 +223,10 @@ impl ScreenState for Tools {
             }
             News::Called(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
-                    if answer.is_ok() {
+                    if answer.is_ok() && tool.runs_code() {
+                        // It is mended and run again.
+                        form.stop_typing();
+                    } else if answer.is_ok() {
                         form.reset(look.company);
                         // What was sent is done with; keys are those of the list again.
                         if form.spec.kind.acts() {

@@ -99,7 +99,7 @@ impl Handle {
             return gone();
         }
         let answer = answer.await.unwrap_or_else(|_| gone());
-        watch.is_over();
+        watch.ends();
         answer
     }
 }

@@ -142,7 +142,7 @@ impl Answer {
     }
 
     /// The same as the answer of a call: what a tool refuses, a statement and a week among them, is an answer like any other.
-    pub fn as_of_a_call(mut self) -> Answer {
+    pub fn told_as_call(mut self) -> Answer {
         let is_of_tool = match self.status {
             Status::Refused | Status::Forbidden | Status::TimedOut => true,
             Status::Failed => self.body["code"] == "sql_error",

@@ -48,7 +48,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// The answer is there.
-    pub fn is_over(mut self) {
+    pub fn ends(mut self) {
         self.is_answered = true;
     }
 }

@@ -122,7 +122,7 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Value::Null => json!({}),
         given => given,
     };
-    response(&door.handle.ask(Request::of_tool(&tool, args)).await.as_of_a_call())
+    response(&door.handle.ask(Request::of_tool(&tool, args)).await.told_as_call())
 }
 
 async fn next_week(State(door): State<Routed>, body: Body) -> Response {

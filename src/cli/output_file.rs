@@ -8,7 +8,11 @@ use std::path::Path;
 use super::Failure;
 
 /// Bytes by which a drawing, rows, a page, a record and a file of configuration are told apart.
-const BEGINNING: u64 = 2;
+const BEGINNING: u64 = 8;
+
+/// What is said of a file that is something else.
+const OTHER: &str =
+    "it is there and holds something else than this command writes: name another file, or delete it";
 
 /// Writes a text into a file.
 ///
@@ -53,17 +57,31 @@ fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result
     written
 }
 
+/// Refuses a place whose file begins otherwise than with what will be written there.
+///
+/// # Errors
+/// It does, or cannot be read.
+pub fn check_beginning(place: &Path, expected: &str) -> Result<(), Failure> {
+    let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
+    let there = if is_file { beginning(place) } else { Ok(Vec::new()) };
+    let own: Vec<u8> = expected.bytes().take(BEGINNING as usize).collect();
+    match there {
+        Ok(there) if there.is_empty() || there == own => Ok(()),
+        Ok(_) => Err(Failure::failed(format!("{}: {OTHER}", place.display()))),
+        Err(error) => Err(Failure::failed(format!("{}: {error}", place.display()))),
+    }
+}
+
+fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    let mut first = Vec::new();
+    File::open(path)?.take(BEGINNING).read_to_end(&mut first)?;
+    Ok(first)
+}
+
 /// Refuses to replace a file that begins otherwise than the new one: it was not written by the same command.
 fn refuse_other(place: &Path, draft: &Path) -> io::Result<()> {
-    let beginning = |path: &Path| {
-        let mut first = Vec::new();
-        File::open(path)?.take(BEGINNING).read_to_end(&mut first)?;
-        io::Result::Ok(first)
-    };
     match beginning(place) {
-        Ok(there) if !there.is_empty() && there != beginning(draft)? => Err(io::Error::other(
-            "it is there and holds something else than this command writes: name another file, or delete it",
-        )),
+        Ok(there) if !there.is_empty() && there != beginning(draft)? => Err(io::Error::other(OTHER)),
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     }
@@ -94,16 +112,16 @@ mod tests {
     fn a_file_is_replaced_when_the_new_one_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let place = folder.path().join("report.md");
-        write_text(&place, "# one").expect("written");
+        write_text(&place, "# report one").expect("written");
         let half = write_file(&place, Some("the run is kept"), |out| {
-            out.write_all(b"# two")?;
+            out.write_all(b"# report two")?;
             Err(io::Error::other("the disk is full"))
         });
         let said = half.expect_err("it fails").to_string();
         assert!(said.ends_with("the disk is full; it was not written, the run is kept"), "{said}");
-        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# one");
-        write_text(&place, "# two").expect("written");
-        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# two");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report one");
+        write_text(&place, "# report two").expect("written");
+        assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report two");
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "no draft is left");
     }
 

@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, channel};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
+use super::output_file::check_beginning;
 use super::{Context, Failure, print};
 use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
 pub use crate::lab::{Seeds, parse_seeds};
@@ -192,6 +193,7 @@ const HEAD: &str = "seed,day,figure,group,value";
 
 fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
+    check_beginning(path, HEAD)?;
     let mut file = BufWriter::new(File::create(path).map_err(failed)?);
     writeln!(file, "{HEAD}").map_err(failed)?;
     Ok(file)

@@ -327,6 +327,10 @@ fn badge(run: &Run, screen: ScreenId) -> String {
 
 fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.note) {
+        // What was refused because a script runs.
+        (Some(busy), Some(note)) if busy.is_script() && note.bad => {
+            Some((format!("! {}", note.text), Role::Bad))
+        }
         (Some(busy), _) => {
             let stop = app.keys.label(Action::Close).unwrap_or_default();
             Some((waiting(busy, row.width, &stop), Role::Warning))

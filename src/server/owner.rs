@@ -14,6 +14,7 @@ use super::request::{Answer, Request, Status};
 use super::running::Running;
 use crate::session::record::LeavingCause;
 use crate::session::{Access, Interface, ModelSettings, RunError, Session, Via};
+use crate::tools::Kept;
 
 /// Hears of defects of ours.
 pub type OnDefect = fn(&str);
@@ -56,7 +57,7 @@ impl Owner {
         (Owner { thread, running }, handle)
     }
 
-    /// Stops the script or the statement that runs: a server that is to end does not wait for it.
+    /// Stops the script, the calculation or the statement that runs: a server that is to end does not wait for it.
     pub fn stop_code(&self) {
         self.running.stop();
     }
@@ -131,9 +132,9 @@ impl Owned {
                 // Whoever asked has gone before it began.
                 continue;
             }
-            if request.runs_code() {
+            if request.runs_code() || (is_week && self.has_calculations()) {
                 let interrupt = self.session.as_mut().and_then(|session| session.interrupt().ok());
-                self.running.begin(number, interrupt);
+                self.running.begin(number, request.runs_code(), interrupt);
             }
             let answer = self.answer(request);
             self.running.end();
@@ -150,6 +151,12 @@ impl Owned {
             }
             None => Ok(()),
         }
+    }
+
+    /// Whether code runs before a week.
+    fn has_calculations(&self) -> bool {
+        let kept = |session: &Session| !session.notebook().statements(Kept::Calculation).entries().is_empty();
+        self.session.as_ref().is_some_and(kept)
     }
 
     fn answer(&mut self, request: Request) -> Answer {

@@ -1,17 +1,25 @@
-//! The script or statement that runs at this moment, and how it is stopped when nobody waits for it any more.
+//! The request that is answered at this moment, and how the script or the statement in it is stopped.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::session::Interrupt;
 
-/// What runs: the number of its request, and what stops it. Weeks and settings are never stopped.
+/// A request that is answered.
+struct Held {
+    number: u64,
+    /// It is nothing but code: where its client has gone, nobody needs it.
+    is_code: bool,
+    interrupt: Interrupt,
+}
+
+/// What runs, and what stops it. A week is simulated to its end, but its calculations are stopped where the server is to end.
 #[derive(Clone, Default)]
-pub(super) struct Running(Arc<Mutex<Option<(u64, Interrupt)>>>);
+pub(super) struct Running(Arc<Mutex<Option<Held>>>);
 
 impl Running {
     /// From now on this request runs.
-    pub fn begin(&self, number: u64, interrupt: Option<Interrupt>) {
-        self.hold(interrupt.map(|interrupt| (number, interrupt)));
+    pub fn begin(&self, number: u64, is_code: bool, interrupt: Option<Interrupt>) {
+        self.hold(interrupt.map(|interrupt| Held { number, is_code, interrupt }));
     }
 
     /// Nothing runs any more that could be stopped.
@@ -19,7 +27,7 @@ impl Running {
         self.hold(None);
     }
 
-    /// Stops whatever runs.
+    /// Stops the script or the statement that runs.
     pub fn stop(&self) {
         self.stop_if(|_| true);
     }
@@ -29,12 +37,12 @@ impl Running {
         Watch { running: self.clone(), number, is_answered: false }
     }
 
-    fn stop_if(&self, wanted: impl Fn(u64) -> bool) {
+    fn stop_if(&self, wanted: impl Fn(&Held) -> bool) {
         let held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        held.iter().filter(|(number, _)| wanted(*number)).for_each(|(_, interrupt)| interrupt.stop());
+        held.iter().filter(|held| wanted(held)).for_each(|held| held.interrupt.stop());
     }
 
-    fn hold(&self, held: Option<(u64, Interrupt)>) {
+    fn hold(&self, held: Option<Held>) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = held;
     }
 }
@@ -56,7 +64,7 @@ impl Watch {
 impl Drop for Watch {
     fn drop(&mut self) {
         if !self.is_answered {
-            self.running.stop_if(|number| number == self.number);
+            self.running.stop_if(|held| held.is_code && held.number == self.number);
         }
     }
 }

@@ -75,7 +75,7 @@ impl ForeignTranscript {
                 answer(session, Request::of_tool(&call.tool, call.arguments.clone().into()), Via::Script);
             let accepted = said.succeeded();
             let is_not_run = || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_NOT_RUN));
-            if call.accepted == Some(true) && is_not_run() {
+            if is_not_run() {
                 played.not_run += 1;
             } else if call.accepted.is_some_and(|before| before != accepted) {
                 let told = said.body["error"].as_str().unwrap_or("it is accepted here").to_owned();

@@ -50,6 +50,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let check = thread_pool(options.jobs)?
         .install(|| check_consistency(&policies, &spec, &context.configuration, &on_played))?;
     progress.finish_and_clear();
+    if check.plays_alike {
+        return Err(Failure::usage(
+            "the two policies decide alike, which tries nothing: give two that differ",
+        ));
+    }
     options.output.show(&check.exhibit())?;
     match check.failures().count() {
         0 => Ok(()),

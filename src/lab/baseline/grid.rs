@@ -116,10 +116,17 @@ impl Grid {
         for axis in file.axis {
             let span = axis.span();
             let axis = axis.into_inner();
-            if !is_label(&axis.name) || axes.iter().any(|(name, _)| *name == axis.name) {
-                return Err(
-                    reader.at(Some(span), &format!("axes have names, each another one; a name {LABEL}"))
-                );
+            if !is_label(&axis.name)
+                || COLUMNS_OF_RUNS.contains(&axis.name.as_str())
+                || axes.iter().any(|(name, _)| *name == axis.name)
+            {
+                return Err(reader.at(
+                    Some(span),
+                    &format!(
+                        "axes have names, each another one and none of {}; a name {LABEL}",
+                        COLUMNS_OF_RUNS.join(", ")
+                    ),
+                ));
             }
             let levels = reader.levels(&axis.name, axis.level, span)?;
             axes.push((axis.name, levels));
@@ -145,9 +152,14 @@ impl Grid {
 /// What a name is.
 const LABEL: &str = "is one line of text without \" / \", which stands between the levels of a combination";
 
+/// Names that the table of all runs has besides the axes.
+const COLUMNS_OF_RUNS: [&str; 6] = ["seed", "cash", "survival", "bankrupt", "peak", "peak_day"];
+
 /// Whether a name can stand in a label of a combination, and be found there again.
 fn is_label(name: &str) -> bool {
-    !name.trim().is_empty() && !name.contains(BETWEEN_LEVELS) && !name.chars().any(char::is_control)
+    !name.trim().is_empty()
+        && !name.contains(BETWEEN_LEVELS)
+        && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
 }
 
 /// Reads the parts of a file and says where they are wrong.

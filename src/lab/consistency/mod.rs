@@ -198,6 +198,8 @@ pub struct ConsistencyCheck {
     pub policies: [String; 2],
     /// What each of them made of the luck of the first seed: so different are they.
     pub ends: [LuckEnd; 2],
+    /// The two played alike to the last state, so nothing was tried.
+    pub plays_alike: bool,
     /// One of the policies switches demand surges off, and is played with them all the same.
     pub equalises_surges: bool,
     /// The claims.
@@ -283,6 +285,7 @@ pub fn check_consistency(
     let ends = plays.first().map(|first| [first.one.end, first.other.end]).unwrap_or_default();
     Ok(ConsistencyCheck {
         policies: policies.clone().map(|policy| policy.name),
+        plays_alike: plays.iter().all(|play| play.one.state == play.other.state),
         equalises_surges: ConsistencySpec::surges(policies).is_some(),
         ends,
         claims: CLAIMS.iter().map(|claim| claim.tried(&plays)).collect(),

@@ -35,6 +35,11 @@ impl Tabulation {
     fn as_text(&self, width: usize) -> String {
         let full = Sheet::of(self, false);
         let sheet = if full.is_within(width) { full } else { Sheet::of(self, true).narrowed(width) };
+        // Where the names of the rows have no room in every panel, numbers name them.
+        let is_nameless = sheet.panels(width).len() > 1 && sheet.names(width) < sheet.telling();
+        let numbers = Column::words("number", "#");
+        let columns: Vec<Column> = std::iter::once(numbers).chain(self.columns.iter().cloned()).collect();
+        let sheet = if is_nameless { sheet.numbered(&columns) } else { sheet };
         let mut text = broken(&self.caption, width).join("\n");
         if !text.is_empty() {
             text.push('\n');
@@ -99,6 +104,19 @@ impl<'a> Sheet<'a> {
         }
         self.widths.iter_mut().for_each(|own| *own = (*own).min(width));
         self
+    }
+
+    /// With a first column that numbers the rows.
+    fn numbered<'b>(self, columns: &'b [Column]) -> Sheet<'b> {
+        let rows = self.rows;
+        let numbered = |(at, cells): (usize, Vec<String>)| {
+            let number = if at < rows { (at + 1).to_string() } else { String::new() };
+            std::iter::once(number).chain(cells).collect()
+        };
+        let cells: Vec<Vec<String>> = self.cells.into_iter().enumerate().map(numbered).collect();
+        let width = rows.to_string().len();
+        let widths = std::iter::once(width).chain(self.widths).collect();
+        Sheet { columns, cells, rows, widths }
     }
 
     /// How many leading columns of words tell all rows apart; one if none do.

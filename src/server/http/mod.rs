@@ -30,6 +30,8 @@ const MOST_CONNECTIONS: usize = 64;
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
 /// Requests in hand when the server is asked to stop have this long to arrive and be answered.
 const LAST_REQUESTS: Duration = Duration::from_secs(60);
+/// Between two looks for code that keeps a server from ending.
+const BETWEEN_STOPS: Duration = Duration::from_millis(100);
 
 /// How a run is served.
 #[derive(Debug, Clone, Default)]
@@ -158,9 +160,16 @@ async fn take_connections(
             drop(place);
         });
     }
-    owner.stop_code();
+    // Again and again: a week has several calculations, and a request that waits may hold a script.
+    let stop_code = async {
+        loop {
+            owner.stop_code();
+            tokio::time::sleep(BETWEEN_STOPS).await;
+        }
+    };
     tokio::select! {
         () = open.shutdown() => {}
+        () = stop_code => {}
         () = tokio::time::sleep(LAST_REQUESTS) => {}
         () = shutdown.asked() => {}
     }

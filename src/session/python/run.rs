@@ -115,7 +115,10 @@ fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said
             let message = format!("it did not end in {seconds} s and was stopped{}", printed(process));
             Err(Refusal::at("code", "script_timeout", message))
         }
-        ScriptEnd::Stopped => Err(Refusal::at("code", "script_timeout", "the script was cancelled")),
+        ScriptEnd::Stopped => {
+            let message = format!("the script was cancelled{}", printed(process));
+            Err(Refusal::at("code", "script_timeout", message))
+        }
     }
 }
 

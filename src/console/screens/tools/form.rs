@@ -43,6 +43,8 @@ pub struct Form {
     dropped: BTreeMap<String, String>,
     /// What the call would do, as far as is known.
     pub preview: Option<Result<Preview, Refusal>>,
+    /// The arguments that were sent last, of a tool that keeps its form.
+    sent: Option<Value>,
     /// The last answer.
     pub answer: Option<Result<Value, Refusal>>,
     /// How the tool was used before: decision day and arguments, the newest first.
@@ -63,6 +65,7 @@ impl Form {
             adding: None,
             dropped: BTreeMap::new(),
             preview: None,
+            sent: None,
             answer: None,
             earlier: earlier::calls(spec.id, company, earlier::MOST),
         }
@@ -70,7 +73,9 @@ impl Form {
 
     /// Whether it holds values that were not sent and can be: reads have none, and a lesson does without some tools.
     pub fn is_draft(&self) -> bool {
-        self.is_offered && self.spec.kind.acts() && self.sheet.is_changed()
+        let is_sent = || self.sent.is_some() && self.sheet.arguments().ok() == self.sent;
+        let can_be_sent = self.spec.kind.acts() || (self.spec.id.runs_code() && !is_sent());
+        self.is_offered && can_be_sent && self.sheet.is_changed()
     }
 
     /// Whether characters are typed.
@@ -147,6 +152,10 @@ impl Form {
     /// Asks what the call would do.
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
+        if self.spec.id.runs_code() {
+            // What was said of the code as it was.
+            self.answer = None;
+        }
         let quiet = match self.spec.kind {
             Kind::Setting | Kind::OneShot => !self.sheet.is_changed(),
             Kind::Purchase | Kind::Time => false,
@@ -171,6 +180,7 @@ impl Form {
             }
         };
         let tool = self.spec.id;
+        self.sent = tool.runs_code().then(|| arguments.clone());
         match self.spec.kind {
             Kind::Setting if !self.sheet.is_changed() => {
                 vec![Effect::Complain("nothing has changed; enter a value first".to_owned())]

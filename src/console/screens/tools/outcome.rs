@@ -124,15 +124,16 @@ pub(super) fn outcome_lines(
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
     }
-    if !dense && (form.sheet.is_changed() || !form.spec.kind.acts()) {
+    // What code said is worth more room than the code once more.
+    let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.runs_code());
+    let is_said = answer.is_some() && form.spec.id.runs_code();
+    if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.acts()) {
         paragraph(&format!("≡ {}", form.call()), Role::Dim);
     }
     if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.of(channel, group)) {
         paragraph(&words, Role::Text);
     }
-    if let Some(answer) = &form.answer
-        && !form.sheet.is_changed()
-    {
+    if let Some(answer) = answer {
         answer_lines(answer, &mut paragraph);
     }
     let spread = form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
@@ -194,6 +195,11 @@ fn answer_lines(answer: &Result<Value, crate::session::Refusal>, paragraph: &mut
     match answer {
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
+            if let (Some(said), Some(remarks)) = (value["stdout"].as_str(), value["stderr"].as_str()) {
+                // What a script says has lines of its own.
+                said.lines().for_each(|line| paragraph(line, Role::Text));
+                return remarks.lines().for_each(|line| paragraph(line, Role::Dim));
+            }
             for line in readable(value, 0) {
                 paragraph(&line, Role::Text);
             }

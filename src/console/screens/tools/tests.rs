@@ -422,6 +422,14 @@ fn code_is_written_in_lines_and_pasted_as_it_is() {
     let text = drawn(&tools, &company, 80, 21);
     assert!(text.contains("# p … 2 lines"), "{text}");
     let look = Look { company: &company, keys: &bindings, page: 10 };
+    // What it said stands below it, and goes when the code is changed.
+    let said = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
+    tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(said));
+    let text = drawn(&tools, &company, 80, 21);
+    assert!(text.contains("answered") && text.contains("first") && text.contains("second"), "{text}");
+    assert_eq!(tools.unsent(), [ToolId::PythonExec]);
+    tools.act(Action::Apply, &look);
+    assert!(tools.unsent().is_empty(), "it was sent");
     tools.act(Action::ResetForm, &look);
     tools.paste("# python\nfor day in range(2):\n    print(day)\n", &look);
     let effects = tools.act(Action::Apply, &look);

@@ -45,19 +45,25 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn as_text(opponents: &Opponents, run: &Session) -> String {
     let policy = |own: &Opponent| (own.score(), own.policy.clone(), ended_in_words(own));
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
-    let ended = match run.ended() {
-        Some(Ended::Bankruptcy) => format!("bankrupt on day {}", run.day()),
-        Some(_) => format!("alive on day {}", run.day()),
-        None => format!("at day {}, not over: its cash", run.day()),
+    let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
+    // Cash of another day is no score.
+    let not_over = match (run.score(), run.ended()) {
+        (Some(score), Some(Ended::Bankruptcy)) => {
+            places.push((score, name, format!("bankrupt on day {day}")));
+            String::new()
+        }
+        (Some(score), _) => {
+            places.push((score, name, format!("alive on day {day}")));
+            String::new()
+        }
+        (None, _) => format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.observe().cash)),
     };
-    let cash = run.observe().cash;
-    places.push((run.score().unwrap_or(cash), format!("this run, {}", run.manifest().id), ended));
     places.sort_by(|one, other| other.0.total_cmp(&one.0));
     let row =
         |(score, name, ended): &(f64, String, String)| vec![name.clone(), dollars(*score), ended.clone()];
     let rows: Vec<Vec<String>> = places.iter().map(row).collect();
     let headers = ["policy", "score", "how it ended"].map(str::to_owned);
-    format!("{}\n\n{}", opponents.in_words(), aligned(&headers, &rows))
+    format!("{}\n\n{}{not_over}", opponents.in_words(), aligned(&headers, &rows))
 }
 
 fn ended_in_words(own: &Opponent) -> String {

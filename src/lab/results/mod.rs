@@ -87,7 +87,8 @@ impl Player {
     /// Where the row comes from, in words.
     pub fn source(self) -> &'static str {
         match self {
-            Player::Participant | Player::Unnamed => "own",
+            Player::Participant => "own",
+            Player::Unnamed => "own, unnamed",
             Player::Policy => "own policy",
             Player::Idle => "reference",
             Player::PublishedAgent | Player::PublishedBaseline => "published",

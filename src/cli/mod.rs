@@ -342,11 +342,22 @@ fn take_full_files_as_errors() {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
+/// A `--code` for the tool that an agent calls: without a study there is no code of one.
+#[cfg(feature = "server")]
+fn with_code_for_tool(mut arguments: Arguments) -> Arguments {
+    let own = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
+    if let (None, Some(Command::Agent(options)), Some(code)) = (&arguments.study, &mut arguments.command, own)
+    {
+        options.take_code(code);
+    }
+    arguments
+}
+
 /// Runs a command.
 ///
 /// # Errors
 /// What went wrong, with the exit code that says so.
-pub fn run(mut arguments: Arguments) -> Result<(), Failure> {
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(command) = &arguments.command
         && arguments.play != play::Options::default()
     {
@@ -357,12 +368,7 @@ pub fn run(mut arguments: Arguments) -> Result<(), Failure> {
         )));
     }
     #[cfg(feature = "server")]
-    if let (None, Some(Command::Agent(options)), Some(code)) =
-        (&arguments.study, &mut arguments.command, &arguments.code)
-        && std::env::var("NOVAMIND_CODE").as_ref() != Ok(code)
-    {
-        options.take_code(code.clone());
-    }
+    let arguments = with_code_for_tool(arguments);
     take_full_files_as_errors();
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let mut context = Context {

@@ -215,6 +215,19 @@ fn a_program_in_python_finds_the_run_and_the_package() {
 }
 
 #[test]
+fn code_behind_the_name_of_a_tool_is_the_tools() {
+    let shell = Shell::new();
+    assert_eq!(shell.agent(&["new", "--seed", "3"]).code, 0);
+    let said = shell.agent(&["call", "python_exec", "--code", "SELECT 5 AS x"]);
+    assert!(said.code == 0 && said.out.contains("5"), "{}{}", said.out, said.err);
+    let kept = shell.agent(&["call", "register_script", "--code", "SELECT 6 AS x", "--name", "six"]);
+    assert_eq!(kept.code, 0, "{}", kept.err);
+    let rows = shell.agent(&["call", "query", "--sql", "SELECT 7 AS x"]);
+    assert!(rows.code == 0 && rows.out.contains("7"), "{}{}", rows.out, rows.err);
+    assert_eq!(shell.agent(&["stop"]).code, 0);
+}
+
+#[test]
 fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     let shell = Shell::new();
     let out = shell.home.0.path().join("batch");

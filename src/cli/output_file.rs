@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use super::Failure;
+use crate::session::folder_of;
 
 /// Bytes by which a drawing, rows, a page, a record and a file of configuration are told apart.
 const BEGINNING: u64 = 8;
@@ -96,10 +97,9 @@ fn filled(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>
 /// Whether two paths name one file, which need not be there yet.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let place = |path: &Path| {
-        path.canonicalize().ok().or_else(|| {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            Some(folder.unwrap_or(Path::new(".")).canonicalize().ok()?.join(path.file_name()?))
-        })
+        path.canonicalize()
+            .ok()
+            .or_else(|| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)))
     };
     place(one).is_some_and(|one| place(other) == Some(one))
 }

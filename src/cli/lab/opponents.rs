@@ -47,16 +47,12 @@ fn as_text(opponents: &Opponents, run: &Session) -> String {
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
     // Cash of another day is no score.
-    let not_over = match (run.score(), run.ended()) {
-        (Some(score), Some(Ended::Bankruptcy)) => {
-            places.push((score, name, format!("bankrupt on day {day}")));
+    let not_over = match run.score() {
+        Some(score) => {
+            places.push((score, name, how_it_ended(run.ended() == Some(Ended::Bankruptcy), day)));
             String::new()
         }
-        (Some(score), _) => {
-            places.push((score, name, format!("alive on day {day}")));
-            String::new()
-        }
-        (None, _) => format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.observe().cash)),
+        None => format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.observe().cash)),
     };
     places.sort_by(|one, other| other.0.total_cmp(&one.0));
     let row =
@@ -69,7 +65,11 @@ fn as_text(opponents: &Opponents, run: &Session) -> String {
 fn ended_in_words(own: &Opponent) -> String {
     match &own.stopped {
         Some(why) => format!("stopped on day {}: {why}", own.day),
-        None if own.is_bankrupt => format!("bankrupt on day {}", own.day),
-        None => format!("alive on day {}", own.day),
+        None => how_it_ended(own.is_bankrupt, own.day),
     }
+}
+
+fn how_it_ended(is_bankrupt: bool, day: u32) -> String {
+    let end = if is_bankrupt { "bankrupt" } else { "alive" };
+    format!("{end} on day {day}")
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::key::ArmKey;
 use super::result::DayWatch;
-use super::{Experiment, ResultStore, RunResult};
+use super::{Arm, Experiment, ResultStore, RunResult};
 use crate::lab::runner::{self, RunError, RunSpec};
 use crate::session::{Configuration, DayReport};
 
@@ -98,6 +98,8 @@ pub struct Prepared<'a> {
     experiment: &'a Experiment,
     /// Runs: their keys, by their numbers; those of the first arm first, each in the order of the seeds.
     keys: Vec<String>,
+    /// Cash on day 0 by arm, dollars.
+    start_cash: Vec<f64>,
     known: BTreeMap<String, RunResult>,
 }
 
@@ -112,7 +114,9 @@ impl Experiment {
         store: Option<&ResultStore>,
         fresh: bool,
     ) -> Result<Prepared<'_>, ExperimentError> {
-        let keys = self.keys(configuration)?;
+        let arms = self.arm_keys(configuration)?;
+        let keys = self.keys_of(&arms);
+        let start_cash = arms.iter().map(|arm| arm.start_cash).collect();
         let known = match store.filter(|_| !fresh) {
             None => BTreeMap::new(),
             Some(store) => {
@@ -120,7 +124,7 @@ impl Experiment {
                 store.known(&all).map_err(|error| in_store(store, error))?
             }
         };
-        Ok(Prepared { experiment: self, keys, known })
+        Ok(Prepared { experiment: self, keys, start_cash, known })
     }
 
     /// What names each of its runs, by number: everything that its result depends on.
@@ -128,15 +132,21 @@ impl Experiment {
     /// # Errors
     /// An arm has no such scenario or a wrong parameter.
     pub fn keys(&self, configuration: &Configuration) -> Result<Vec<String>, ExperimentError> {
-        let mut keys = Vec::with_capacity(self.arms.len() * self.seeds.len());
-        for arm in &self.arms {
-            let key = ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
+        Ok(self.keys_of(&self.arm_keys(configuration)?))
+    }
+
+    fn keys_of(&self, arms: &[ArmKey]) -> Vec<String> {
+        arms.iter().flat_map(|arm| self.seeds.iter().map(|seed| arm.of_seed(*seed))).collect()
+    }
+
+    fn arm_keys(&self, configuration: &Configuration) -> Result<Vec<ArmKey>, ExperimentError> {
+        let key = |arm: &Arm| {
+            ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
                 arm: arm.name.clone(),
                 error: Box::new(RunError::Start(error)),
-            })?;
-            keys.extend(self.seeds.iter().map(|seed| key.of_seed(*seed)));
-        }
-        Ok(keys)
+            })
+        };
+        self.arms.iter().map(key).collect()
     }
 }
 
@@ -222,18 +232,17 @@ impl Prepared<'_> {
     /// A run; none if it was given up.
     fn play(&self, number: usize, with: &Conduct<'_>) -> Result<Option<RunResult>, ExperimentError> {
         let seeds = &self.experiment.seeds;
-        let (arm, seed) = (&self.experiment.arms[number / seeds.len()], seeds[number % seeds.len()]);
+        let (at, seed) = (number / seeds.len(), seeds[number % seeds.len()]);
+        let arm = &self.experiment.arms[at];
         let goes_on = || !with.stop.load(Ordering::Relaxed);
         if !goes_on() {
             return Ok(None);
         }
         let spec = RunSpec { seed, save: None, projection: false, ..arm.spec.clone() };
-        let in_arm = |error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) };
-        let (_, cash, _) = arm.terms(with.configuration).map_err(|error| in_arm(RunError::Start(error)))?;
-        let mut watch = DayWatch::of(&self.experiment.wanted, cash);
+        let mut watch = DayWatch::of(&self.experiment.wanted, self.start_cash[at]);
         let mut day = |report: &DayReport<'_>| watch.day(report);
-        let session =
-            runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day).map_err(in_arm)?;
+        let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
+            .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) })?;
         let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
         Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
     }

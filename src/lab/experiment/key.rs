@@ -4,8 +4,13 @@ use super::{Arm, Wanted};
 use crate::session::{Configuration, RunError};
 use crate::world::MECHANICS;
 
-/// What the runs of an arm have in common, as a hash that a seed completes.
-pub(super) struct ArmKey(blake3::Hasher);
+/// What the runs of an arm have in common.
+pub(super) struct ArmKey {
+    /// Everything but the seed, as a hash that it completes.
+    hasher: blake3::Hasher,
+    /// Cash on day 0, dollars.
+    pub(super) start_cash: f64,
+}
 
 impl ArmKey {
     /// The key of an arm. Its name is not part of it: the same run under another name is the same run.
@@ -27,12 +32,12 @@ impl ArmKey {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part.as_bytes());
         }
-        Ok(ArmKey(hasher))
+        Ok(ArmKey { hasher, start_cash: cash })
     }
 
     /// The key of a run.
     pub(super) fn of_seed(&self, seed: u64) -> String {
-        let mut hasher = self.0.clone();
+        let mut hasher = self.hasher.clone();
         hasher.update(&seed.to_le_bytes());
         hasher.finalize().to_hex()[..32].to_owned()
     }

@@ -227,9 +227,6 @@ fn policies(
         let place = if is_file { folder.join(name).display().to_string() } else { name.clone() };
         let policy =
             Policy::find(&place, configuration).map_err(|error| source.wrong(&key, error.to_string()))?;
-        if policy.name.chars().any(char::is_control) {
-            return Err(source.wrong(&key, "the name of the policy holds letters that no table can"));
-        }
         if found.iter().any(|other| other.name == policy.name) {
             return Err(source.wrong(&key, format!("two policies are called {}", policy.name)));
         }

@@ -24,11 +24,11 @@ pub struct FormPane;
 
 impl Pane<Tools> for FormPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
-        let typing = tools.seen_form().is_some_and(Form::is_typing);
-        if tools.seen_form().is_some_and(|form| form.writing().is_some()) {
-            return vec![Scope::Editor, Scope::Form];
+        match tools.seen_form() {
+            Some(form) if form.writing().is_some() => vec![Scope::Editor, Scope::Form],
+            Some(form) if form.is_typing() => vec![Scope::Field, Scope::Form],
+            _ => vec![Scope::Form, Scope::List],
         }
-        if typing { vec![Scope::Field, Scope::Form] } else { vec![Scope::Form, Scope::List] }
     }
 
     fn takes_numbers(&self, tools: &Tools) -> bool {
@@ -36,22 +36,22 @@ impl Pane<Tools> for FormPane {
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
-        if tools.seen_form().is_some_and(|form| form.writing().is_some()) {
-            return vec![Action::Apply, Action::LeaveEditor];
+        match tools.seen_form() {
+            Some(form) if form.writing().is_some() => vec![Action::Apply, Action::LeaveEditor],
+            Some(form) if form.is_typing() => {
+                vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard]
+            }
+            _ => vec![
+                Action::EditCell,
+                Action::Apply,
+                Action::SameDown,
+                Action::ResetForm,
+                Action::CopyCall,
+                Action::SaveCalls,
+                Action::Close,
+                Action::ClearCell,
+            ],
         }
-        if tools.seen_form().is_some_and(Form::is_typing) {
-            return vec![Action::CommitDown, Action::CommitNext, Action::Apply, Action::Discard];
-        }
-        vec![
-            Action::EditCell,
-            Action::Apply,
-            Action::SameDown,
-            Action::ResetForm,
-            Action::CopyCall,
-            Action::SaveCalls,
-            Action::Close,
-            Action::ClearCell,
-        ]
     }
 
     fn figure(&self, tools: &Tools, _: &Look<'_>) -> Option<Figure> {
@@ -114,11 +114,11 @@ impl Pane<Tools> for FormPane {
     fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
         let Some(form) = tools.seen_form() else { return };
         let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
-        let Laid { head, outcome, gap } = lay_out(tools, form, inside, look);
-        let lines = form_lines(form);
         if let Some(editor) = form.writing() {
             return draw_code(editor, canvas, inside, seat.focused);
         }
+        let Laid { head, outcome, gap } = lay_out(tools, form, inside, look);
+        let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
         // In a dense form what is typed has to be seen; otherwise half of the room is for what comes of it.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };

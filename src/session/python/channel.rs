@@ -4,6 +4,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
+use std::thread::sleep;
 use std::time::Duration;
 
 use serde::Deserialize;
@@ -11,6 +12,8 @@ use serde_json::Value;
 
 /// A request may have this many bytes.
 const MOST_REQUEST: usize = 1 << 20;
+/// Time between two attempts to write to a socket that is full.
+const BETWEEN_WRITES: Duration = Duration::from_millis(2);
 
 /// What a script asks.
 #[derive(Debug, PartialEq, Eq, Deserialize)]
@@ -82,15 +85,33 @@ impl Channel {
         Some(serde_json::from_slice(&line).ok())
     }
 
-    /// Sends a line down, and waits at most this long until it is taken. After an error nothing more can be sent.
+    /// Sends a line. Asks `is_over` before each attempt to write, so a reader cannot delay the end, however slowly it reads. After
+    /// an error nothing more can be sent.
     ///
     /// # Errors
-    /// The other end is closed, or does not read.
-    pub fn say(&mut self, message: &Value, time: Duration) -> std::io::Result<()> {
-        let mut line = message.to_string();
-        line.push('\n');
-        self.socket.set_write_timeout(Some(at_least(time)))?;
-        self.socket.write_all(line.as_bytes())
+    /// The other end is closed; `TimedOut` if it was over before everything was sent.
+    pub fn say(&mut self, message: &Value, is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
+        let line = format!("{message}\n");
+        // The timeout of a blocking socket starts again with every part that was written.
+        self.socket.set_nonblocking(true)?;
+        let sent = self.send(line.as_bytes(), is_over);
+        self.socket.set_nonblocking(false)?;
+        sent
+    }
+
+    fn send(&mut self, mut bytes: &[u8], is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
+        while !bytes.is_empty() {
+            if is_over() {
+                return Err(ErrorKind::TimedOut.into());
+            }
+            match self.socket.write(bytes) {
+                Ok(count) => bytes = &bytes[count..],
+                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(BETWEEN_WRITES),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
     }
 
     /// Hangs up: whoever waits for an answer learns that none will come.
@@ -126,10 +147,42 @@ mod tests {
     }
 
     #[test]
-    fn whoever_does_not_read_or_end_a_line_is_not_waited_for() {
-        let (mut channel, other) = Channel::pair().expect("a socket");
+    fn say_ends_when_it_is_over_however_slowly_the_other_end_reads() {
         let large = Value::from("x".repeat(8 << 20));
-        assert!(channel.say(&large, Duration::from_millis(20)).is_err());
+        for read_at_once in [0, 1, 1 << 16] {
+            let (mut channel, other) = Channel::pair().expect("a socket");
+            let mut other = UnixStream::from(other);
+            let mut asked = 0;
+            let sent = channel.say(&large, &mut || {
+                asked += 1;
+                other.read_exact(&mut vec![0; if asked > 2 { read_at_once } else { 0 }]).expect("bytes");
+                asked == 50
+            });
+            assert_eq!(sent.map_err(|error| error.kind()), Err(ErrorKind::TimedOut), "{read_at_once}");
+            assert_eq!(asked, 50, "{read_at_once}");
+        }
+    }
+
+    #[test]
+    fn say_sends_everything_to_a_slow_reader_while_there_is_time() {
+        let (mut channel, other) = Channel::pair().expect("a socket");
+        let mut other = UnixStream::from(other);
+        let reader = std::thread::spawn(move || {
+            let (mut all, mut some) = (Vec::new(), vec![0; 1000]);
+            while let Ok(count @ 1..) = other.read(&mut some) {
+                all.extend_from_slice(&some[..count]);
+            }
+            all
+        });
+        let text = "x".repeat(3 << 20);
+        channel.say(&Value::from(text.as_str()), &mut || false).expect("sent");
+        drop(channel);
+        assert_eq!(reader.join().expect("it ends"), format!("\"{text}\"\n").as_bytes());
+    }
+
+    #[test]
+    fn hear_ends_at_a_line_without_end() {
+        let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
         let flood = std::thread::spawn(move || {
             let line = vec![b'x'; 1 << 16];

@@ -44,6 +44,8 @@ pub(super) struct ScriptProcess {
     pub stdout: Captured,
     pub stderr: Captured,
     deadline: Instant,
+    /// The first line that it gets: its code and its limits.
+    given: Value,
     _folder: EmptyFolder,
 }
 
@@ -55,7 +57,7 @@ impl ScriptProcess {
     pub fn start(code: &str, time: Duration) -> std::io::Result<ScriptProcess> {
         let deadline = Instant::now() + time;
         let folder = EmptyFolder::create()?;
-        let (mut channel, other) = Channel::pair()?;
+        let (channel, other) = Channel::pair()?;
         let path = std::env::var_os("PATH").unwrap_or_else(|| OsString::from("/usr/local/bin:/usr/bin:/bin"));
         let mut command = Command::new("python3");
         command.args(["-I", "-B", "-X", "utf8", "-c", BOOTSTRAP]).current_dir(folder.path());
@@ -76,9 +78,7 @@ impl ScriptProcess {
             }
         };
         let given = json!({ "code": code, "seconds": time.as_secs_f64(), "memory": MOST_MEMORY });
-        // A process that does not take its code has something to say of itself.
-        let _ = channel.say(&given, time);
-        Ok(ScriptProcess { process, channel, stdout, stderr, deadline, _folder: folder })
+        Ok(ScriptProcess { process, channel, stdout, stderr, deadline, given, _folder: folder })
     }
 
     /// Time that is left.
@@ -92,6 +92,9 @@ impl ScriptProcess {
         is_stopped: &dyn Fn() -> bool,
         answer: &mut dyn FnMut(Option<ScriptRequest>, Duration) -> Value,
     ) -> ScriptEnd {
+        // A process that does not take its code has something to say of itself.
+        let given = self.given.take();
+        let _ = self.say(&given, is_stopped);
         let mut is_heard = true;
         loop {
             if is_stopped() {
@@ -111,7 +114,7 @@ impl ScriptProcess {
             match heard {
                 Heard::Request(request) => {
                     let told = answer(request, self.left());
-                    is_heard = self.channel.say(&told, self.left()).is_ok();
+                    is_heard = self.say(&told, is_stopped).is_ok();
                 }
                 Heard::End => is_heard = false,
                 Heard::Nothing => {
@@ -121,6 +124,14 @@ impl ScriptProcess {
                 }
             }
         }
+    }
+
+    /// Sends a line until the time is over, the script is stopped or its process has ended.
+    fn say(&mut self, message: &Value, is_stopped: &dyn Fn() -> bool) -> std::io::Result<()> {
+        let Self { process, channel, deadline, .. } = self;
+        channel.say(message, &mut || {
+            is_stopped() || Instant::now() >= *deadline || !matches!(process.try_wait(), Ok(None))
+        })
     }
 
     /// A process that has ended leaves its pipes, unless it left others behind.
@@ -163,5 +174,65 @@ impl Drop for ScriptProcess {
         if matches!(self.process.try_wait(), Ok(None)) {
             let _ = self.process.kill().and_then(|()| self.process.wait());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// Finds the socket to the program and asks once.
+    const ASK: &str = r#"
+import os, stat, time
+def is_socket(number):
+    try:
+        return stat.S_ISSOCK(os.fstat(number).st_mode)
+    except OSError:
+        return False
+socket = next(number for number in range(3, 64) if is_socket(number))
+os.write(socket, b'{"ask":"vars"}\n')
+"#;
+
+    /// Serves a script that asks once, and is answered more than a socket holds.
+    fn served(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
+        let mut process = ScriptProcess::start(&format!("{ASK}{code}"), time).expect("python3");
+        let has_asked = Cell::new(false);
+        let end = process.serve(&|| stop_after_asking && has_asked.get(), &mut |_, _| {
+            has_asked.set(true);
+            Value::from("x".repeat(8 << 20))
+        });
+        assert!(has_asked.get(), "{}", process.stderr.first());
+        (end, process)
+    }
+
+    #[test]
+    fn a_reader_that_takes_a_little_at_a_time_is_ended_at_its_deadline() {
+        // Reading everything would take 8 MiB / 64 KiB * 0.2 s = 25 s.
+        let code =
+            "while True:\n    os.read(socket, 1 << 16)\n    print('x', flush=True)\n    time.sleep(0.2)";
+        let (end, process) = served(code, Duration::from_secs(3), false);
+        assert!(matches!(end, ScriptEnd::TimedOut), "{end:?}");
+        let reads = process.stdout.first().lines().count();
+        assert!(reads < 60, "it read {reads} times");
+    }
+
+    #[test]
+    fn a_script_that_never_reads_is_ended_at_its_deadline() {
+        let (end, _) = served("time.sleep(600)", Duration::from_secs(3), false);
+        assert!(matches!(end, ScriptEnd::TimedOut), "{end:?}");
+    }
+
+    #[test]
+    fn a_script_is_cancelled_while_a_write_to_it_waits() {
+        let (end, _) = served("time.sleep(600)", Duration::from_secs(600), true);
+        assert!(matches!(end, ScriptEnd::Stopped), "{end:?}");
+    }
+
+    #[test]
+    fn a_script_that_ends_while_a_write_to_it_waits_has_ended() {
+        let (end, _) = served("time.sleep(0.1)", Duration::from_secs(600), false);
+        assert!(matches!(end, ScriptEnd::Ended(status) if status.success()), "{end:?}");
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher, Hasher};
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Mutex};
 
 use rusqlite::Connection;
@@ -200,6 +200,8 @@ pub(super) struct Guard {
     views: Option<InnerViews>,
     /// What statements may name.
     scope: Scope,
+    /// Every table, view and module that there is, in lower case. Any other name is that of a common table expression.
+    existing: BTreeSet<String>,
 }
 
 impl Guard {
@@ -208,6 +210,7 @@ impl Guard {
     /// SQLite tells the authorizer from within which view a table is read, but a common table expression counts as
     /// a view there. So the insides open only to views whose names nobody can write.
     pub fn set_up(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+        let existing = existing_names(connection)?;
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
         let mut statement =
             connection.prepare("SELECT name, sql FROM main.sqlite_schema WHERE type = 'view'")?;
@@ -221,12 +224,13 @@ impl Guard {
         }
         let names = views.into_iter().map(|(name, _)| name).collect();
         let views = Some(InnerViews { secret, names });
-        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views, scope })
+        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views, scope, existing })
     }
 
     /// A guard of tables that have no inside.
-    pub fn of_ordinary_tables(scope: Scope) -> Guard {
-        Guard { objections: Objections::default(), reads: Reads::default(), views: None, scope }
+    pub fn of_ordinary_tables(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+        let existing = existing_names(connection)?;
+        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views: None, scope, existing })
     }
 
     /// The columns that statements read under this guard.
@@ -289,8 +293,12 @@ impl Guard {
             catalogue::table(&name).is_some() || FUNCTIONS.contains(&name.as_str()) || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);
         // Without a column only rows are counted: those of a common table expression, or of a view that the
-        // planner has opened up.
-        let counted = column.is_empty() && inside.is_none_or(|(_, behind_view)| *behind_view);
+        // planner has opened up. Everything else that exists and is not listed is refused.
+        let counted = column.is_empty()
+            && match inside {
+                Some((_, behind_view)) => *behind_view,
+                None => !self.existing.contains(&name),
+            };
         let engine = is_of_engine(&name);
         match (visible || from_view || (counted && !engine), engine) {
             (true, _) => None,
@@ -300,7 +308,98 @@ impl Guard {
     }
 }
 
+/// The names of all tables, views and modules of a connection, in lower case.
+fn existing_names(connection: &Connection) -> rusqlite::Result<BTreeSet<String>> {
+    let names = |sql: &str| -> rusqlite::Result<Vec<String>> {
+        connection.prepare(sql)?.query_map([], |row| row.get(0))?.collect()
+    };
+    let mut existing = names("SELECT name FROM pragma_module_list")?;
+    for schema in names("SELECT name FROM pragma_database_list")? {
+        existing.extend(names(&format!("SELECT name FROM \"{schema}\".sqlite_schema"))?);
+    }
+    Ok(existing.into_iter().map(|name| name.to_lowercase()).collect())
+}
+
+/// A time in which the program itself works on a connection and nothing is refused. It ends when this is dropped, also by a
+/// panic.
+pub(super) struct Trust<'a> {
+    trusted: &'a AtomicBool,
+    before: bool,
+}
+
+impl Trust<'_> {
+    /// Begins one.
+    pub fn begin(trusted: &AtomicBool) -> Trust<'_> {
+        Trust { trusted, before: trusted.swap(true, Ordering::Relaxed) }
+    }
+}
+
+impl Drop for Trust<'_> {
+    fn drop(&mut self) {
+        self.trusted.store(self.before, Ordering::Relaxed);
+    }
+}
+
 /// 64 bits that nobody can foretell. They only name views of one connection, never anything of a run.
 fn random_bits() -> u64 {
     RandomState::new().build_hasher().finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    #[test]
+    fn counting_the_rows_of_a_table_that_is_not_listed_is_refused() {
+        let mut connection = Connection::open_in_memory().expect("a database");
+        connection
+            .execute_batch("CREATE TABLE Added_Later (a); CREATE TABLE ledger (amount)")
+            .expect("tables");
+        let guards = [
+            Guard::set_up(&connection, Scope::Visible).expect("a guard"),
+            Guard::of_ordinary_tables(&connection, Scope::Visible).expect("a guard"),
+        ];
+        for guard in guards {
+            let objections = guard.objections();
+            let authorizer = move |context: AuthContext<'_>| guard.authorize(&context);
+            connection.authorizer(Some(authorizer)).expect("an authorizer");
+            let is_allowed = |sql: &str| connection.prepare(sql).is_ok();
+            for refused in [
+                "SELECT count(*) FROM added_later",
+                "SELECT 1 FROM main.ADDED_LATER",
+                "SELECT EXISTS (SELECT 1 FROM added_later)",
+                "SELECT count(*) FROM ledger, added_later",
+                "SELECT count(*) FROM ledger WHERE 0 < (SELECT count(*) FROM added_later)",
+                "WITH x AS (SELECT 1 FROM added_later) SELECT count(*) FROM x",
+            ] {
+                objections.clear();
+                assert!(!is_allowed(refused), "{refused}");
+                assert_eq!(objections.last(), Objection::Hidden, "{refused}");
+            }
+            for allowed in [
+                "SELECT count(*) FROM ledger",
+                "WITH x AS (SELECT 1) SELECT count(*) FROM x",
+                "WITH x AS MATERIALIZED (SELECT amount FROM ledger) SELECT count(*) FROM x",
+                "SELECT count(*) FROM (SELECT amount FROM ledger) AS x",
+                "SELECT count(*) FROM json_each('[1]')",
+            ] {
+                assert!(is_allowed(allowed), "{allowed}");
+            }
+        }
+    }
+
+    #[test]
+    fn trust_ends_with_its_work_also_by_a_panic() {
+        let trusted = AtomicBool::new(false);
+        let outer = Trust::begin(&trusted);
+        let panicked = catch_unwind(AssertUnwindSafe(|| {
+            let _inner = Trust::begin(&trusted);
+            panic!("the work fails");
+        }));
+        assert!(panicked.is_err() && trusted.load(Ordering::Relaxed), "the outer work continues");
+        drop(outer);
+        assert!(!trusted.load(Ordering::Relaxed));
+    }
 }

@@ -17,7 +17,7 @@ use super::block_table;
 use super::blocks::{BlockStore, Seen};
 use super::catalogue::Scope;
 use super::guard::{
-    Guard, InnerViews, Objection, Objections, is_hidden_table, is_inside, is_of_engine, limit,
+    Guard, InnerViews, Objection, Objections, Trust, is_hidden_table, is_inside, is_of_engine, limit,
 };
 use super::help::{explain_error, hints};
 use super::hidden;
@@ -243,10 +243,8 @@ impl QueryConnection {
     }
 
     pub(super) fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
-        self.trusted.store(true, Ordering::Relaxed);
-        let done = work(&self.connection);
-        self.trusted.store(false, Ordering::Relaxed);
-        done
+        let _trust = Trust::begin(&self.trusted);
+        work(&self.connection)
     }
 
     fn look_away(&self) -> Result<(), QueryError> {

@@ -66,7 +66,7 @@ impl Released {
         connection.execute_batch(&declarations.join(";\n"))?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
-        let guard = Guard::of_ordinary_tables(scope);
+        let guard = Guard::of_ordinary_tables(&connection, scope)?;
         let (objections, reads) = (guard.objections(), guard.reads());
         connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
             guard.authorize(&context)

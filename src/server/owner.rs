@@ -41,6 +41,9 @@ struct Asked {
 pub struct Owner {
     thread: JoinHandle<Result<(), RunError>>,
     running: Running,
+    /// Number and folder of the run.
+    run: String,
+    folder: Option<PathBuf>,
 }
 
 impl Owner {
@@ -52,9 +55,11 @@ impl Owner {
         let handle =
             Handle { sender, advancing: advancing.clone(), asked: Arc::default(), running: running.clone() };
         let (folder, model) = (session.folder().map(PathBuf::from), session.model_settings().cloned());
-        let owned = Owned { folder, model, session: Some(session), door, running: running.clone() };
+        let run = session.manifest().id.clone();
+        let owned =
+            Owned { folder: folder.clone(), model, session: Some(session), door, running: running.clone() };
         let thread = std::thread::spawn(move || owned.work(&receiver, &advancing));
-        (Owner { thread, running }, handle)
+        (Owner { thread, running, run, folder }, handle)
     }
 
     /// Stops the script, the calculation or the statement that runs: a server that is to end does not wait for it.
@@ -65,9 +70,10 @@ impl Owner {
     /// Waits until every request is answered and the run is left. All handles must be gone.
     ///
     /// # Errors
-    /// What the disk did not take; everything that was confirmed is on it.
+    /// What the disk did not take; everything that was confirmed is on it. [`RunError::Defect`] if the thread panicked.
     pub fn finish(self) -> Result<(), RunError> {
-        self.thread.join().unwrap_or(Ok(()))
+        let Owner { thread, run, folder, .. } = self;
+        thread.join().unwrap_or(Err(RunError::Defect { run, folder }))
     }
 }
 
@@ -198,4 +204,25 @@ fn internal_error(on_defect: OnDefect) -> Answer {
     );
     answer.body["request_id"] = id.into();
     answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finish_reports_a_panic_while_the_run_is_saved() {
+        let panicked = |folder: Option<&str>| {
+            let thread = std::thread::spawn(|| panic!("a defect while saving"));
+            let (run, folder) = ("0123abcd".to_owned(), folder.map(PathBuf::from));
+            let owner = Owner { thread, running: Running::default(), run, folder };
+            owner.finish().expect_err("it panicked").to_string()
+        };
+        let words = panicked(Some("runs/0123abcd"));
+        assert!(
+            words.contains("0123abcd/trajectory.jsonl") && words.contains("play --run 0123abcd"),
+            "{words}"
+        );
+        assert!(panicked(None).contains("only in memory"));
+    }
 }

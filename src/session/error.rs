@@ -102,6 +102,14 @@ pub enum RunError {
         /// The file that everything was written to, or why it could not be.
         kept: Result<PathBuf, String>,
     },
+    /// The program failed while it closed a run.
+    #[error("the program has a defect and failed while it closed run {run}. {}", safe_words(run, folder.as_deref()))]
+    Defect {
+        /// Run.
+        run: String,
+        /// Its folder; `None` in memory.
+        folder: Option<PathBuf>,
+    },
     /// The folder of a run takes no changes.
     #[error(
         "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to somebody else; \
@@ -176,6 +184,18 @@ fn kept_words(kept: &Result<PathBuf, String>) -> String {
             "It could not be written beside its place either ({problem}). Leave, and look for the file before you open the \
              run again"
         ),
+    }
+}
+
+/// What is safe after a defect, and what to do.
+fn safe_words(run: &str, folder: Option<&Path>) -> String {
+    match folder {
+        Some(folder) => format!(
+            "Everything that was confirmed is in {}. Open the run again with `novamind play --run {run}`: whatever else was not \
+             saved is rebuilt from that file",
+            folder.join("trajectory.jsonl").display()
+        ),
+        None => "It was only in memory and is gone".to_owned(),
     }
 }
 

@@ -73,9 +73,10 @@ pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario, check
 pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};
 pub use folder::derived::{manifest_of, manifest_text};
+pub use folder::durable::{folder_of, write_whole};
 pub use folder::library::{self, Library};
 pub use folder::lock::{SERVER_FILE, is_being_played};
-pub use folder::manifest::{FORMAT, Manifest, folder_of, write_whole};
+pub use folder::manifest::{FORMAT, Manifest};
 pub use folder::mode::Mode;
 pub use folder::preview::{RunPreview, run_preview};
 pub use folder::runs::{

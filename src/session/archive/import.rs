@@ -14,7 +14,8 @@ use crate::session::archive::{
     DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused,
 };
 use crate::session::error::RunError;
-use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::durable::sync_folder;
+use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
 use crate::session::folder::world_log::list_world;
 use crate::session::resume::open::check_start;
@@ -93,7 +94,7 @@ fn place_under(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Import
     let place = folder.join(own_name);
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
-    sync_folder(&folder)?;
+    sync_folder(&folder).inspect_err(|_| drop(std::fs::remove_dir_all(&place)))?;
     Ok((seal, signer, Imported::New(place)))
 }
 

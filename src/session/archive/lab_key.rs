@@ -8,6 +8,7 @@ use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
+use crate::session::folder::durable::{folder_of, sync_folder};
 
 /// First line of the file of a private key.
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
@@ -150,7 +151,8 @@ fn write_secret(file: &Path, text: &str) -> Result<(), RunError> {
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
     let written =
         options.open(file).and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
-    written.map_err(RunError::io(file))
+    written.map_err(RunError::io(file))?;
+    sync_folder(folder_of(file))
 }
 
 fn purposeful(seal: &str) -> Vec<u8> {

@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard};
 
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
+use crate::session::folder::durable::create_folder;
 
 /// A folder of its own beside what is being made. It is hidden, holds nothing that is listed as a run, and is removed
 /// when the work is done or has failed.
@@ -28,7 +29,7 @@ impl Workshop {
     /// # Errors
     /// The folder cannot be written, or the program is about to end.
     pub fn within(folder: &Path) -> Result<Workshop, RunError> {
-        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        create_folder(folder)?;
         let own = folder.join(format!(".novamind-{}", new_id()));
         let mut open = open();
         if open.closed {

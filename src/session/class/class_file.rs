@@ -10,7 +10,7 @@ use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
 use super::stamp::HandoutStamp;
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
-use crate::session::folder::manifest::write_whole;
+use crate::session::folder::durable::{create_folder, write_whole};
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::trajectory::now;
 
@@ -104,7 +104,7 @@ impl Class {
             ToHandOut::Lesson(_) => None,
             ToHandOut::Run(run) => Some(HandedPast::of(run)?),
         };
-        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        create_folder(folder)?;
         let mut class = Class {
             format: HANDOUT_FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),

@@ -11,7 +11,8 @@ use crate::session::error::RunError;
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::create::{NewRun, Storage};
 use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::{Manifest, sync_folder, write_whole};
+use crate::session::folder::durable::{create_folder, write_whole};
+use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::folder::runs::{list_runs, participant_folder};
 use crate::session::folder::world_log::list_world;
@@ -219,10 +220,9 @@ impl Handout {
     }
 
     fn begin_run(&self, past: &HandedRun, folder: &Path) -> Result<(), RunError> {
-        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        create_folder(folder)?;
         let written = write_whole(&folder.join("run.toml"), past.manifest.as_bytes())
             .and_then(|()| write_whole(&folder.join("trajectory.jsonl"), past.trajectory.as_bytes()))
-            .and_then(|()| sync_folder(folder))
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => {

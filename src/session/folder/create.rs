@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 use super::agreement::{Agreed, agreed};
 use super::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use super::consent::ConsentText;
+use super::durable::create_folder;
 use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
@@ -164,7 +165,7 @@ impl Session {
             Storage::Runs(runs) => {
                 remove_leftovers(runs);
                 let folder = runs.join(&manifest.id);
-                std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
+                create_folder(&folder)?;
                 let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
                 if let Ok(session) = &begun {
                     session.list_as("play");

@@ -13,6 +13,7 @@
 use std::path::PathBuf;
 
 use super::configuration::Configuration;
+use super::durable::{create_folder, write_whole};
 use crate::notation::nearest;
 use crate::session::error::RunError;
 
@@ -241,16 +242,13 @@ pub fn file_name(typed: &str) -> Option<String> {
 /// There is no folder for it, or it cannot be written.
 pub fn save(configuration: &Configuration, name: &str, title: &str, sql: &str) -> Result<PathBuf, RunError> {
     let folder = configuration.folder.clone().unwrap_or_default().join(FOLDER);
-    std::fs::create_dir_all(&folder).map_err(RunError::io(&folder))?;
+    create_folder(&folder)?;
     let path = folder.join(format!("{name}.sql"));
     let head = match Head::of(sql).title {
         Some(_) => String::new(),
         None => format!("-- title: {}\n", title.trim()),
     };
-    // Written aside first: what was there is whole until the new text is.
-    let aside = folder.join(format!("{name}.sql.new"));
-    std::fs::write(&aside, format!("{head}{}\n", sql.trim())).map_err(RunError::io(&aside))?;
-    std::fs::rename(&aside, &path).map_err(RunError::io(&path))?;
+    write_whole(&path, format!("{head}{}\n", sql.trim()).as_bytes())?;
     Ok(path)
 }
 

@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 use super::configuration::Configuration;
 use super::consent::Consent;
+use super::durable::write_whole;
 use super::mode::Mode;
 use crate::session::class::stamp::HandoutStamp;
 use crate::session::error::RunError;
@@ -274,36 +275,6 @@ fn differing(own: &Table, shipped: &Table) -> Table {
             (value, _) => Some((key.clone(), value.clone())),
         })
         .collect()
-}
-
-/// Writes a file so that after a crash it is the old one or the new one, never a part of it.
-///
-/// # Errors
-/// The disk refuses it; the old one stays.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
-    use std::io::Write;
-    let draft = path.with_extension("draft");
-    let written = std::fs::File::create(&draft)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| std::fs::rename(&draft, path));
-    if let Err(error) = written {
-        let _ = std::fs::remove_file(&draft);
-        return Err(RunError::io(path)(error));
-    }
-    sync_folder(folder_of(path))
-}
-
-/// The folder in which a file is: for a name alone, the one in which the program was started.
-pub fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Makes the names in a folder survive a power cut, where the system can do that.
-pub(in crate::session) fn sync_folder(folder: &Path) -> Result<(), RunError> {
-    if cfg!(unix) {
-        std::fs::File::open(folder).and_then(|folder| folder.sync_all()).map_err(RunError::io(folder))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ pub(in crate::session) mod configuration;
 pub(in crate::session) mod consent;
 pub(in crate::session) mod create;
 pub(in crate::session) mod derived;
+pub(in crate::session) mod durable;
 pub(in crate::session) mod first_line;
 pub mod library;
 pub(in crate::session) mod lock;

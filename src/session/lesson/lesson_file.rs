@@ -7,7 +7,7 @@ use super::definition::LessonPlan;
 use super::soundness::unsound;
 use crate::notation::{cents, grouped, percent, short_dollars};
 use crate::session::error::RunError;
-use crate::session::folder::manifest::write_whole;
+use crate::session::folder::durable::write_whole;
 use crate::session::lesson::definition::MeasuredFigure;
 use crate::session::lesson::measurement::NumberSource;
 use crate::session::why::FigureUnit;

@@ -8,7 +8,7 @@ use super::act::not_saved;
 use super::facts_chain::StateHash;
 use super::recorder::Recorder;
 use super::simulation::Simulation;
-use crate::database::{Entry, ForecastRow};
+use crate::database::{Entry, ForecastRow, ProjectionError};
 use crate::notation::json_number;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::{Forecasts, WeekFigures};
@@ -46,8 +46,8 @@ pub struct Week {
     pub notices: Vec<(u32, String)>,
     /// How the run ended with it, if it did.
     pub ended: Option<Ended>,
-    /// What the person should know: the disk did not take the closing line, the next day has no room for its leads, or the
-    /// language model did not speak.
+    /// What the person should know: the disk did not take the closing line, the next day has no room for its leads, the database
+    /// could not be written, or the language model did not speak.
     pub remark: Option<String>,
 }
 
@@ -173,12 +173,15 @@ impl Session {
     /// Gives up an unfinished run for good.
     ///
     /// # Errors
-    /// `run_over`, `not_saved`.
+    /// `run_over`, `not_saved`. Nothing has happened then.
     pub fn end(&mut self) -> Result<(), Refusal> {
         self.refuse_if_over(Kind::Time)?;
-        let problem = self.close_run(Ended::Abandoned);
+        let end = End { reason: Ended::Abandoned, cash: self.simulation.world.finance.cash, score: None };
+        self.append(&Record::End(end), Durability::Synced).map_err(not_saved)?;
+        self.history.ended = Some(Ended::Abandoned);
+        self.closing_line.clone_from(&self.position.line_hash);
         self.commit_projection();
-        problem.map_or(Ok(()), |problem| Err(Refusal::new("not_saved", problem)))
+        Ok(())
     }
 
     /// The day on which the week that holds the next day ends.
@@ -267,14 +270,18 @@ impl Session {
         let closing = self.closing(from, &figures, &state);
         let record = kind(closing);
         let is_week = matches!(record, Record::Week(_));
-        let mut problem = self.append_done(&record);
+        let unclosed = self.append_done(&record);
         self.simulation.facts_chain.close();
         self.closing_line.clone_from(&self.position.line_hash);
         self.settle_lesson();
-        if problem.is_none() {
+        if unclosed.is_none() {
             self.word_days_after(from);
         }
-        problem = problem.or_else(|| self.close_if_over());
+        // The run is over whether the disk takes the line of its last week or not: both lines wait for the disk.
+        let problem = match self.due_end() {
+            Some(ended) => self.close_run(ended),
+            None => unclosed,
+        };
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
@@ -288,7 +295,8 @@ impl Session {
         let unsaved = problem.map(|problem| format!("{problem}; {next}"));
         let crowded = self.simulation.refuse_crowded_day().err().filter(|_| self.history.ended.is_none());
         let remark = unsaved.or(crowded.map(|refusal| refusal.message));
-        let remarks: Vec<String> = remark.into_iter().chain(self.voice.take_notice()).collect();
+        let remarks = remark.into_iter().chain(self.database_remark()).chain(self.voice.take_notice());
+        let remarks: Vec<String> = remarks.collect();
         let week = self.report((!remarks.is_empty()).then(|| remarks.join(". ")));
         // The database is written once everything is told: until then the processors are needed here.
         if snapshot {
@@ -301,13 +309,36 @@ impl Session {
 
     /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
     pub(in crate::session) fn close_if_over(&mut self) -> Option<String> {
-        if self.simulation.world.finance.is_bankrupt(&self.simulation.params) {
-            self.close_run(Ended::Bankruptcy)
-        } else if self.simulation.world.is_over(&self.simulation.params) {
-            self.close_run(Ended::Horizon)
+        self.due_end().and_then(|ended| self.close_run(ended))
+    }
+
+    /// How the run ends now, if it is over and not closed yet.
+    fn due_end(&self) -> Option<Ended> {
+        let Simulation { world, params, .. } = &self.simulation;
+        let due = if world.finance.is_bankrupt(params) {
+            Some(Ended::Bankruptcy)
         } else {
-            None
+            world.is_over(params).then_some(Ended::Horizon)
+        };
+        due.filter(|_| self.history.ended.is_none())
+    }
+
+    /// What the player should know if world.db could not be written. The rows of the last days are written after the week was
+    /// answered, so a failure is noticed with the next week. No week follows the last one: its rows are waited for.
+    fn database_remark(&self) -> Option<String> {
+        if self.history.ended.is_some() {
+            self.commit_projection();
+            let _ = self.projection.wait();
         }
+        let ProjectionError(problem) = self.database_failure()?;
+        let recovery = match self.folder {
+            Some(_) => {
+                "The run is safe: world.db is rebuilt from its record, trajectory.jsonl. Free some disk space; the next query \
+                 then rebuilds it, and so does opening the run again"
+            }
+            None => "Queries do not see them",
+        };
+        Some(format!("The database could not be written ({problem}): it lacks the newest rows. {recovery}"))
     }
 
     pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::folder::manifest::write_whole;
+use crate::session::folder::durable::write_whole;
 use crate::session::state::Session;
 use crate::tools::ToolId;
 

@@ -8,7 +8,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use crate::session::error::RunError;
-use crate::session::folder::manifest::sync_folder;
+use crate::session::folder::durable::{folder_of, sync_folder};
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
 use crate::session::study::rules::FreeText;
@@ -118,7 +118,8 @@ fn digest(notes: &[u8]) -> String {
 fn write_draft(draft: &Path, text: &str) -> Result<(), RunError> {
     let written = File::create(draft)
         .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
-    written.map_err(RunError::io(draft))
+    written.map_err(RunError::io(draft))?;
+    sync_folder(folder_of(draft))
 }
 
 fn put_in_place(folder: &Path) -> Result<(), RunError> {

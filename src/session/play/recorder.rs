@@ -9,7 +9,7 @@ use crate::session::error::RunError;
 use crate::session::figures::attendance::Attendance;
 use crate::session::folder::first_line::start_of;
 use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::AFTERWARDS;
 use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
 use crate::session::witness::Witness;
@@ -43,7 +43,6 @@ impl Recorder {
                 let lock = lock_run(folder, &manifest.id)?;
                 manifest.write(folder)?;
                 let trajectory = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;
-                sync_folder(folder)?;
                 (trajectory, Some(lock))
             }
         };
@@ -109,7 +108,7 @@ impl Recorder {
         Ok(at)
     }
 
-    /// Appends a line about something that is done once the run is over, to a file of its own. In memory it is not kept.
+    /// Appends a line about something that is done once the run is over, to a separate file. In memory it is not kept.
     ///
     /// # Errors
     /// The disk refuses, or the file is damaged: then the line does not exist.
@@ -120,6 +119,10 @@ impl Recorder {
         durability: Durability,
     ) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(now()) };
+        if self.trajectory.has_unsynced_lines() {
+            // The line names the hash of the end, which would be another one if the last week had to be simulated again.
+            self.trajectory.sync()?;
+        }
         if self.afterwards.is_none() {
             let path = folder.join(AFTERWARDS);
             let mut afterwards = TrajectoryWriter::open_after(&path, self.trajectory.position())?;

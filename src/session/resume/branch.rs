@@ -5,6 +5,7 @@ use std::path::Path;
 use super::unnamed::{UnnamedBranch, write_branch};
 use crate::session::error::RunError;
 use crate::session::folder::create::new_id;
+use crate::session::folder::durable::create_folder;
 use crate::session::folder::manifest::{FORMAT, Manifest};
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
@@ -193,6 +194,6 @@ pub(in crate::session) fn write_past(
     manifest: &Manifest,
     lines: &[Line],
 ) -> Result<(), RunError> {
-    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    create_folder(folder)?;
     write_branch(folder, manifest, &shared_lines(lines))
 }

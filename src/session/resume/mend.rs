@@ -55,6 +55,7 @@ mod tests {
     use crate::session::Cell;
     use crate::session::folder::configuration::Configuration;
     use crate::session::folder::create::{NewRun, Storage};
+    use crate::session::play::advance::Week;
     use crate::session::trajectory::record::Via;
 
     /// Rows that tell how far the database has come.
@@ -64,9 +65,9 @@ mod tests {
         session.query(sql).expect("rows").rows
     }
 
-    fn week(session: &mut Session) {
+    fn week(session: &mut Session) -> Week {
         let forecasts = session.naive_forecasts();
-        session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+        session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week")
     }
 
     fn play(session: &mut Session, weeks: usize) {
@@ -76,13 +77,28 @@ mod tests {
         {
             session.call(tool, &arguments, Via::Form).expect("done");
         }
-        (0..weeks).for_each(|_| week(session));
+        (0..weeks).for_each(|_| drop(week(session)));
     }
 
     fn run(runs: &std::path::Path) -> Session {
         let storage = Storage::Runs(runs.to_owned());
         let new = NewRun { seed: Some(5), days: Some(60), storage, ..NewRun::default() };
         Session::create(new, &Configuration::shipped()).expect("a run")
+    }
+
+    #[test]
+    fn the_last_week_says_itself_that_the_database_could_not_be_written() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let mut session = run(runs.path());
+        while session.next_decision_day() < 60 {
+            assert_eq!(week(&mut session).remark, None);
+        }
+        session.wait_for_database().expect("written");
+        session.projection.bound_pages(Some(0));
+        let last = week(&mut session);
+        assert!(last.ended.is_some());
+        let remark = last.remark.expect("there is no room");
+        assert!(remark.contains("could not be written") && remark.contains("The run is safe"), "{remark}");
     }
 
     #[test]
@@ -98,10 +114,11 @@ mod tests {
         assert_eq!(session.database_failure().map(|own| own.to_string()), Some(problem.clone()));
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
         // There is room again: asking is enough, and the run goes on as if nothing had been.
-        week(&mut session);
+        let remark = week(&mut session).remark.expect("the week says so");
+        assert!(remark.contains("could not be written") && remark.contains("next query"), "{remark}");
         assert_eq!(rows(&mut session), rows(&mut straight));
         assert!(session.database_failure().is_none());
-        week(&mut session);
+        assert_eq!(week(&mut session).remark, None);
         week(&mut straight);
         assert_eq!(rows(&mut session), rows(&mut straight));
         let folder = session.folder().expect("a folder").to_owned();

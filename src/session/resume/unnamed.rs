@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::open::Access;
 use crate::session::error::RunError;
+use crate::session::folder::durable::{create_folder, sync_folder};
 use crate::session::folder::first_line::start_of;
 use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::{Manifest, sync_folder};
+use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::{UNNAMED, is_unnamed};
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::state::Session;
@@ -44,7 +45,7 @@ impl UnnamedBranch {
 
     fn fill(&self, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
         let folder = &self.folder;
-        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        create_folder(folder)?;
         let _lock = lock_run(folder, &manifest.id)?;
         write_branch(folder, manifest, shared)
     }
@@ -91,7 +92,7 @@ pub(super) fn write_branch(folder: &Path, manifest: &Manifest, shared: &[&Line])
     let day = shared.last().map_or(0, |line| line.day);
     let branch = Branch { from: manifest.parent.clone() };
     writer.append(day, &Record::Branch(branch), Durability::Synced)?;
-    sync_folder(folder)
+    Ok(())
 }
 
 impl Drop for UnnamedBranch {

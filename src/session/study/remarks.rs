@@ -1,12 +1,12 @@
 //! What an experimenter notes about a session: `remarks.jsonl` in the folder of runs, lines of their own.
 
-use std::io::Write;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
-use crate::session::trajectory::{append_to_regular_file, now, read_regular_text};
+use crate::session::folder::durable::append_synced;
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";
@@ -30,9 +30,7 @@ pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), Ru
     let path = runs.join(REMARKS);
     let remark = Remark { at: now(), participant: participant.to_owned(), text: text.to_owned() };
     let line = serde_json::to_string(&remark).unwrap_or_default() + "\n";
-    let written = append_to_regular_file(&path)
-        .and_then(|mut file| file.write_all(line.as_bytes()).and_then(|()| file.sync_all()));
-    written.map_err(RunError::io(&path))
+    append_synced(&path, line.as_bytes())
 }
 
 /// The remarks of a folder of runs; lines that cannot be read are left out.

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::session::error::RunError;
+use crate::session::folder::durable::{create_folder, write_whole};
 use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
@@ -42,9 +43,8 @@ impl Tombstone {
     /// # Errors
     /// The folder cannot be written.
     pub(in crate::session) fn write(&self, folder: &Path) -> Result<(), RunError> {
-        let path = folder.join(FILE);
-        std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-        std::fs::write(&path, toml::to_string(self).unwrap_or_default()).map_err(RunError::io(&path))
+        create_folder(folder)?;
+        write_whole(&folder.join(FILE), toml::to_string(self).unwrap_or_default().as_bytes())
     }
 
     /// The runs that were erased.

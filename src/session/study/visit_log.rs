@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
+use crate::session::folder::durable::{append_synced, create_folder};
 use crate::session::play::machine::Machine;
-use crate::session::trajectory::{append_to_regular_file, now, read_regular_text};
+use crate::session::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const VISITS: &str = "visits.jsonl";
@@ -68,10 +68,11 @@ impl VisitLog {
         let line =
             VisitLine { at: now(), machine: Machine::here().id, study: self.study.clone(), label, event };
         let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
-        let folder = self.path.parent().map_or(Ok(()), std::fs::create_dir_all);
-        let _ = folder
-            .and_then(|()| append_to_regular_file(&self.path))
-            .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
+        let _ = self
+            .path
+            .parent()
+            .map_or(Ok(()), create_folder)
+            .and_then(|()| append_synced(&self.path, text.as_bytes()));
     }
 
     /// Whether something happened to a participant of this study.

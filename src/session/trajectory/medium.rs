@@ -4,16 +4,17 @@ use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// Where lines end up: a file, or in tests one that forgets what was not synced.
+/// Where lines end up: a file, or in tests one with a page cache that can fail.
 pub(in crate::session) trait Medium: Send {
     /// Appends bytes.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Makes everything appended survive a power cut.
+    /// Makes everything appended survive a power cut. After an error, whatever was appended since the last successful sync
+    /// may be lost, and a later success proves nothing about it: the kernel may have marked the pages clean.
     fn sync(&self) -> io::Result<()>;
     /// Forgets everything after so many bytes.
     fn cut(&mut self, length: u64) -> io::Result<()>;
-    /// Whether it is still the one that stands at a path, as long as it was left.
-    fn is_ours(&self, path: &Path, length: u64) -> bool;
+    /// Whether it is still the file at a path, with the length at which it was left, if that is known.
+    fn is_ours(&self, path: &Path, length: Option<u64>) -> bool;
     /// What its first bytes are, wherever it has gone.
     fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>>;
 }
@@ -46,9 +47,11 @@ impl Medium for NamedFile {
         self.file.seek(SeekFrom::Start(length)).map(|_| ())
     }
 
-    fn is_ours(&self, path: &Path, length: u64) -> bool {
+    fn is_ours(&self, path: &Path, length: Option<u64>) -> bool {
         let (Ok(own), Ok(there)) = (self.file.metadata(), std::fs::metadata(path)) else { return false };
-        own.len() == length && is_same(&own, &there) && names_of(&own) == self.names
+        length.is_none_or(|length| own.len() == length)
+            && is_same(&own, &there)
+            && names_of(&own) == self.names
     }
 
     fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>> {

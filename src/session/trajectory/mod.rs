@@ -5,11 +5,16 @@
 //! confirmed and is dropped.
 
 mod clock;
+#[cfg(test)]
+mod failed_sync_tests;
 mod line;
 mod medium;
+#[cfg(test)]
+mod page_cache;
 mod policy;
 pub mod record;
 mod regular_file;
+mod synced_file;
 mod time;
 mod writer;
 
@@ -20,6 +25,8 @@ pub use line::Line;
 pub(super) use line::hash_of_first_line;
 #[cfg(test)]
 pub(super) use medium::Medium;
+#[cfg(test)]
+pub(super) use page_cache::PageCache;
 pub use policy::{policy_of, policy_rationale};
 pub use record::Record;
 pub(super) use regular_file::{
@@ -267,6 +274,15 @@ mod tests {
             aside,
             "one file"
         );
+        // A copy that cannot be replaced by a whole one is kept.
+        let draft = aside.with_extension("draft");
+        std::fs::create_dir(&draft).expect("in the way");
+        let error = writer.append_done(9, &memo()).expect_err("there is no file");
+        let RunError::Astray { kept: Err(problem), .. } = error else { panic!("{error}") };
+        assert!(problem.contains("holds an earlier copy"), "{problem}");
+        assert_eq!(std::fs::read(&aside).expect("a copy"), saved);
+        std::fs::remove_dir(&draft).expect("removed");
+        kept(writer.append_done(9, &memo()).expect_err("there is no file"));
         // With the name of the trajectory it is one.
         std::fs::rename(&aside, &path).expect("renamed");
         let read = Trajectory::read(&path).expect("a whole chain");

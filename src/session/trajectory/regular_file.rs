@@ -26,6 +26,17 @@ pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
     File::options().create(true).read(true).append(true).open(path)
 }
 
+/// Opens a regular file for reading and writing.
+///
+/// # Errors
+/// There is no such file, it is something else, or it cannot be opened.
+pub(super) fn write_to_regular_file(path: &Path) -> io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(no_regular_file());
+    }
+    File::options().read(true).write(true).open(path)
+}
+
 fn no_regular_file() -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, "this is no regular file")
 }

@@ -1,7 +1,8 @@
 //! Appending lines, and when they are on the disk.
 
+use std::cell::RefCell;
 use std::fs::File;
-use std::io::Write;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -10,9 +11,12 @@ use serde_json::{Map, Value};
 use super::line::{Line, line_hash, with_sum};
 use super::medium::{Medium, NamedFile};
 use super::record::Record;
+use super::regular_file::{read_regular_file, write_to_regular_file};
+use super::synced_file::SyncedFile;
 use super::time::now;
 use crate::database::Position;
 use crate::session::error::RunError;
+use crate::session::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
 use crate::session::trajectory::Trajectory;
 use crate::session::witness::Witness;
 
@@ -28,10 +32,8 @@ pub enum Durability {
 /// Appends lines.
 pub struct TrajectoryWriter {
     /// The file; none for a run in memory.
-    medium: Option<Box<dyn Medium>>,
+    file: Option<RefCell<SyncedFile>>,
     path: PathBuf,
-    /// Bytes of the file that are good.
-    length: u64,
     /// Lines that could not be written yet, in order, and must come first.
     backlog: Vec<u8>,
     next_seq: u64,
@@ -52,9 +54,8 @@ impl TrajectoryWriter {
     /// A trajectory in memory: only numbers and hashes are kept.
     pub fn in_memory() -> TrajectoryWriter {
         TrajectoryWriter {
-            medium: None,
+            file: None,
             path: PathBuf::new(),
-            length: 0,
             backlog: Vec::new(),
             next_seq: 0,
             last_hash: line_hash(b""),
@@ -66,15 +67,16 @@ impl TrajectoryWriter {
         }
     }
 
-    /// A new file.
+    /// A new file, whose name survives a power cut.
     ///
     /// # Errors
-    /// It exists already, or cannot be made.
+    /// It exists already, or cannot be made. A file whose folder could not be synced is removed again.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).read(true).append(true).open(path);
         let file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
-        let medium: Box<dyn Medium> = Box::new(file);
-        Ok(TrajectoryWriter { medium: Some(medium), path: path.to_owned(), ..TrajectoryWriter::in_memory() })
+        sync_folder(folder_of(path)).inspect_err(|_| drop(std::fs::remove_file(path)))?;
+        let file = Some(RefCell::new(SyncedFile::new(Box::new(file), 0)));
+        Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
 
     /// A new file, or one that is there, whose lines go on from the last of another file.
@@ -82,9 +84,9 @@ impl TrajectoryWriter {
     /// # Errors
     /// It cannot be read or made, or is damaged.
     pub fn open_after(path: &Path, last: Position) -> Result<TrajectoryWriter, RunError> {
-        match std::fs::read(path) {
+        match read_regular_file(path) {
             Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::of_file_after(path, last, &bytes)?),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let (next_seq, last_hash) = (last.seq + 1, last.line_hash);
                 Ok(TrajectoryWriter { next_seq, last_hash, ..TrajectoryWriter::create(path)? })
             }
@@ -92,18 +94,17 @@ impl TrajectoryWriter {
         }
     }
 
-    /// Goes on with a file that was read; bytes after the good ones are cut off.
+    /// Continues a file that was read; bytes after the good ones are cut off. The file is synced: a program that was killed may
+    /// have left lines that are not on the disk.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written or synced.
     pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
-        let file = File::options().read(true).write(true).open(path);
-        let mut file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
-        file.cut(read.length).map_err(RunError::io(path))?;
+        let mut file = write_to_regular_file(path).and_then(NamedFile::of).map_err(RunError::io(path))?;
+        file.cut(read.length).and_then(|()| file.sync()).map_err(RunError::io(path))?;
         Ok(TrajectoryWriter {
-            medium: Some(Box::new(file)),
+            file: Some(RefCell::new(SyncedFile::new(Box::new(file), read.length))),
             path: path.to_owned(),
-            length: read.length,
             next_seq: read.next_seq(),
             last_hash: read.last_hash(),
             last_at: read.lines.last().map(|line| line.at.clone()).unwrap_or_default(),
@@ -194,16 +195,20 @@ impl TrajectoryWriter {
         error
     }
 
+    /// Writes a copy of everything that was confirmed. A copy that was written before is replaced only by a whole one.
     fn write_aside(&mut self, aside: &Path) -> Result<(), String> {
-        let Some(medium) = &mut self.medium else { return Ok(()) };
-        let written = medium.beginning(self.length).and_then(|mut bytes| {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let accepted = file.get_mut().accepted().map_err(RunError::io(&self.path));
+        let written = accepted.and_then(|mut bytes| {
             bytes.extend_from_slice(&self.backlog);
             // The whole folder may be gone.
-            aside.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-            let mut file = File::create(aside)?;
-            file.write_all(&bytes).and_then(|()| file.sync_all())
+            create_folder(folder_of(aside))?;
+            write_whole(aside, &bytes)
         });
-        written.map_err(|error| format!("{}: {error}", aside.display()))
+        written.map_err(|error| match aside.exists() {
+            true => format!("{error}; {} holds an earlier copy", aside.display()),
+            false => error.to_string(),
+        })
     }
 
     /// Why nothing is saved any more, from the moment on at which that was noticed.
@@ -247,30 +252,18 @@ impl TrajectoryWriter {
     }
 
     fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
-        let Some(medium) = &mut self.medium else { return Ok(()) };
-        if !medium.is_ours(&self.path, self.length) {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let file = file.get_mut();
+        if !file.is_ours(&self.path) {
             // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
             return Err(RunError::Astray { path: self.path.clone(), kept: Err(String::new()) });
         }
-        let mut all = self.backlog.clone();
-        all.extend_from_slice(bytes);
-        let written = medium.append(&all).and_then(|()| match durability {
-            Durability::Synced => medium.sync(),
-            Durability::Written => Ok(()),
-        });
-        match written {
-            Ok(()) => {
-                self.length += all.len() as u64;
-                self.backlog.clear();
-                self.loss = None;
-                Ok(())
-            }
-            Err(error) => {
-                // Whatever got through is no line yet; the file ends where it ended.
-                let _ = medium.cut(self.length);
-                Err(RunError::Io { path: self.path.clone(), error })
-            }
-        }
+        // Lines that waited are about what cannot be taken back.
+        let durability = if self.backlog.is_empty() { durability } else { Durability::Synced };
+        file.append(&[&self.backlog, bytes].concat(), durability).map_err(RunError::io(&self.path))?;
+        self.backlog.clear();
+        self.loss = None;
+        Ok(())
     }
 
     /// Puts the lines that were written on the disk, whatever still waits in memory.
@@ -278,19 +271,25 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses.
     pub fn sync_written(&self) -> Result<(), RunError> {
-        self.medium.as_ref().map_or(Ok(()), |medium| medium.sync()).map_err(RunError::io(&self.path))
+        let synced = self.file.as_ref().map_or(Ok(()), |file| file.borrow_mut().sync());
+        synced.map_err(RunError::io(&self.path))
+    }
+
+    /// Whether a line that was accepted is not on the disk yet.
+    pub fn has_unsynced_lines(&self) -> bool {
+        self.file.as_ref().is_some_and(|file| file.borrow().has_unsynced() || !self.backlog.is_empty())
     }
 
     /// Whether the file still stands where it is looked for, and no line waits for it.
     pub fn is_complete(&self) -> bool {
-        let is_ours = self.medium.as_ref().is_none_or(|medium| medium.is_ours(&self.path, self.length));
-        is_ours && self.backlog.is_empty()
+        let is_whole = |file: &SyncedFile| file.is_ours(&self.path) && file.is_intact();
+        self.backlog.is_empty() && self.file.as_ref().is_none_or(|file| is_whole(&file.borrow()))
     }
 
     /// Puts another medium in place of the file.
     #[cfg(test)]
     pub(in crate::session) fn write_to(&mut self, medium: Box<dyn Medium>) {
-        self.medium = Some(medium);
+        self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
     }
 
     /// Puts everything on the disk.

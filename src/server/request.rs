@@ -132,7 +132,7 @@ impl Answer {
 
     /// A refusal; programs written for the released simulator read `error` and `data`.
     pub fn refused(status: Status, refusal: &Refusal) -> Answer {
-        let mut body = json!({ "success": false, "error": refusal.message, "code": refusal.code });
+        let mut body = json!({ "success": false, "error": refusal.error(), "code": refusal.code });
         body["field"] = json!(refusal.field);
         if !refusal.results.is_empty() {
             body["results"] = json!(refusal.results);

@@ -195,8 +195,10 @@ fn insights_with(
         values
     };
     let (network, reputation) = (law.network_display_min, law.reputation_display_min);
-    let referrals_to = links(&mut estimate, Field::ReferralTo, network, &|other| params.referral_rate(group, other));
-    let referrals_from = links(&mut estimate, Field::ReferralFrom, network, &|other| params.referral_rate(other, group));
+    let referrals_to =
+        links(&mut estimate, Field::ReferralTo, network, &|other| params.referral_rate(group, other));
+    let referrals_from =
+        links(&mut estimate, Field::ReferralFrom, network, &|other| params.referral_rate(other, group));
     if params.referral_rate(group, group) > 0.0 {
         estimate(Field::ReferralToItself, 0.0);
     }
@@ -357,7 +359,10 @@ mod tests {
             (estimates(id, 1, 0).willingness_to_pay / truth - 1.0) / params.level(1).noise
         };
         assert!((pay("S1") + 0.742).abs() < 5e-4, "{}", pay("S1"));
-        assert!((pay("D_S01") - pay("D_S09")).abs() < 5e-4, "groups with the same four letters share their errors");
+        assert!(
+            (pay("D_S01") - pay("D_S09")).abs() < 5e-4,
+            "groups with the same four letters share their errors"
+        );
         assert!((pay("D_S01") - pay("D_S10")).abs() > 0.1);
     }
 

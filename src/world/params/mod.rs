@@ -199,8 +199,7 @@ impl Params {
     /// The digest without those added keys for which `is_left_out` returns true, given their value and the JSON of their
     /// earlier behaviour.
     fn digest_without(&self, is_left_out: impl Fn(&serde_json::Value, &str) -> bool) -> String {
-        let mut tables =
-            serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
+        let mut tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
         for (table, key, earlier) in ADDED_KEYS {
             let table = tables.get_mut(table).and_then(serde_json::Value::as_object_mut);
             if let Some(table) = table
@@ -229,7 +228,11 @@ mod tests {
         assert_eq!(release.earlier_digest(), shipped.digest());
         let tables = serde_json::to_value(&shipped).expect("tables");
         for (table, key, earlier) in ADDED_KEYS {
-            assert_eq!(tables[table][key].to_string(), earlier, "{table}.{key}: the default is the earlier behaviour");
+            assert_eq!(
+                tables[table][key].to_string(),
+                earlier,
+                "{table}.{key}: the default is the earlier behaviour"
+            );
         }
     }
 }

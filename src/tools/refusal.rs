@@ -33,23 +33,6 @@ impl Refusal {
     }
 }
 
-impl Refusal {
-    /// The message for programs: if several deals are all refused, one line for each, as in the release.
-    pub fn error(&self) -> String {
-        let line = |result: &DealResult| match result {
-            DealResult::Failed { customer_id: Some(customer), error } => {
-                Some(format!("customer {customer}: {error}"))
-            }
-            DealResult::Failed { customer_id: None, error } => Some(format!("no customer: {error}")),
-            DealResult::Done { .. } => None,
-        };
-        match self.results.as_slice() {
-            [] | [_] => self.message.clone(),
-            several => several.iter().filter_map(line).collect::<Vec<_>>().join("\n"),
-        }
-    }
-}
-
 impl fmt::Display for Refusal {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.field {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::doors::{NEW, Server};
+use crate::doors::{NEW, Server, predictions};
 use crate::support::home::Home;
 
 /// A company with subscribers and companies.
@@ -274,7 +274,7 @@ const DONE_BY_AGENTS: [Example; 1] = [("Agents run Python in", |stage| {
     stage.manual_says("python_exec", &["#", "Python"]);
 })];
 
-const ARGUMENTS_AND_ANSWERS: [Example; 12] = [
+const ARGUMENTS_AND_ANSWERS: [Example; 14] = [
     ("ignores unknown arguments", |stage| {
         let args = json!({ "A": 1, "B": 1, "C": 1, "D": 1 });
         stage.refuses("set_usage_quotas", args, "unknown_argument");
@@ -286,6 +286,17 @@ const ARGUMENTS_AND_ANSWERS: [Example; 12] = [
     ("answers a value of the wrong kind", |stage| {
         let (status, answer) = stage.server.post("/call", &json!({"tool": "set_prices", "args": {"A": "x"}}));
         assert_eq!((status, &answer["code"], &answer["field"]), (200, &json!("wrong_type"), &json!("A")));
+    }),
+    ("takes *set_capacity_tier* without a tier", |stage| {
+        stage.refuses("set_capacity_tier", json!({}), "argument_missing");
+    }),
+    ("takes texts and truth values as forecasts", |stage| {
+        for point in [json!("1000000"), json!(true)] {
+            let mut week = json!({ "rationale": "on", "predictions": predictions() });
+            week["predictions"]["cash_1wk"]["point"] = point;
+            let (status, answer) = stage.server.post("/next-week", &week);
+            assert_eq!((status, &answer["code"]), (400, &json!("prediction_not_number")), "{answer}");
+        }
     }),
     ("takes amounts of any size", |stage| {
         stage.refuses("set_prices", json!({ "A": 1e10 }), "amount_too_large");
@@ -342,7 +353,7 @@ const TIME: [Example; 2] = [
     }),
 ];
 
-const QUERIES: [Example; 8] = [
+const QUERIES: [Example; 9] = [
     ("drops hidden columns", |stage| {
         for sql in ["SELECT c_max AS x FROM customers", "SELECT AVG(c_max) FROM customers"] {
             assert_eq!(stage.query(sql)["code"], "sql_error", "{sql}");
@@ -350,6 +361,13 @@ const QUERIES: [Example; 8] = [
     }),
     ("refuses a statement that has the name", |stage| {
         assert_eq!(stage.query("SELECT 'events' AS x")["rows"], json!([{ "x": "events" }]));
+        assert_eq!(stage.query("SELECT 'pragma' AS x")["rows"], json!([{ "x": "pragma" }]));
+    }),
+    ("runs statements that write", |stage| {
+        let with = "WITH x AS (SELECT 1) DELETE FROM predictions";
+        for sql in ["REPLACE INTO predictions (submit_day) VALUES (1)", with, "ATTACH 'x.db' AS x"] {
+            assert_eq!(stage.query(sql)["code"], "sql_write", "{sql}");
+        }
     }),
     ("shows seven tables", |stage| {
         let tables = [

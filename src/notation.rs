@@ -63,6 +63,16 @@ pub fn cents(value: f64) -> String {
     signed(value, 2)
 }
 
+/// A price with the decimals it has: `$12`, `$22.50`, `$0.125`.
+pub fn price(value: f64) -> String {
+    let has_only_cents = (value * 100.0).round() / 100.0 == value;
+    match value.fract() == 0.0 {
+        true => dollars(value),
+        false if has_only_cents => cents(value),
+        false => format!("${value}"),
+    }
+}
+
 /// Money with its sign before the dollar; what rounds to nothing has none.
 fn signed(value: f64, decimals: usize) -> String {
     let text = grouped(value.abs(), decimals);
@@ -295,6 +305,7 @@ mod tests {
             [dollars(-2095.0), dollars(-0.4), cents(-0.5), cents(-0.001)],
             ["-$2,095", "$0", "-$0.50", "$0.00"]
         );
+        assert_eq!([12.0, 22.5, 0.4, 0.125].map(price), ["$12", "$22.50", "$0.40", "$0.125"]);
         assert_eq!(percent(0.12345, 1), "12.3%");
         assert_eq!(percent(0.012345, 2), "1.23%");
         assert_eq!(percent(0.00474, 2), "0.47%");

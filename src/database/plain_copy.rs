@@ -85,10 +85,20 @@ fn copy(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Resul
     copy_inbox(&transaction, &store.inbox)?;
     copy_ledger(&transaction, store)?;
     copy_issues(&transaction, store)?;
+    type_prices(&transaction)?;
     transaction.execute_batch(INDEXES)?;
     transaction.commit()?;
     copy.execute_batch("VACUUM")?;
     copy.pragma_update(None, "journal_mode", "DELETE")
+}
+
+/// Gives `subscriptions.effective_price` its type in the view. SQLite before 3.52 returns a whole number of a generated
+/// column as an integer where it sorts whole rows.
+fn type_prices(transaction: &Transaction<'_>) -> rusqlite::Result<()> {
+    let of_view = "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'subscriptions'";
+    let view: String = transaction.query_row(of_view, [], |row| row.get(0))?;
+    let typed = view.replace("    effective_price,", "    CAST(effective_price AS REAL) AS effective_price,");
+    transaction.execute_batch(&format!("DROP VIEW subscriptions;\n{typed}"))
 }
 
 fn copy_usage(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {

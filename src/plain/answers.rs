@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::database::text::aligned;
+use crate::notation::plain_numbers;
 use crate::session::Refusal;
 
 /// The answer to a line.
@@ -46,7 +47,7 @@ impl Answer {
     /// An accepted tool call: its name and the fields of its data, or those that people are shown in place of them.
     pub fn call_shown(command: &str, data: Value, shown: Option<Value>) -> Answer {
         let mut text = format!("ok {command}\n");
-        match shown.as_ref().unwrap_or(&data) {
+        match plain_numbers(shown.unwrap_or_else(|| data.clone())) {
             Value::Object(fields) => fields.iter().for_each(|(name, value)| text += &field(name, value)),
             Value::Null => {}
             other => text += &format!("  {other}\n"),

@@ -9,6 +9,10 @@ use crate::tools::{Kept, ToolId};
 /// Tools whose arguments older programs send as null where they mean to leave them out.
 const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
+/// Tools whose arguments are the map of budgets itself, so that a call without arguments clears it, as in the release.
+const NOTHING_CLEARS: [ToolId; 3] =
+    [ToolId::SetTargetedAdSpend, ToolId::SetTargetedOpsSpend, ToolId::SetTargetedDevSpend];
+
 /// Answers a request. What is asked comes in through `via`.
 pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
     match request {
@@ -35,6 +39,9 @@ fn call(session: &mut Session, tool: &str, mut args: Value, via: Via) -> Answer 
         && NULLS_ARE_LEFT_OUT.iter().any(|id| id.name() == tool)
     {
         fields.retain(|_, value| !value.is_null());
+    }
+    if args.as_object().is_some_and(Map::is_empty) && NOTHING_CLEARS.iter().any(|id| id.name() == tool) {
+        args = json!({ "targeted_spend": {} });
     }
     match session.call(tool, &args, via) {
         Ok(answer) => Answer::data(answer.to_json()),
@@ -85,7 +92,7 @@ fn game_status(session: &Session) -> Answer {
     Answer::plain(json!({
         "day": seen.day,
         "cash": seen.cash,
-        "subscribers": seen.subscribers,
+        "subscribers": seen.active_subscriptions(),
         "timed_out": false,
         "total_days": seen.last_day,
         "ended": session.ended(),

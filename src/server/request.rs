@@ -78,6 +78,19 @@ impl Request {
     }
 }
 
+/// The text of an error: if several deals are all refused, one line for each, as in the release.
+fn error_text(message: &str, results: &Value) -> String {
+    let line = |result: &Value| {
+        let who = result["customer_id"].as_i64().map(|customer| format!("customer {customer}"));
+        let error = result["error"].as_str().unwrap_or_default();
+        format!("{}: {error}", who.as_deref().unwrap_or("no customer"))
+    };
+    match results.as_array().map(Vec::as_slice) {
+        Some(several @ [_, _, ..]) => several.iter().map(line).collect::<Vec<String>>().join("\n"),
+        _ => message.to_owned(),
+    }
+}
+
 /// Whether a request was answered, and how not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
@@ -132,7 +145,8 @@ impl Answer {
 
     /// A refusal; programs written for the released simulator read `error` and `data`.
     pub fn refused(status: Status, refusal: &Refusal) -> Answer {
-        let mut body = json!({ "success": false, "error": refusal.message, "code": refusal.code });
+        let error = error_text(&refusal.message, &json!(refusal.results));
+        let mut body = json!({ "success": false, "error": error, "code": refusal.code });
         body["field"] = json!(refusal.field);
         if !refusal.results.is_empty() {
             body["results"] = json!(refusal.results);

@@ -147,6 +147,20 @@ impl Sent {
         let written = value.as_number()?.clone();
         Some(Sent { value: written.as_f64()?, written })
     }
+
+    /// A number that is in force: written with a decimal point.
+    pub fn stored(value: f64) -> Sent {
+        Sent { value, written: Number::from_f64(value).unwrap_or_else(|| 0.into()) }
+    }
+
+    /// The sum of `parts`: without a decimal point if none of them has one, as in the release.
+    pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a Sent>) -> Sent {
+        const EXACT: f64 = 9e15;
+        match parts.all(|part| !part.written.is_f64()) && value.abs() < EXACT {
+            true => Sent { value, written: Number::from(value as i64) },
+            false => Sent::stored(value),
+        }
+    }
 }
 
 impl Serialize for Sent {
@@ -223,25 +237,32 @@ pub fn customer(key: &str, field: &str) -> Result<i64, Refusal> {
     })
 }
 
-/// A map from keys to amounts; keys and amounts are checked entry by entry.
+/// A map from keys to amounts.
 fn amounts<K: std::hash::Hash + Eq>(
     value: &Value,
     field: &str,
     amount: Amount,
     key: impl Fn(&str, &str) -> Result<K, Refusal>,
 ) -> Result<IndexMap<K, Sent>, Refusal> {
-    entries(value, field, |name, value, field| Ok((key(name, field)?, amount.read(value, field)?)))
+    entries(value, field, key, |value, field| amount.read(value, field))
 }
 
-/// A map whose entries are read one by one: name, value and path of each.
+/// A map: all its keys are read before its values.
 fn entries<K: std::hash::Hash + Eq, V>(
     value: &Value,
     field: &str,
-    entry: impl Fn(&str, &Value, &str) -> Result<(K, V), Refusal>,
+    key: impl Fn(&str, &str) -> Result<K, Refusal>,
+    read: impl Fn(&Value, &str) -> Result<V, Refusal>,
 ) -> Result<IndexMap<K, V>, Refusal> {
-    let object =
-        value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))?;
-    object.iter().map(|(name, value)| entry(name, value, &format!("{field}.{name}"))).collect()
+    let object = as_map(value, field)?;
+    let path = |name: &String| format!("{field}.{name}");
+    let keys: Vec<K> = object.keys().map(|name| key(name, &path(name))).collect::<Result<_, Refusal>>()?;
+    let values = object.iter().map(|(name, value)| read(value, &path(name)));
+    keys.into_iter().zip(values).map(|(key, value)| Ok((key, value?))).collect()
+}
+
+fn as_map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Refusal> {
+    value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))
 }
 
 /// The numbers of a map, without the way they were written.
@@ -266,9 +287,7 @@ pub fn sent_per_channel_group(
     amount: Amount,
     view: &View<'_>,
 ) -> Result<IndexMap<Channel, IndexMap<Group, Sent>>, Refusal> {
-    entries(value, field, |name, value, field| {
-        Ok((channel(name, field)?, sent_per_group(value, field, amount, view)?))
-    })
+    entries(value, field, channel, |value, field| sent_per_group(value, field, amount, view))
 }
 
 /// A map of groups.
@@ -286,9 +305,13 @@ pub fn per_channel(value: &Value, field: &str, amount: Amount) -> Result<IndexMa
     amounts(value, field, amount, channel).map(values)
 }
 
-/// A map of customers.
+/// A map of customers. In the release, this map alone is read entry by entry.
 pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCustomer, Refusal> {
-    amounts(value, field, amount, customer).map(values)
+    let entry = |(name, value): (&String, &Value)| {
+        let path = format!("{field}.{name}");
+        Ok((customer(name, &path)?, amount.read(value, &path)?.value))
+    };
+    as_map(value, field)?.iter().map(entry).collect()
 }
 
 /// A map of groups to maps of plans.
@@ -298,9 +321,8 @@ pub fn per_group_plan(
     amount: Amount,
     view: &View<'_>,
 ) -> Result<IndexMap<Group, PerPlan>, Refusal> {
-    entries(value, field, |name, value, field| {
-        Ok((known_group(name, field, view)?, per_plan(value, field, amount)?))
-    })
+    let group = |name: &str, field: &str| known_group(name, field, view);
+    entries(value, field, group, |value, field| per_plan(value, field, amount))
 }
 
 /// A map of channels to maps of groups.

@@ -50,12 +50,11 @@ pub use market::{
 };
 pub use notebook::{Kept, Notebook, NotebookChange};
 pub use numbers::Numbers;
-pub use plain::Plain;
 pub use planned::{Planned, Reply, Script, ScriptOutput};
 pub use refusal::Refusal;
 pub use research::{ListResearchProjects, ResearchProjects, ResearchTierFacts};
 pub use scripts::{Language, hint_at_python};
-pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, Range, Spec, When};
+pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, REMARK, Range, Spec, When};
 pub use surroundings::{ColumnDocument, Surroundings, TableDocument};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
 pub use view::{PublicPost, View};

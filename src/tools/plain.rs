@@ -1,16 +1,11 @@
-//! Numbers as answers write them: whole ones without a decimal point.
+//! Values of settings as forms and lines show them: whole numbers without a decimal point.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 use crate::notation::plain_numbers;
 
-/// Data whose numbers are written plainly.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[serde(transparent)]
-pub struct Plain<T: Serialize>(#[serde(serialize_with = "plain")] pub T);
-
-/// Writes a field plainly.
+/// Writes a field without a decimal point if its number is whole, where the release returns an integer.
 ///
 /// # Errors
 /// Those of the serialiser.
@@ -19,7 +14,7 @@ pub(super) fn plain<T: Serialize, S: Serializer>(data: &T, serializer: S) -> Res
     plain_numbers(value).serialize(serializer)
 }
 
-/// Data as the JSON of a call or an answer, written plainly.
+/// Data as the JSON of a call.
 pub(super) fn as_data(data: &impl Serialize) -> Value {
-    serde_json::to_value(Plain(data)).unwrap_or(Value::Null)
+    serde_json::to_value(data).map_or(Value::Null, plain_numbers)
 }

@@ -290,6 +290,9 @@ impl Key {
     }
 }
 
+/// Kind of a field that holds a remark of the program: its words can change from version to version.
+pub const REMARK: &str = "remark";
+
 /// One field of a result.
 #[derive(Debug)]
 pub struct Output {

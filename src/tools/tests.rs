@@ -102,7 +102,7 @@ fn set_prices() {
     );
     company.call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
     let data = company.call("pricing.set_prices", json!({"A": 14, "C": 60}));
-    assert_eq!(data, json!({"updated": {"A": 14, "C": 60}, "current": {"A": 14, "B": 25, "C": 60}}));
+    assert_eq!(data, json!({"updated": {"A": 14, "C": 60}, "current": {"A": 14, "B": 25.0, "C": 60}}));
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn set_usage_quotas() {
     let data = company.call("set_usage_quotas", json!({"A": 50000, "B": 200000, "C": 900000}));
     assert_eq!(data, json!({"quotas": {"A": 50000, "B": 200000, "C": 900000}}));
     let data = company.call("set_usage_quotas", json!({"A": 59.5, "B": 200000.0, "C": 0}));
-    assert_eq!(data, json!({"quotas": {"A": 59.5, "B": 200000, "C": 0}}));
+    assert_eq!(data, json!({"quotas": {"A": 59.5, "B": 200000.0, "C": 0}}));
     assert_eq!(company.world.settings.core.quotas.0.map(crate::world::quota::Quota::units), [59.5, 2e5, 0.0]);
 }
 
@@ -156,6 +156,9 @@ fn set_promotion() {
             (json!({"by_group": 5}), "not_a_map", "by_group"),
             (json!({"by_group": {"D_S01": 5}}), "unknown_group", "by_group.D_S01"),
             (json!({"by_group": {"S1": -5}}), "promotion_negative", "by_group.S1"),
+            (json!({"by_group": {"S1": -5, "S9": 5}}), "unknown_group", "by_group.S9"),
+            (json!({"by_customer": {"7": -5, "x": 5}}), "promotion_negative", "by_customer.7"),
+            (json!({"by_group_plan": {"S1": {"D": 4}, "S9": {}}}), "unknown_group", "by_group_plan.S9"),
             (json!({"by_customer": {"x": 5}}), "customer_not_integer", "by_customer.x"),
             (json!({"by_customer": {"7": null}}), "promotion_negative", "by_customer.7"),
             (json!({"by_group_plan": {"S1": 4}}), "not_a_map", "by_group_plan.S1"),
@@ -174,8 +177,7 @@ fn set_promotion() {
     });
     company.call("set_promotion", all);
     let data = company.call("set_promotion", json!({"by_group": {}}));
-    let expected =
-        json!({"global": 5, "by_group": {}, "by_customer": {"7": 1.5}, "by_group_plan": {"S1": {"A": 3}}});
+    let expected = json!({"global": 5.0, "by_group": {}, "by_customer": {"7": 1.5}, "by_group_plan": {"S1": {"A": 3.0}}});
     assert_eq!(data, expected);
 }
 
@@ -197,7 +199,7 @@ fn set_daily_spend() {
     let data = company.call("set_daily_spend", json!({"operations": 350}));
     assert_eq!(
         data,
-        json!({"updated": {"operations": 350}, "current": {"operations": 350, "development": 200}})
+        json!({"updated": {"operations": 350}, "current": {"operations": 350, "development": 200.0}})
     );
 }
 
@@ -287,7 +289,7 @@ fn set_lead_promotion() {
     );
     let data = company.call("set_lead_promotion", json!({"by_channel": {"social_media": 3}}));
     let expected =
-        json!({"global": 0, "by_group": {}, "by_channel": {"social_media": 3}, "by_channel_group": {}});
+        json!({"global": 0.0, "by_group": {}, "by_channel": {"social_media": 3.0}, "by_channel_group": {}});
     assert_eq!(data, expected);
 }
 
@@ -314,9 +316,9 @@ fn set_targeted_ops_spend() {
     company.call("set_targeted_ops_spend", json!({"by_plan": {"A": 10}}));
     company.call("set_targeted_ops_spend", json!({"by_group_plan": {"S1": {"A": 5}}}));
     let data = company.call("set_targeted_ops_spend", json!({"by_customer": {"42": 7}}));
-    assert_eq!(data["total_extra_per_day"], 72);
-    assert_eq!(data["targeted_spend"], json!({"E1": 30, "S1": 20}));
-    assert_eq!(company.call("set_targeted_ops_spend", json!({}))["total_extra_per_day"], 72);
+    assert_eq!(data["total_extra_per_day"], 72.0);
+    assert_eq!(data["targeted_spend"], json!({"E1": 30.0, "S1": 20.0}));
+    assert_eq!(company.call("set_targeted_ops_spend", json!({}))["total_extra_per_day"], 72.0);
 }
 
 #[test]

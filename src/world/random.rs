@@ -8,6 +8,7 @@
 //! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
 //! no rejection, and no more than a logarithm.
 
+mod numpy_stream;
 mod quantile;
 #[cfg_attr(not(target_arch = "x86_64"), path = "random/no_simd_streams.rs")]
 mod simd_streams;
@@ -15,6 +16,7 @@ mod simd_streams;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+pub use numpy_stream::NumpyStream;
 pub use quantile::inverse_normal;
 
 macro_rules! parts {

@@ -16,6 +16,8 @@ mod golden;
 mod hardship;
 #[cfg(feature = "server")]
 mod hostile;
+#[cfg(feature = "server")]
+mod known_differences;
 mod laboratory;
 #[cfg(unix)]
 mod large_studies;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::week::{WeekFigures, week_of};
-use crate::notation::{dollars, grouped, percent, released_dollars, signed_dollars};
+use crate::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
 use crate::session::play::surroundings::Calculated;
 use crate::world::identifiers::{ByPlan, Group, Plan};
 use crate::world::market::social::own::OwnPost;
@@ -131,12 +131,19 @@ fn settings_block(text: &mut String, world: &World) {
     let list =
         |value: &dyn Fn(Plan) -> String| Plan::ALL.map(|plan| format!("{plan} {}", value(plan))).join(" | ");
     let _ = writeln!(text, "\n--- Settings ---");
-    let _ = writeln!(text, "Prices: {}", list(&|plan| dollars(core.prices[plan])));
+    let _ = writeln!(text, "Prices: {}", list(&|plan| price(core.prices[plan])));
     let _ = writeln!(text, "Model Tiers: {}", list(&|plan| core.tiers[plan].to_string()));
     let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped(core.quotas[plan].units(), 0)));
     let _ = writeln!(text, "Capacity Tier: {}", core.capacity_tier);
     let _ = writeln!(text, "Ops: {}/day | Dev: {}/day", dollars(core.operations), dollars(core.development));
-    let _ = writeln!(text, "Targeted spend and advertising: see config_overrides");
+    let settings = &world.settings;
+    let _ = writeln!(
+        text,
+        "Targeted spend: ops {}/day, dev {}/day, ads {}/day (see config_overrides)",
+        dollars(settings.targeted_operations.total()),
+        dollars(settings.targeted_development.total()),
+        dollars(settings.targeted_ads.total())
+    );
 }
 
 fn quality_block(text: &mut String, world: &World, params: &Params) {
@@ -245,7 +252,7 @@ mod tests {
             Quotas: A 0 | B 0 | C 0\n\
             Capacity Tier: 0\n\
             Ops: $0/day | Dev: $0/day\n\
-            Targeted spend and advertising: see config_overrides\n\n\
+            Targeted spend: ops $0/day, dev $0/day, ads $0/day (see config_overrides)\n\n\
             --- Delivered quality (base 0.20, global bonus 0.0000) ---\n\
             Group   A (T1)        B (T1)        C (T1)        Group bonus\n\
             E1      0.1200        0.1200        0.1200        0\n\
@@ -257,6 +264,17 @@ mod tests {
             --- Inbox ---\n\
             Nothing new\n";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn prices_keep_their_cents_and_targeted_spend_is_summed() {
+        let (mut world, params) = world();
+        let s1 = Group::at(0).expect("S1");
+        world.settings.core.prices = ByPlan([22.5, 0.4, 55.0]);
+        world.settings.targeted_development.targeted_spend.insert(s1, 4_500.0);
+        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        assert!(text.contains("Prices: A $22.50 | B $0.40 | C $55\n"), "{text}");
+        assert!(text.contains("Targeted spend: ops $0/day, dev $4,500/day, ads $0/day"), "{text}");
     }
 
     #[test]

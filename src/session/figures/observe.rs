@@ -116,6 +116,11 @@ pub struct WaitingThread {
 }
 
 impl Observation {
+    /// Active subscriptions: those of individuals, and one for each company.
+    pub fn active_subscriptions(&self) -> u32 {
+        self.subscribers + self.companies
+    }
+
     /// Whole weeks that cash lasts at this pace; none where it lasts to the last day.
     pub fn weeks_of_cash(&self) -> Option<u32> {
         self.runway_weeks.map(|weeks| weeks as u32)

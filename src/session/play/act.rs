@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::irrevocable::Irrevocable;
 use super::this_week::Step;
+use crate::notation::plain_numbers;
 use crate::session::error::RunError;
 use crate::session::figures::changes::{Change, changes, daily_cost};
 use crate::session::figures::journal::JournalEntry;
@@ -14,8 +15,8 @@ use crate::session::state::Session;
 use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
 use crate::session::trajectory::{Durability, Record};
 use crate::tools::{
-    Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, Refusal, Spec, Tool, ToolId, View, bounds,
-    find,
+    Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, Tool, ToolId, View,
+    bounds, find,
 };
 use crate::world::command::{Command, ResolvedCommand};
 use crate::world::settings::Settings;
@@ -326,6 +327,18 @@ pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", message)
 }
 
+/// What an answer says, whichever version wrote it: earlier versions wrote whole floats as integers, and worded remarks
+/// differently.
+fn comparable(spec: &Spec, answer: &Value) -> Value {
+    let mut answer = plain_numbers(answer.clone());
+    if let Value::Object(fields) = &mut answer {
+        let is_remark =
+            |name: &str| spec.returns.iter().any(|output| output.name == name && output.kind == REMARK);
+        fields.retain(|name, _| !is_remark(name));
+    }
+    answer
+}
+
 /// Milliseconds to a thousandth.
 fn rounded(took_ms: f64) -> f64 {
     (took_ms * 1e3).round() / 1e3
@@ -352,7 +365,9 @@ impl Session {
         // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
         // differently by now.
         let is_told_again = tool.spec().kind != Kind::Engine || change.is_some();
-        if is_told_again && reply.without_running(&resolved).is_some_and(|now| *answer != now.to_json()) {
+        let differs =
+            |now: Answer| comparable(tool.spec(), answer) != comparable(tool.spec(), &now.to_json());
+        if is_told_again && reply.without_running(&resolved).is_some_and(differs) {
             return Err("the call answers differently now".to_owned());
         }
         self.apply(tool.spec(), &given, call.reversal, Accepted { resolved, change, row });

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, Sent, sent_per_group};
 use super::super::marketing::BUDGET;
-use super::super::plain::{as_data, plain};
+use super::super::plain::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
@@ -48,11 +48,9 @@ static SPEC: Spec = Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DevelopmentBudgets {
     /// Dollars a day by group.
-    #[serde(serialize_with = "plain")]
-    pub targeted_spend: PerGroup,
+    pub targeted_spend: IndexMap<Group, Sent>,
     /// Their sum, dollars a day.
-    #[serde(serialize_with = "plain")]
-    pub total_extra_per_day: f64,
+    pub total_extra_per_day: Sent,
 }
 
 impl Tool for SetTargetedDevSpend {
@@ -81,12 +79,10 @@ impl Tool for SetTargetedDevSpend {
         sent: IndexMap<Group, Sent>,
     ) -> Result<Planned<DevelopmentBudgets>, Refusal> {
         let row = json!({ "targeted_spend": sent });
-        let targeted_spend: PerGroup = sent.into_iter().map(|(group, sent)| (group, sent.value)).collect();
+        let targeted_spend: PerGroup = sent.iter().map(|(group, sent)| (*group, sent.value)).collect();
         let development = TargetedDevelopment { targeted_spend };
-        let answer = DevelopmentBudgets {
-            targeted_spend: development.targeted_spend.clone(),
-            total_extra_per_day: development.total(),
-        };
+        let total_extra_per_day = Sent::sum(development.total(), sent.values());
+        let answer = DevelopmentBudgets { targeted_spend: sent, total_extra_per_day };
         Ok(Planned::setting(SettingsChange::TargetedDevelopment(development), answer).with_row(row))
     }
 }

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, per_plan, replace};
 use super::super::marketing::BUDGET;
-use super::super::plain::{as_data, plain};
+use super::super::plain::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
@@ -92,22 +92,16 @@ pub struct SupportScopes {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportBudgets {
     /// By group.
-    #[serde(serialize_with = "plain")]
     pub by_group: PerGroup,
     /// By plan.
-    #[serde(serialize_with = "plain")]
     pub by_plan: PerPlan,
     /// By group and plan.
-    #[serde(serialize_with = "plain")]
     pub by_group_plan: IndexMap<Group, PerPlan>,
     /// By customer.
-    #[serde(serialize_with = "plain")]
     pub by_customer: PerCustomer,
     /// Sum of all scopes.
-    #[serde(serialize_with = "plain")]
     pub total_extra_per_day: f64,
     /// By group again, under the name of the argument.
-    #[serde(serialize_with = "plain")]
     pub targeted_spend: PerGroup,
 }
 

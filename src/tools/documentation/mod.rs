@@ -22,13 +22,14 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// Reads a name, a list of names, `all`, or nothing for all.
+    /// Reads a name, a list of names, `all` alone or in the list, or nothing for all.
     fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
         let wrong = || wrong_type(field, "a name, a list of names, or all");
         match arguments.get(field) {
             None => Ok(Choice::All),
             Some(Value::String(name)) if name == "all" => Ok(Choice::All),
             Some(Value::String(name)) => Ok(Choice::Named(vec![name.clone()])),
+            Some(Value::Array(names)) if names.iter().any(|name| name == "all") => Ok(Choice::All),
             Some(Value::Array(names)) => {
                 let names = names.iter().map(|name| name.as_str().map(str::to_owned));
                 names.collect::<Option<_>>().map(Choice::Named).ok_or_else(wrong)

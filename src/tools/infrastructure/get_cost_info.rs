@@ -2,7 +2,8 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{Kind, Module, Output, Planned, REMARK, Refusal, Spec, Tool, ToolId, View, When};
+use crate::world::params::Params;
 
 /// Shows the price list.
 pub struct GetCostInfo;
@@ -32,7 +33,11 @@ static SPEC: Spec = Spec {
             kind: "map tier -> {capacity_units, cost_per_day}",
             doc: "units/day, $/day",
         },
-        Output { name: "note", kind: "text", doc: "how the two are charged" },
+        Output {
+            name: "note",
+            kind: REMARK,
+            doc: "what a unit is, which tier leaves quality as it is, how the two are charged",
+        },
     ],
     example: "{}",
 };
@@ -45,7 +50,7 @@ pub struct PriceList {
     /// Capacity by the number of its tier.
     pub capacity_tiers: IndexMap<u8, CapacityTierFacts>,
     /// How the figures are charged.
-    pub note: &'static str,
+    pub note: String,
 }
 
 /// A tier of models.
@@ -66,6 +71,16 @@ pub struct CapacityTierFacts {
     pub capacity_units: u32,
     /// Dollars a day.
     pub cost_per_day: u32,
+}
+
+/// What a unit is, and how the figures are charged.
+fn note(params: &Params) -> String {
+    let neutral = params.model_tier.iter().find(|tier| tier.quality_multiplier == 1.0);
+    let neutral = neutral.map_or_else(String::new, |tier| format!("; tier {} = 1.0×", tier.tier));
+    format!(
+        "1 unit = 1K tokens{neutral}. Compute costs units used times the unit cost of the plan's model; capacity is paid \
+         every day."
+    )
 }
 
 impl Tool for GetCostInfo {
@@ -97,7 +112,7 @@ impl Tool for GetCostInfo {
         Ok(Planned::reading(PriceList {
             model_tiers: models.collect(),
             capacity_tiers: capacities.collect(),
-            note: "Compute costs units used times the unit cost of the plan's model; capacity is paid every day.",
+            note: note(view.params()),
         }))
     }
 }

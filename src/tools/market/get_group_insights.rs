@@ -2,7 +2,6 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::plain::plain;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
@@ -92,21 +91,16 @@ pub struct GroupInsights {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimates {
     /// Budget, dollars a month, of companies per seat.
-    #[serde(serialize_with = "plain")]
     pub willingness_to_pay: f64,
     /// Units a day, of companies per seat.
-    #[serde(serialize_with = "plain")]
     pub usage_volume: f64,
     /// Least quality that a customer accepts.
-    #[serde(serialize_with = "plain")]
     pub quality_floor_q_min: f64,
     /// Aversion to long contracts.
-    #[serde(serialize_with = "plain")]
     pub contract_lockin_aversion: f64,
     /// Customers, or companies, that the market holds.
     pub market_cap: u64,
     /// Growth of the market, a share a year.
-    #[serde(serialize_with = "plain")]
     pub annual_market_cap_growth_rate: f64,
     /// Seats of the smallest and of the largest company.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -115,7 +109,7 @@ pub struct Estimates {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decision_rounds: Option<u64>,
     /// Days that a company takes to answer.
-    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "plain")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub avg_response_days: Option<f64>,
 }
 
@@ -123,10 +117,8 @@ pub struct Estimates {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Influence {
     /// Of the group on others.
-    #[serde(serialize_with = "plain")]
     pub outgoing: IndexMap<Group, f64>,
     /// Of others on the group.
-    #[serde(serialize_with = "plain")]
     pub incoming: IndexMap<Group, f64>,
 }
 

@@ -1,7 +1,6 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::plain::plain;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::{noise_label, segment};
 use crate::world::events::{Phase, Reading, Trend};
@@ -70,12 +69,10 @@ pub struct KnownGroup {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Macroeconomy {
     /// The index.
-    #[serde(serialize_with = "plain")]
     pub pmi_value: f64,
     /// Where it stands.
     pub pmi_trend: Trend,
     /// Change since the one before.
-    #[serde(serialize_with = "plain")]
     pub pmi_change: f64,
     /// Part of the cycle.
     pub cycle_phase: Phase,

@@ -1,7 +1,6 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::plain::plain;
 use super::super::research::affordable;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use crate::world::command::{Command, ResolvedCommand};
@@ -46,7 +45,6 @@ pub enum DiscoveryAttempt {
     /// No group.
     Nothing {
         /// What it cost, dollars.
-        #[serde(serialize_with = "plain")]
         cost: f64,
     },
 }

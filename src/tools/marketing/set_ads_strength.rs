@@ -3,8 +3,8 @@ use serde_json::{Map, Value};
 use super::super::arguments::{Amount, Arguments, number, per_customer, per_group, replace};
 use super::super::plain::as_data;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
 use crate::notation::json_number;
 use crate::world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
@@ -65,7 +65,7 @@ pub struct AdStrengths {
 
 impl Tool for SetAdsStrength {
     type Args = AdStrengths;
-    type Answer = Plain<AdsStrength>;
+    type Answer = AdsStrength;
 
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -93,11 +93,11 @@ impl Tool for SetAdsStrength {
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: AdStrengths) -> Result<Planned<Plain<AdsStrength>>, Refusal> {
+    fn plan(&self, view: &View<'_>, given: AdStrengths) -> Result<Planned<AdsStrength>, Refusal> {
         let mut ads = view.settings().ads_strength.clone();
         replace(&mut ads.global, given.global);
         replace(&mut ads.by_group, given.by_group);
         replace(&mut ads.by_customer, given.by_customer);
-        Ok(Planned::setting(SettingsChange::AdsStrength(ads.clone()), Plain(ads)))
+        Ok(Planned::setting(SettingsChange::AdsStrength(ads.clone()), ads))
     }
 }

@@ -4,7 +4,6 @@ use serde_json::{Map, Value};
 use strum::{EnumString, IntoStaticStr};
 
 use super::super::arguments::{Arguments, Sent, wrong_type};
-use super::super::plain::plain;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
@@ -69,21 +68,18 @@ pub enum DailyBudget {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailySpend {
     /// What was sent, dollars a day.
-    #[serde(serialize_with = "plain")]
     pub updated: IndexMap<DailyBudget, Sent>,
     /// Both budgets.
     pub current: DailyBudgets,
 }
 
 /// The budgets in force, dollars a day.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailyBudgets {
     /// Operations.
-    #[serde(serialize_with = "plain")]
-    pub operations: f64,
+    pub operations: Sent,
     /// Development.
-    #[serde(serialize_with = "plain")]
-    pub development: f64,
+    pub development: Sent,
 }
 
 impl Tool for SetDailySpend {
@@ -143,7 +139,13 @@ impl Tool for SetDailySpend {
                 DailyBudget::Development => core.development = sent.value,
             }
         }
-        let current = DailyBudgets { operations: core.operations, development: core.development };
+        let current = |budget: DailyBudget, stored: f64| {
+            updated.get(&budget).cloned().unwrap_or_else(|| Sent::stored(stored))
+        };
+        let current = DailyBudgets {
+            operations: current(DailyBudget::Operations, core.operations),
+            development: current(DailyBudget::Development, core.development),
+        };
         Ok(Planned::setting(SettingsChange::Core(core), DailySpend { updated, current }))
     }
 }

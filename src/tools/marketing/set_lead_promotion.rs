@@ -5,8 +5,8 @@ use super::super::arguments::{Arguments, per_channel, per_channel_group, per_gro
 use super::super::plain::as_data;
 use super::super::pricing::{DISCOUNT, global_discount};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
 use crate::notation::json_number;
 use crate::world::identifiers::Channel;
@@ -74,7 +74,7 @@ pub struct LeadDiscounts {
 
 impl Tool for SetLeadPromotion {
     type Args = LeadDiscounts;
-    type Answer = Plain<LeadPromotion>;
+    type Answer = LeadPromotion;
 
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -100,12 +100,12 @@ impl Tool for SetLeadPromotion {
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: LeadDiscounts) -> Result<Planned<Plain<LeadPromotion>>, Refusal> {
+    fn plan(&self, view: &View<'_>, given: LeadDiscounts) -> Result<Planned<LeadPromotion>, Refusal> {
         let mut promotion = view.settings().lead_promotion.clone();
         replace(&mut promotion.global, given.global);
         replace(&mut promotion.by_group, given.by_group);
         replace(&mut promotion.by_channel, given.by_channel);
         replace(&mut promotion.by_channel_group, given.by_channel_group);
-        Ok(Planned::setting(SettingsChange::LeadPromotion(promotion.clone()), Plain(promotion)))
+        Ok(Planned::setting(SettingsChange::LeadPromotion(promotion.clone()), promotion))
     }
 }

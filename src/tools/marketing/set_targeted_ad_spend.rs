@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, Sent, channel, sent_per_channel_group};
-use super::super::plain::{as_data, plain};
+use super::super::plain::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
@@ -58,11 +58,9 @@ static SPEC: Spec = Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
     /// Dollars a day by channel and group.
-    #[serde(serialize_with = "plain")]
-    pub targeted_spend: IndexMap<Channel, PerGroup>,
+    pub targeted_spend: IndexMap<Channel, IndexMap<Group, Sent>>,
     /// Their sum, dollars a day.
-    #[serde(serialize_with = "plain")]
-    pub total_per_day: f64,
+    pub total_per_day: Sent,
 }
 
 /// Turns a map of groups to channels around; inner values that are no maps vanish.
@@ -117,13 +115,14 @@ impl Tool for SetTargetedAdSpend {
 
     fn plan(&self, _: &View<'_>, sent: Self::Args) -> Result<Planned<AdBudgets>, Refusal> {
         let row = json!({ "targeted_spend": sent });
-        let amounts = |groups: IndexMap<Group, Sent>| -> PerGroup {
-            groups.into_iter().map(|(group, sent)| (group, sent.value)).collect()
+        let amounts = |groups: &IndexMap<Group, Sent>| -> PerGroup {
+            groups.iter().map(|(group, sent)| (*group, sent.value)).collect()
         };
         let ads = TargetedAds {
-            targeted_spend: sent.into_iter().map(|(channel, groups)| (channel, amounts(groups))).collect(),
+            targeted_spend: sent.iter().map(|(channel, groups)| (*channel, amounts(groups))).collect(),
         };
-        let answer = AdBudgets { targeted_spend: ads.targeted_spend.clone(), total_per_day: ads.total() };
+        let total_per_day = Sent::sum(ads.total(), sent.values().flat_map(IndexMap::values));
+        let answer = AdBudgets { targeted_spend: sent, total_per_day };
         Ok(Planned::setting(SettingsChange::TargetedAds(ads), answer).with_row(row))
     }
 }

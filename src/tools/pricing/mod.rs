@@ -15,19 +15,16 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::arguments::{Amount, Arguments, number, plan};
-use super::plain::plain;
 use super::refusal::Refusal;
 use super::spec::Range;
 use crate::world::identifiers::Plan;
 
 /// What a call set, and what holds then, for tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PlanUpdate<S: Serialize, T: Serialize> {
+pub struct PlanUpdate<T: Serialize> {
     /// What was sent, in the order of the call.
-    #[serde(serialize_with = "plain")]
-    pub updated: IndexMap<Plan, S>,
+    pub updated: IndexMap<Plan, T>,
     /// What holds, by plan.
-    #[serde(serialize_with = "plain")]
     pub current: IndexMap<Plan, T>,
 }
 

@@ -47,7 +47,7 @@ static SPEC: Spec = Spec {
 
 impl Tool for SetModelTiers {
     type Args = IndexMap<Plan, u8>;
-    type Answer = PlanUpdate<u8, u8>;
+    type Answer = PlanUpdate<u8>;
 
     fn spec(&self) -> &'static Spec {
         &SPEC

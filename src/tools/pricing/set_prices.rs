@@ -47,7 +47,7 @@ static SPEC: Spec = Spec {
 
 impl Tool for SetPrices {
     type Args = IndexMap<Plan, Sent>;
-    type Answer = PlanUpdate<Sent, f64>;
+    type Answer = PlanUpdate<Sent>;
 
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -73,7 +73,8 @@ impl Tool for SetPrices {
         for (plan, sent) in &updated {
             core.prices[*plan] = sent.value;
         }
-        let current = by_plan(|plan| core.prices[plan]);
+        let current =
+            by_plan(|plan| updated.get(&plan).cloned().unwrap_or_else(|| Sent::stored(core.prices[plan])));
         Ok(Planned::setting(SettingsChange::Core(core), PlanUpdate { updated, current }))
     }
 }

@@ -4,8 +4,8 @@ use serde_json::{Map, Value};
 use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, replace};
 use super::super::plain::as_data;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Plain, Planned, Range, Refusal, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
+    When,
 };
 use super::{DISCOUNT, global_discount};
 use crate::notation::json_number;
@@ -71,7 +71,7 @@ pub struct Discounts {
 
 impl Tool for SetPromotion {
     type Args = Discounts;
-    type Answer = Plain<Promotion>;
+    type Answer = Promotion;
 
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -97,12 +97,12 @@ impl Tool for SetPromotion {
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: Discounts) -> Result<Planned<Plain<Promotion>>, Refusal> {
+    fn plan(&self, view: &View<'_>, given: Discounts) -> Result<Planned<Promotion>, Refusal> {
         let mut promotion = view.settings().promotion.clone();
         replace(&mut promotion.global, given.global);
         replace(&mut promotion.by_group, given.by_group);
         replace(&mut promotion.by_customer, given.by_customer);
         replace(&mut promotion.by_group_plan, given.by_group_plan);
-        Ok(Planned::setting(SettingsChange::Promotion(promotion.clone()), Plain(promotion)))
+        Ok(Planned::setting(SettingsChange::Promotion(promotion.clone()), promotion))
     }
 }

@@ -1,17 +1,17 @@
+use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, number, wrong_type};
+use super::super::arguments::{Arguments, Sent, wrong_type};
 use super::super::bounds::{MOST_UNITS, too_large};
-use super::super::plain::plain;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::{by_plan, plan_map};
+use super::plan_map;
 use crate::notation::json_number;
 use crate::world::identifiers::{ByPlan, Plan};
 use crate::world::quota::Quota;
-use crate::world::settings::{CoreSettings, PerPlan, Settings, SettingsChange};
+use crate::world::settings::{CoreSettings, Settings, SettingsChange};
 
 /// Caps usage.
 pub struct SetUsageQuotas;
@@ -48,25 +48,25 @@ static SPEC: Spec = Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UsageQuotas {
     /// Units a day and customer, by plan.
-    #[serde(serialize_with = "plain")]
-    pub quotas: PerPlan,
+    pub quotas: IndexMap<Plan, Sent>,
 }
 
-fn quota_of(plan: Plan, given: Option<&Value>) -> Result<Quota, Refusal> {
+fn quota_of(plan: Plan, given: Option<&Value>) -> Result<(Sent, Quota), Refusal> {
     let Some(value) = given else {
         let message = format!("quota of plan {plan} is missing; give all three");
         return Err(Refusal::at(plan.id(), "quota_missing", message));
     };
-    let units = number(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
-    if units < 0.0 {
+    let sent = Sent::of(value).ok_or_else(|| wrong_type(plan.id(), "a number"))?;
+    if sent.value < 0.0 {
         let message = format!("quota of plan {plan} must not be negative");
         return Err(Refusal::at(plan.id(), "quota_negative", message));
     }
-    Quota::of(units).ok_or_else(|| too_large(MOST_UNITS, plan.id(), "units/day"))
+    let quota = Quota::of(sent.value).ok_or_else(|| too_large(MOST_UNITS, plan.id(), "units/day"))?;
+    Ok((sent, quota))
 }
 
 impl Tool for SetUsageQuotas {
-    type Args = ByPlan<Quota>;
+    type Args = IndexMap<Plan, (Sent, Quota)>;
     type Answer = UsageQuotas;
 
     fn spec(&self) -> &'static Spec {
@@ -77,17 +77,14 @@ impl Tool for SetUsageQuotas {
         plan_map(|plan| json_number(settings.core.quotas[plan].units()))
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<ByPlan<Quota>, Refusal> {
-        let mut quotas = ByPlan::default();
-        for plan in Plan::ALL {
-            quotas[plan] = quota_of(plan, arguments.get(plan.id()))?;
-        }
-        Ok(quotas)
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
+        Plan::ALL.into_iter().map(|plan| Ok((plan, quota_of(plan, arguments.get(plan.id()))?))).collect()
     }
 
-    fn plan(&self, view: &View<'_>, quotas: ByPlan<Quota>) -> Result<Planned<UsageQuotas>, Refusal> {
-        let core = CoreSettings { quotas, ..view.settings().core };
-        let answer = UsageQuotas { quotas: by_plan(|plan| quotas[plan].units()) };
+    fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<UsageQuotas>, Refusal> {
+        let core = CoreSettings { quotas: ByPlan::from_fn(|plan| given[&plan].1), ..view.settings().core };
+        let answer =
+            UsageQuotas { quotas: given.into_iter().map(|(plan, (sent, _))| (plan, sent)).collect() };
         Ok(Planned::setting(SettingsChange::Core(core), answer))
     }
 }

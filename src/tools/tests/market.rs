@@ -29,7 +29,7 @@ fn research_market() {
                 assert_eq!(data.as_object().map(|fields| fields.len()), Some(1));
                 company.call("set_targeted_dev_spend", json!({ id: 5 }));
             }
-            None => assert_eq!(data, json!({"cost": 25000})),
+            None => assert_eq!(data, json!({"cost": 25000.0})),
         }
         assert_eq!(company.world.finance.cash, 1_000_000.0 - 25_000.0 * f64::from(attempt));
     }
@@ -42,7 +42,7 @@ fn an_attempt_is_charged_when_nothing_is_left_to_find() {
     for group in Group::all() {
         company.world.market.knowledge[group].level = 1;
     }
-    assert_eq!(company.call("research_market", json!({})), json!({"cost": 25000}));
+    assert_eq!(company.call("research_market", json!({})), json!({"cost": 25000.0}));
     assert_eq!((company.world.finance.cash, company.world.market.attempts), (975_000.0, 1));
 }
 

@@ -7,8 +7,8 @@ use super::economy::round_to;
 use super::leads::market_cap;
 use crate::events::Snapshot;
 use crate::identifiers::Group;
-use crate::params::{GroupParams, Params};
-use crate::random::{Part, Streams};
+use crate::params::{GroupParams, InsightNoise, Params};
+use crate::random::{NumpyStream, Part, Streams};
 
 impl Snapshot {
     /// The group on a day, with the drift of the whole group and without that of single customers.
@@ -51,6 +51,8 @@ pub enum Field {
     ReferralTo(Group),
     /// Leads that another group brings to it.
     ReferralFrom(Group),
+    /// Leads that the group brings to itself; never shown, but the release draws for it.
+    ReferralToItself,
     /// Weight of its reputation for another group.
     ReputationTo(Group),
     /// Weight of another group's reputation for it.
@@ -72,6 +74,7 @@ impl Field {
             Field::SeatMaximum => 7,
             Field::DecisionRounds => 8,
             Field::ResponseDays => 9,
+            Field::ReferralToItself => 10,
             Field::ReferralTo(other) => linked(1, other),
             Field::ReferralFrom(other) => linked(2, other),
             Field::ReputationTo(other) => linked(3, other),
@@ -126,18 +129,36 @@ pub struct CompanyInsights {
     pub response_days: f64,
 }
 
-/// Insights into a known group at its present level; equal on every call, after a refresh, and whatever else
-/// was found. None for a group that was not discovered.
+/// Insights into a known group at its present level; equal on every call and after a refresh. `None` for a group that was
+/// not discovered.
+///
+/// With independent noise they are also equal whatever else was found. In the release, the values are drawn one after the
+/// other from one sequence, so that another known group shifts the draws of the links.
 pub fn insights(group: Group, market: &Market, params: &Params, streams: &Streams) -> Option<Insights> {
-    let level = u64::from(market.knowledge[group].level);
-    let mut draw = |field: Field| {
-        let keys = [group.index() as u64, level, field.key()];
-        streams.open(Part::Insight, keys).between(-1.0, 1.0)
-    };
-    insights_with(group, market, params, &mut draw)
+    match params.fidelity.insight_noise {
+        InsightNoise::Independent => {
+            let level = u64::from(market.knowledge[group].level);
+            insights_with(group, market, params, &mut |field| {
+                let keys = [group.index() as u64, level, field.key()];
+                streams.open(Part::Insight, keys).between(-1.0, 1.0)
+            })
+        }
+        InsightNoise::Release => {
+            let mut sequence = NumpyStream::new(release_seed(group));
+            insights_with(group, market, params, &mut |_| 2.0 * sequence.unit() - 1.0)
+        }
+    }
 }
 
-/// Insights with given noise: `draw` tells z in [-1, 1) of each field.
+/// The seed of a group's errors in the release: the first four characters of its name and `_insights` as a number,
+/// modulo 2^31. `D_S01` to `D_S09` share one.
+fn release_seed(group: Group) -> u32 {
+    let name = format!("{}_insights", group.id());
+    let letters = name.bytes().take(4).enumerate();
+    letters.fold(0, |seed, (at, letter)| seed | u32::from(letter) << (8 * at)) & 0x7fff_ffff
+}
+
+/// Insights with given noise: `draw` returns z in [-1, 1) of each field, in the order of the release.
 fn insights_with(
     group: Group,
     market: &Market,
@@ -158,7 +179,10 @@ fn insights_with(
     let growth = estimate(Field::GrowthRate, own.annual_cap_growth_rate).max(0.0);
     let lockin = estimate(Field::LockinAversion, own.lockin_penalty_mean).max(0.0);
     let company = company_insights(own, law.response_days_decimals, &mut estimate);
-    let mut links = |field: fn(Group) -> Field, least: f64, truth: &dyn Fn(Group) -> f64| {
+    let links = |estimate: &mut dyn FnMut(Field, f64) -> f64,
+                 field: fn(Group) -> Field,
+                 least: f64,
+                 truth: &dyn Fn(Group) -> f64| {
         let others = Group::all().filter(|other| *other != group && market.is_known(*other));
         let mut others: Vec<Group> = others.filter(|other| truth(*other) > least).collect();
         others.sort_by_key(|other| other.id());
@@ -171,6 +195,19 @@ fn insights_with(
         values
     };
     let (network, reputation) = (law.network_display_min, law.reputation_display_min);
+    let referrals_to =
+        links(&mut estimate, Field::ReferralTo, network, &|other| params.referral_rate(group, other));
+    let referrals_from =
+        links(&mut estimate, Field::ReferralFrom, network, &|other| params.referral_rate(other, group));
+    if params.referral_rate(group, group) > 0.0 {
+        estimate(Field::ReferralToItself, 0.0);
+    }
+    let reputation_to = links(&mut estimate, Field::ReputationTo, reputation, &|other| {
+        params.reputation_weight(group, other)
+    });
+    let reputation_from = links(&mut estimate, Field::ReputationFrom, reputation, &|other| {
+        params.reputation_weight(other, group)
+    });
     Some(Insights {
         group,
         level: known.level,
@@ -182,14 +219,10 @@ fn insights_with(
         growth_rate: round_to(growth, law.growth_rate_decimals),
         lockin_aversion: round_to(lockin, law.lockin_decimals),
         company,
-        referrals_to: links(Field::ReferralTo, network, &|other| params.referral_rate(group, other)),
-        referrals_from: links(Field::ReferralFrom, network, &|other| params.referral_rate(other, group)),
-        reputation_to: links(Field::ReputationTo, reputation, &|other| {
-            params.reputation_weight(group, other)
-        }),
-        reputation_from: links(Field::ReputationFrom, reputation, &|other| {
-            params.reputation_weight(other, group)
-        }),
+        referrals_to,
+        referrals_from,
+        reputation_to,
+        reputation_from,
     })
 }
 
@@ -214,63 +247,17 @@ fn whole(value: f64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
-
     use super::*;
 
-    /// The recorded draws of the released simulator, by the first four characters of "<group>_insights".
-    fn recorded(group: Group) -> Vec<f64> {
-        let text = include_str!("../../../tests/data/insight_noise.csv");
-        let name: String = format!("{}_insights", group.id()).chars().take(4).collect();
-        let line = text.lines().find_map(|line| line.strip_prefix(&format!("{name},")));
-        line.expect("a recorded sequence").split(',').map(|u| u.parse().expect("a number")).collect()
-    }
-
-    /// Gives each field the draw it has in the released simulator, which takes one after the other and one for
-    /// the group's own referrals too.
-    fn recorded_noise(group: Group, market: &Market, params: &Params) -> HashMap<Field, f64> {
-        let law = &params.group_research;
-        let mut fields = vec![
-            Some(Field::WillingnessToPay),
-            Some(Field::UsageVolume),
-            Some(Field::QualityFloor),
-            Some(Field::MarketCap),
-            Some(Field::GrowthRate),
-            Some(Field::LockinAversion),
-        ];
-        if group.is_enterprise() {
-            let company =
-                [Field::SeatMinimum, Field::SeatMaximum, Field::DecisionRounds, Field::ResponseDays];
-            fields.extend(company.map(Some));
-        }
-        let mut others: Vec<Group> = Group::all().filter(|other| market.is_known(*other)).collect();
-        others.retain(|other| *other != group);
-        others.sort_by_key(|other| other.id());
-        let linked = |field: fn(Group) -> Field, reported: &dyn Fn(Group) -> bool| -> Vec<Option<Field>> {
-            others.iter().filter(|other| reported(**other)).map(|other| Some(field(*other))).collect()
-        };
-        let refers = |from, to| params.referral_rate(from, to) > law.network_display_min;
-        let weighs = |from, to| params.reputation_weight(from, to) > law.reputation_display_min;
-        fields.extend(linked(Field::ReferralTo, &|other| refers(group, other)));
-        fields.extend(linked(Field::ReferralFrom, &|other| refers(other, group)));
-        fields.push(None);
-        fields.extend(linked(Field::ReputationTo, &|other| weighs(group, other)));
-        fields.extend(linked(Field::ReputationFrom, &|other| weighs(other, group)));
-        fields
-            .into_iter()
-            .zip(recorded(group))
-            .filter_map(|(field, u)| Some((field?, 2.0 * u - 1.0)))
-            .collect()
-    }
-
+    /// Insights with the errors of the release.
     fn estimates(id: &str, level: u8, day: u32) -> Insights {
-        let params = Params::shipped();
+        let mut params = Params::shipped();
+        params.fidelity.insight_noise = InsightNoise::Release;
         let mut market = Market::opening(&params);
         let group = Group::parse(id).expect("a group");
         market.knowledge[group].level = level;
         market.knowledge[group].snapshot = Some(Snapshot::take(group, day, &market.drift, &params));
-        let noise = recorded_noise(group, &market, &params);
-        insights_with(group, &market, &params, &mut |field| noise[&field]).expect("a known group")
+        insights(group, &market, &params, &Streams::new(u64::from(day))).expect("a known group")
     }
 
     fn named(list: &[(Group, f64)]) -> Vec<(&'static str, f64)> {
@@ -357,6 +344,26 @@ mod tests {
                 "level {level}"
             );
         }
+    }
+
+    #[test]
+    fn errors_of_the_release_depend_on_the_group_alone() {
+        let params = Params::shipped();
+        let z = |id: &str, level: u8, day: u32| {
+            let truth = params.group(Group::parse(id).expect("a group")).usage_demand_mean;
+            (estimates(id, level, day).usage_volume / truth - 1.0) / params.level(level).noise
+        };
+        assert!((z("S1", 1, 0) - z("S1", 5, 52)).abs() < 0.02, "two levels err in the same direction");
+        let pay = |id: &str| {
+            let truth = params.group(Group::parse(id).expect("a group")).c_max_mean;
+            (estimates(id, 1, 0).willingness_to_pay / truth - 1.0) / params.level(1).noise
+        };
+        assert!((pay("S1") + 0.742).abs() < 5e-4, "{}", pay("S1"));
+        assert!(
+            (pay("D_S01") - pay("D_S09")).abs() < 5e-4,
+            "groups with the same four letters share their errors"
+        );
+        assert!((pay("D_S01") - pay("D_S10")).abs() > 0.1);
     }
 
     #[test]

@@ -38,6 +38,10 @@ pub use social::*;
 use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
+/// Keys that were added after runs had been recorded: table, key, and as JSON the value that keeps the earlier behaviour,
+/// which is the default.
+const ADDED_KEYS: [(&str, &str, &str); 1] = [("fidelity", "insight_noise", "\"independent\"")];
+
 /// All parameters, one field per table of the files in `configs/world`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -180,13 +184,55 @@ impl Params {
     }
 
     /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON, and the number of the
-    /// fault if there is one.
+    /// fault if there is one. An [added key](ADDED_KEYS) at its earlier behaviour is left out.
     ///
     /// A run records it, and is never silently continued under other parameters.
     pub fn digest(&self) -> String {
-        let mut canonical =
-            serde_json::to_vec(self).expect("parameters hold only strings and finite numbers");
+        self.digest_without(|value, earlier| value.to_string() == earlier)
+    }
+
+    /// The digest that versions without the [added keys](ADDED_KEYS) gave these parameters.
+    pub fn earlier_digest(&self) -> String {
+        self.digest_without(|_, _| true)
+    }
+
+    /// The digest without those added keys for which `is_left_out` returns true, given their value and the JSON of their
+    /// earlier behaviour.
+    fn digest_without(&self, is_left_out: impl Fn(&serde_json::Value, &str) -> bool) -> String {
+        let mut tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
+        for (table, key, earlier) in ADDED_KEYS {
+            let table = tables.get_mut(table).and_then(serde_json::Value::as_object_mut);
+            if let Some(table) = table
+                && table.get(key).is_some_and(|value| is_left_out(value, earlier))
+            {
+                table.shift_remove(key);
+            }
+        }
+        let mut canonical = tables.to_string().into_bytes();
         canonical.extend(self.fault.into_iter().flat_map(|fault| fault.number().to_le_bytes()));
         blake3::hash(&canonical).to_hex()[..16].to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn added_keys_leave_the_digest_of_earlier_runs() {
+        let shipped = Params::shipped();
+        assert_eq!(shipped.digest(), "a9623642a136c0a4", "the digest that recorded runs name");
+        let mut release = shipped.clone();
+        release.fidelity.insight_noise = InsightNoise::Release;
+        assert_ne!(release.digest(), shipped.digest());
+        assert_eq!(release.earlier_digest(), shipped.digest());
+        let tables = serde_json::to_value(&shipped).expect("tables");
+        for (table, key, earlier) in ADDED_KEYS {
+            assert_eq!(
+                tables[table][key].to_string(),
+                earlier,
+                "{table}.{key}: the default is the earlier behaviour"
+            );
+        }
     }
 }

@@ -113,6 +113,8 @@ pub struct Fidelity {
     pub post_judge: PostJudge,
     /// Whether a company refuses prices above its budget.
     pub deal_price_ceiling: bool,
+    /// Where the errors of insights come from.
+    pub insight_noise: InsightNoise,
 }
 
 /// Form of the willingness curve.
@@ -193,6 +195,16 @@ pub enum PostJudge {
     Offline,
     /// Nobody.
     None,
+}
+
+/// Where the errors of insights come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InsightNoise {
+    /// A draw for each run, group, level and value.
+    Independent,
+    /// One sequence for each group, the same in every run, at every level and on every day: the release.
+    Release,
 }
 
 /// Recorded series that are replayed instead of being drawn (`docs/mechanics/randomness.md#recorded-series`).

@@ -1,7 +1,8 @@
 //! Runs that other builds recorded are played again to the same states.
 //!
 //! `tests/data/recorded` holds a run recorded by a development build and one recorded by a release build, which are
-//! both verified by whatever build runs the tests, and one of a company that uses every lever there is. They also pin
+//! both verified by whatever build runs the tests, one of a company that uses every lever there is, and one of a scenario
+//! that has had another key since. They also pin
 //! the mechanics: whoever changes what decisions lead to raises `world::MECHANICS` and records them anew.
 
 use std::fs;
@@ -11,6 +12,7 @@ use novamind::session::{Access, Session, verify};
 use serde_json::{Value, json};
 
 use super::run::{copy, runs};
+use crate::support::forging::forge;
 
 fn recorded(build: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded").join(build)
@@ -57,6 +59,37 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
         let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
         let count = novamind::session::number_at(&rows.rows[0], 0);
         assert!(count >= f64::from(least), "{sql}: {count}");
+    }
+}
+
+#[test]
+fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
+    let place = runs();
+    let folder = copy(&recorded("reference-seed42"), place.path());
+    let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(
+        (found.day, found.states),
+        (14, 2),
+        "its answers are compared, whatever form their numbers had"
+    );
+    let session = Session::open(&folder, Access::Read, true).expect("it opens");
+    assert!(!session.observe().has_own_parameters, "it plays the scenario as its version had it");
+}
+
+#[test]
+fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
+    for (tool, field) in
+        [("get_cost_info", "/model_tiers/2/quality_multiplier"), ("set_prices", "/current/B")]
+    {
+        let place = runs();
+        let folder = copy(&recorded("reference-seed42"), place.path());
+        forge(&folder, |_, line| {
+            if line["tool"] == tool {
+                *line["result"].pointer_mut(field).expect("a field") = json!(26);
+            }
+        });
+        let error = verify(&folder).err().expect("it is refused").to_string();
+        assert!(error.contains("answers differently"), "{error}");
     }
 }
 

@@ -198,6 +198,19 @@ fn the_database_of_an_archive_opens_without_the_program() {
     );
     let packed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name LIKE '%_blocks'";
     assert_eq!(ask(packed), 0.0, "there is nothing only the program can read");
+    let typed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name = 'subscriptions' \
+                 AND sql LIKE '%CAST(effective_price AS REAL) AS effective_price%'";
+    assert_eq!(ask(typed), 1.0, "SQLite before 3.52 needs the type to sort whole rows");
+    // The SQLite of the machine's Python is often older than the one in the program.
+    let script = "import sqlite3, sys\n\
+                  rows = sqlite3.connect(sys.argv[1]).execute('SELECT * FROM subscriptions ORDER BY status DESC')\n\
+                  at = [column[0] for column in rows.description].index('effective_price')\n\
+                  print({type(row[at]).__name__ for row in rows})";
+    if let Ok(told) = std::process::Command::new("python3").args(["-c", script]).arg(&file).output()
+        && told.status.success()
+    {
+        assert_eq!(String::from_utf8_lossy(&told.stdout).trim(), "{'float'}");
+    }
 }
 
 #[test]

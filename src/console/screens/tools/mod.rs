@@ -28,6 +28,7 @@ use crate::console::effect::Effect;
 use crate::console::message::News;
 use crate::console::readings::Reading;
 use crate::console::widgets::Field;
+use crate::notation::plain_numbers;
 use crate::report::insights::{insights_as_ranges, overview_with_ages};
 use crate::report::plan_margins::Sales;
 use crate::session::{JournalEntry, Rows};
@@ -272,7 +273,7 @@ impl ScreenState for Tools {
 
 /// An answer as people are shown it: estimates as ranges, with the day they are of.
 fn for_people(answer: &Answer, company: &Company) -> Value {
-    let told = answer.to_json();
+    let told = plain_numbers(answer.to_json());
     match answer {
         Answer::GetGroupInsights(insights) => {
             company.fit(insights.group_id).map_or_else(|| told.clone(), |fit| insights_as_ranges(&told, fit))

@@ -1,0 +1,548 @@
+//! One example of each line of `docs/known-differences.md`, played through the program and its server.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::doors::{NEW, Server, predictions};
+use crate::support::home::Home;
+
+/// A company with subscribers and companies.
+const STORY: &str = r#"
+set_prices A=12 B=22.5 C=40
+set_model_tiers B=2 C=5
+set_usage_quotas A=60000 B=250000 C=1200000
+set_capacity_tier 3
+set_daily_spend operations=200 development=200
+set_targeted_dev_spend {"E1": 90000}
+set_targeted_ad_spend {"content_marketing": {"S1": 300}, "linkedin": {"E1": 3000}}
+register_daily_calculation name=cash code="SELECT sum(amount) AS cash FROM ledger"
+next naive
+post_social_media "Exports are twice as fast from today."
+next naive
+next naive
+next naive
+next naive
+inbox
+rules send offer where group = E1: C 30
+next naive
+next naive
+set_prices A=13
+undo
+redo
+status
+fit
+report week
+changes
+check start_research_project tier=1
+get_social_posts limit=3
+queries first-offers
+queries forecast-record
+glossary cohort
+python_exec "SELECT 1 + 1"
+sql SELECT message FROM notifications WHERE type = 'deal_won'
+sql SELECT * FROM enterprise_turns LIMIT 1
+"#;
+
+/// What the examples look at.
+struct Stage {
+    home: Home,
+    story: Vec<Value>,
+    server: Server,
+    /// The folders in which the server plays.
+    _served: Home,
+}
+
+impl Stage {
+    fn new() -> Stage {
+        let (home, served) = (Home::new(), Home::new());
+        let options = ["--json", "--echo", "--seed", "7", "--days", "84", "--cash", "20000000"];
+        let said = home.play(&options, STORY);
+        assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+        let story = said.objects();
+        let server = Server::start(&served, &NEW);
+        Stage { home, story, server, _served: served }
+    }
+
+    /// The data of the last answer to a line of the story that begins like this.
+    fn story(&self, line: &str) -> &Value {
+        let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
+        let answer = self.story.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
+        assert_eq!(answer["ok"], true, "{answer}");
+        &answer["data"]
+    }
+
+    /// Answers of another run in plain mode.
+    fn play(&self, options: &[&str], lines: &str) -> Vec<Value> {
+        let home = Home::new();
+        home.play(&[&["--json"], options].concat(), lines).objects()
+    }
+
+    fn baseline(&self, lines: &str) -> Vec<Value> {
+        self.play(&["--mode", "baseline", "--participant", "P01", "--seed", "3"], lines)
+    }
+
+    /// The story's run in plain mode as text, after its last line.
+    fn afterwards(&self, lines: &str) -> String {
+        self.home.play(&["--run", "latest"], lines).out
+    }
+
+    fn call(&self, tool: &str, args: Value) -> Value {
+        self.server.post("/call", &json!({ "tool": tool, "args": args })).1
+    }
+
+    fn data(&self, tool: &str, args: Value) -> Value {
+        let answer = self.call(tool, args);
+        assert_eq!(answer["success"], true, "{tool}: {answer}");
+        answer["data"].clone()
+    }
+
+    #[track_caller]
+    fn refuses(&self, tool: &str, args: Value, code: &str) {
+        let answer = self.call(tool, args);
+        assert_eq!((&answer["success"], &answer["code"]), (&json!(false), &json!(code)), "{tool}: {answer}");
+    }
+
+    fn query(&self, sql: &str) -> Value {
+        self.server.post("/query", &json!({ "sql": sql })).1
+    }
+
+    #[track_caller]
+    fn manual_says(&self, tool: &str, parts: &[&str]) {
+        has(&self.home.run(&["tools", tool]).out, parts);
+    }
+
+    #[track_caller]
+    fn term_says(&self, term: &str, parts: &[&str]) {
+        has(&self.afterwards(&format!("explain {term}\n")), parts);
+    }
+
+    /// The dashboard of the last week of the story.
+    fn dashboard(&self) -> &str {
+        self.story("next")["dashboard"].as_str().expect("a dashboard")
+    }
+}
+
+#[track_caller]
+fn has(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part} is missing in: {text}");
+    }
+}
+
+fn list(value: &Value) -> &Vec<Value> {
+    value.as_array().unwrap_or_else(|| panic!("{value} is not a list"))
+}
+
+fn columns(answer: &Value) -> Vec<&str> {
+    list(&answer["columns"]).iter().filter_map(Value::as_str).collect()
+}
+
+/// The beginning of a line of the page, and its example.
+type Example = (&'static str, fn(&Stage));
+
+const IN_INSTRUCTIONS: [Example; 6] = [
+    ("how likely an outage is", |stage| {
+        stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
+        stage.manual_says("set_targeted_ops_spend", &["a day per dollar"]);
+        stage.term_says("outage", &["probability"]);
+        stage.term_says("operations", &["for each dollar"]);
+    }),
+    ("what development adds", |stage| {
+        stage.manual_says("set_daily_spend", &["Development raises the quality", "ln(1 + spend"]);
+        stage.manual_says("set_targeted_dev_spend", &["ln(1 + spend"]);
+        stage.term_says("development", &["ln(1 + spend"]);
+    }),
+    ("that the quality customers perceive", |stage| {
+        stage.term_says("perceived quality", &["days as a subscriber"]);
+    }),
+    ("the bands of the economy's index", |stage| {
+        stage.term_says("PMI", &["expansion from", "neutral from", "contraction from"]);
+    }),
+    ("what every lead costs", |stage| {
+        stage.manual_says("set_targeted_ad_spend", &["for every lead"]);
+        stage.term_says("lead acquisition cost", &["a lead"]);
+    }),
+    ("what a late answer to a company costs", |stage| {
+        stage.manual_says("send_enterprise_deal", &["of the relationship", "the thread ends"]);
+        stage.term_says("turn", &["of its relationship for each further day"]);
+    }),
+];
+
+const TOLD_TO_PEOPLE: [Example; 15] = [
+    ("what needs attention", |stage| {
+        let needs = stage.play(&["--seed", "3"], "needs\n");
+        let needs = list(&needs[1]["data"]["needs"]);
+        assert!(needs.iter().any(|need| !need["call"].is_null()), "{needs:?}");
+        let facts = stage.baseline("needs\n");
+        let facts = list(&facts[1]["data"]["needs"]);
+        assert!(!facts.is_empty() && facts.iter().all(|need| need["call"].is_null()), "{facts:?}");
+    }),
+    ("that a company that threatens to leave", |stage| {
+        stage.term_says("retention thread", &["pays nothing"]);
+        assert!(stage.story("inbox")["threads"][0]["days_left"].is_u64());
+    }),
+    ("the number and group of the company", |stage| {
+        let rows = list(&stage.story("sql SELECT message")["rows"]);
+        has(rows[0]["message"].as_str().expect("a message"), &["Customer ", "(E1, "]);
+    }),
+    ("a name for every company", |stage| {
+        let shown = &stage.story("inbox")["threads"][0]["company"];
+        assert!(shown.as_str().is_some_and(|name| !name.is_empty()), "{shown}");
+        assert!(!stage.story("sql SELECT * FROM enterprise_turns").to_string().contains("company"));
+    }),
+    ("the quality delivered beside", |stage| {
+        let group = &stage.story("fit")["groups"][0];
+        assert!(group["floor"]["least"].is_f64() && group["plans"][0]["quality"].is_f64(), "{group}");
+    }),
+    ("how many leads came", |stage| {
+        assert!(stage.story("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
+        let funnel = &stage.story("inbox")["funnels"][0];
+        assert!(["came", "no_plan_good_enough", "asked", "signed"].iter().all(|name| funnel[name].is_u64()));
+    }),
+    ("for each thread the offers made so far", |stage| {
+        let thread = &stage.story("inbox")["threads"][0];
+        let names = ["offers_so_far", "last_offer", "asked", "asked_plan", "needed_quota"];
+        assert!(names.iter().all(|name| thread.get(name).is_some()), "{thread}");
+    }),
+    ("what became of new leads", |stage| {
+        assert!(list(&stage.story("queries first-offers")["rows"])[0]["signed_percent"].is_number());
+    }),
+    ("the change of cash in the last week", |stage| {
+        let report = stage.story("report week");
+        assert!(list(&report["parts"]).iter().any(|part| part["part"] == "payments"), "{report}");
+        assert!(report["decided"].is_array());
+    }),
+    ("the runway", |stage| {
+        assert!(stage.story("status").get("runway_weeks").is_some());
+        assert!(stage.story("changes")["committed_per_day"].is_number());
+        let filled = stage.play(&["--days", "28"], "next naive\nsql SELECT count(*) AS n FROM predictions\n");
+        assert_eq!(filled[2]["data"]["rows"][0]["n"], 4);
+    }),
+    ("the gross margin", |stage| {
+        has(&stage.afterwards("check set_prices C=20\n"), &["gross margins", "plan C"]);
+        assert!(stage.story("changes")["alike_plans"].is_array());
+    }),
+    ("next week's peak of usage", |stage| {
+        assert!(stage.story("status")["next_peak_at_last_growth"].is_number());
+    }),
+    ("how R&D projects of a tier spread", |stage| {
+        assert!(stage.story("check start_research")["research"]["spread"].is_object());
+        let check = stage.baseline("check start_research_project tier=1\n");
+        assert!(check[1]["data"]["research"]["spread"].is_null(), "{}", check[1]);
+    }),
+    ("how earlier forecasts did", |stage| {
+        assert!(list(&stage.story("queries forecast-record")["rows"])[0]["inside"].is_number());
+    }),
+    ("what a word, figure, table or column means", |stage| {
+        stage.term_says("daily_usage", &["daily_usage"]);
+        assert!(!stage.story("glossary cohort")["terms"][0]["text"].is_null());
+    }),
+];
+
+const DONE_BY_PEOPLE: [Example; 5] = [
+    ("A person writes a rationale and four forecasts", |stage| {
+        let answers = stage.baseline("next\nnext naive\n");
+        assert!(answers[1..3].iter().all(|answer| answer["code"] == "rationale_missing"), "{answers:?}");
+    }),
+    ("A person can undo and redo settings", |stage| {
+        let file = stage.home.only_run().join("trajectory.jsonl");
+        let text = std::fs::read_to_string(file).expect("a trajectory");
+        has(&text, &["\"undoes\":", "\"redoes\":"]);
+        let tables = stage.home.0.path().join("tables");
+        let exported = stage.home.run(&["runs", "export", "--all", "--out", &tables.to_string_lossy()]);
+        assert_eq!(exported.code, 0, "{}", exported.err);
+        has(&std::fs::read_to_string(tables.join("weeks.csv")).expect("weeks"), &["undone"]);
+    }),
+    ("A person can answer waiting companies by", |stage| {
+        let sent = stage.story("rules send");
+        assert!(sent["rules"][0]["companies"].as_u64() > Some(0), "{sent}");
+        assert_eq!(sent["calls"][0]["tool"], "send_enterprise_deal");
+    }),
+    ("A sandbox run can have", |stage| {
+        has(&stage.home.run(&["play", "--help"]).out, &["--voice"]);
+    }),
+    ("A person sees charts", |stage| {
+        assert!(
+            stage.story("glossary cohort")["picture"].as_str().is_some_and(|picture| picture.contains('*'))
+        );
+    }),
+];
+
+const DONE_BY_AGENTS: [Example; 1] = [("Agents run Python in", |stage| {
+    has(&stage.story("python_exec").to_string(), &["2"]);
+    stage.manual_says("python_exec", &["#", "Python"]);
+})];
+
+const ARGUMENTS_AND_ANSWERS: [Example; 14] = [
+    ("ignores unknown arguments", |stage| {
+        let args = json!({ "A": 1, "B": 1, "C": 1, "D": 1 });
+        stage.refuses("set_usage_quotas", args, "unknown_argument");
+    }),
+    ("takes `true` and `false`", |stage| {
+        stage.refuses("set_capacity_tier", json!({ "tier": true }), "capacity_out_of_range");
+        stage.refuses("set_prices", json!({ "A": true }), "wrong_type");
+    }),
+    ("answers a value of the wrong kind", |stage| {
+        let (status, answer) = stage.server.post("/call", &json!({"tool": "set_prices", "args": {"A": "x"}}));
+        assert_eq!((status, &answer["code"], &answer["field"]), (200, &json!("wrong_type"), &json!("A")));
+    }),
+    ("takes *set_capacity_tier* without a tier", |stage| {
+        stage.refuses("set_capacity_tier", json!({}), "argument_missing");
+    }),
+    ("takes texts and truth values as forecasts", |stage| {
+        for point in [json!("1000000"), json!(true)] {
+            let mut week = json!({ "rationale": "on", "predictions": predictions() });
+            week["predictions"]["cash_1wk"]["point"] = point;
+            let (status, answer) = stage.server.post("/next-week", &week);
+            assert_eq!((status, &answer["code"]), (400, &json!("prediction_not_number")), "{answer}");
+        }
+    }),
+    ("takes amounts of any size", |stage| {
+        stage.refuses("set_prices", json!({ "A": 1e10 }), "amount_too_large");
+    }),
+    ("returns a tier that was sent", |stage| {
+        assert_eq!(stage.data("set_capacity_tier", json!({ "tier": 3.0 }))["tier"].to_string(), "3");
+    }),
+    ("applies scopes one by one", |stage| {
+        let args = json!({ "by_group": {"S2": 9}, "by_plan": {"D": 1} });
+        stage.refuses("set_targeted_ops_spend", args, "unknown_plan");
+        assert_eq!(stage.data("set_targeted_ops_spend", json!({ "by_plan": {} }))["by_group"], json!({}));
+    }),
+    ("takes the scope of *set_targeted_ops_spend*", |stage| {
+        let set = stage.data("set_targeted_ops_spend", json!({ "by_plan": {"A": 10} }));
+        assert_eq!(set["by_plan"].to_string(), r#"{"A":10.0}"#);
+    }),
+    ("offers a plan that does not exist", |stage| {
+        stage.refuses("send_enterprise_deal", json!({ "deals": [[9, [["D", 8]]]] }), "offering_malformed");
+        stage.refuses("send_enterprise_deal", json!({ "deals": [[9, [["A", -8]]]] }), "offering_malformed");
+    }),
+    ("documents tools 24 to 34", |stage| {
+        assert_eq!(stage.data("list_scripts", json!({}))["scripts"], json!([]));
+    }),
+    ("`error` in its own words", |stage| {
+        let answer = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));
+        assert_eq!(
+            (&answer["code"], &answer["data"]),
+            (&json!("no_active_thread"), &Value::Null),
+            "{answer}"
+        );
+        assert_eq!(list(&answer["results"]).len(), 2);
+        assert_eq!(answer["error"].as_str().expect("a text").lines().count(), 2, "{answer}");
+    }),
+    ("`/game-status` and `/next-week`", |stage| {
+        let status = stage.server.get("/game-status");
+        assert_eq!((&status["total_days"], &status["ended"]), (&json!(28), &Value::Null), "{status}");
+    }),
+    ("`/reinitialize` restarts", |stage| {
+        assert_eq!(stage.server.post("/reinitialize", &json!({})).0, 404);
+    }),
+];
+
+const TIME: [Example; 2] = [
+    ("steps on after its last day", |stage| {
+        let answers = stage.play(&["--days", "8"], "next naive\nnext naive\nset_prices A=5\nnext naive\n");
+        assert_eq!((&answers[2]["data"]["day"], &answers[2]["data"]["days_run"]), (&json!(8), &json!(1)));
+        assert!(answers[3..5].iter().all(|answer| answer["code"] == "run_over"), "{answers:?}");
+    }),
+    ("forgets discounts", |_| {
+        let home = Home::new();
+        assert_eq!(home.play(&["--days", "28"], "set_promotion global_promotion=3\nnext naive\n").code, 0);
+        let again = home.play(&["--json", "--run", "latest"], "set_promotion\n").objects();
+        assert_eq!(again[1]["data"]["global"], 3.0, "{}", again[1]);
+    }),
+];
+
+const QUERIES: [Example; 9] = [
+    ("drops hidden columns", |stage| {
+        for sql in ["SELECT c_max AS x FROM customers", "SELECT AVG(c_max) FROM customers"] {
+            assert_eq!(stage.query(sql)["code"], "sql_error", "{sql}");
+        }
+    }),
+    ("refuses a statement that has the name", |stage| {
+        assert_eq!(stage.query("SELECT 'events' AS x")["rows"], json!([{ "x": "events" }]));
+        assert_eq!(stage.query("SELECT 'pragma' AS x")["rows"], json!([{ "x": "pragma" }]));
+    }),
+    ("runs statements that write", |stage| {
+        let with = "WITH x AS (SELECT 1) DELETE FROM predictions";
+        for sql in ["REPLACE INTO predictions (submit_day) VALUES (1)", with, "ATTACH 'x.db' AS x"] {
+            assert_eq!(stage.query(sql)["code"], "sql_write", "{sql}");
+        }
+    }),
+    ("shows seven tables", |stage| {
+        let tables = [
+            "_hidden_quality_snapshot",
+            "_hidden_group_params_history",
+            "_hidden_satisfaction_snapshot",
+            "_hidden_lead_multiplier_snapshot",
+            "group_insight_snapshots",
+            "global_drift_state",
+            "_rng_states",
+        ];
+        for table in tables {
+            assert_eq!(stage.query(&format!("SELECT * FROM {table}"))["code"], "sql_hidden_table", "{table}");
+        }
+    }),
+    ("drops `seat_count`", |stage| {
+        let joined = "SELECT s.seat_count FROM subscriptions s JOIN customers c USING (customer_id)";
+        assert_eq!(columns(&stage.query(joined)), ["seat_count"]);
+    }),
+    ("shows `effect_by_group`", |stage| {
+        let shown = stage.query("SELECT * FROM agent_social_media_posts");
+        let hidden = ["effect_by_group", "views_by_group", "reasoning_by_group"];
+        assert!(columns(&shown).iter().all(|column| !hidden.contains(column)), "{shown}");
+    }),
+    ("shows `source_group_id`", |stage| {
+        let shown = stage.query("SELECT * FROM social_media_posts");
+        assert!(!columns(&shown).contains(&"source_group_id"), "{shown}");
+        assert!(stage.story("get_social_posts")["posts"][0].get("source_group_id").is_some());
+    }),
+    ("hints at `plan = 'A'`", |stage| {
+        let of_plan = stage.query("SELECT * FROM subscriptions WHERE plan = 'A'");
+        assert_eq!((&of_plan["row_count"], &of_plan["hint"]), (&json!(0), &Value::Null), "{of_plan}");
+        assert!(stage.query("SELECT * FROM subscriptions WHERE plan = 'D'")["hint"].is_string());
+    }),
+    ("returns the first of two columns", |stage| {
+        assert_eq!(stage.query("SELECT 1 AS x, 2 AS x")["rows"], json!([{ "x": 1, "x:2": 2 }]));
+    }),
+];
+
+const DASHBOARD: [Example; 5] = [
+    ("its own layout", |stage| {
+        let shown = ["Cash Change:", "Recurring Revenue:", "Payments:", "Running Costs:", "Enterprise Lost:"];
+        has(stage.dashboard(), &shown);
+    }),
+    ("rounds prices to dollars", |stage| {
+        has(stage.dashboard(), &["Prices: A $12 | B $22.50 | C $40", "dev $90,000/day, ads $3,300/day"]);
+    }),
+    ("\"awaiting your response\" counts", |stage| {
+        let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
+        let first = weeks.map(|week| week["data"]["dashboard"].as_str().expect("a dashboard")).next();
+        has(first.expect("a week"), &["1 awaiting your response; the first is lost in"]);
+    }),
+    ("never lists posts of the company", |stage| {
+        let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
+        let listed = weeks.filter(|week| week["data"]["dashboard"].to_string().contains("Your posts"));
+        assert_eq!(listed.count(), 1);
+    }),
+    ("lists daily calculations", |stage| has(stage.dashboard(), &["--- Weekly Calculations ---\ncash:\n"])),
+];
+
+const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
+    ("tool documents with coefficients", |stage| {
+        let manual = stage.data("get_tool_documentation", json!({ "tool_names": ["all"] }));
+        let (support, development) = (&manual["set_targeted_ops_spend"], &manual["set_targeted_dev_spend"]);
+        has(&support.to_string(), &["0.6 a day per dollar", "0.1 for companies"]);
+        has(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
+    }),
+    ("posts, letters and notices", |stage| {
+        assert!(
+            stage.story("get_social_posts")["posts"][0]["content"]
+                .as_str()
+                .is_some_and(|text| text.len() > 9)
+        );
+    }),
+    ("draws from PCG64 streams", |stage| {
+        let attempts = || stage.play(&["--seed", "3"], &"research_market\n".repeat(9));
+        let found =
+            |answers: &[Value]| answers[1..10].iter().map(|one| one["data"].clone()).collect::<Vec<_>>();
+        assert_eq!(found(&attempts()), found(&attempts()));
+    }),
+    ("takes the [errors of insights]", |stage| {
+        let budget = |scenario: &str, seed: &str| {
+            let answers = stage.play(&["--scenario", scenario, "--seed", seed], "get_group_insights S1\n");
+            answers[1]["data"]["estimates"]["willingness_to_pay"].as_f64().expect("a number")
+        };
+        assert_eq!([budget("reference-seed42", "1"), budget("reference-seed42", "2")], [25.87; 2]);
+        assert_ne!(budget("default", "1"), budget("default", "2"));
+    }),
+];
+
+/// The rows and bullets of the page: the text of the first cell or of the bullet.
+fn lines_of_the_page() -> Vec<String> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/known-differences.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let line = |line: &str| {
+        let row = line.strip_prefix("| ").map(|row| row.split(" | ").next().unwrap_or_default());
+        let text = row.or_else(|| line.strip_prefix("- "))?;
+        (!["what", "the release"].contains(&text)).then(|| text.to_owned())
+    };
+    page.lines().filter_map(line).collect()
+}
+
+#[test]
+fn every_known_difference_has_an_example_that_holds() {
+    let examples = [
+        &IN_INSTRUCTIONS[..],
+        &TOLD_TO_PEOPLE,
+        &DONE_BY_PEOPLE,
+        &DONE_BY_AGENTS,
+        &ARGUMENTS_AND_ANSWERS,
+        &TIME,
+        &QUERIES,
+        &DASHBOARD,
+        &DOCUMENTS_TEXTS_AND_CHANCE,
+    ];
+    let examples: Vec<&Example> = examples.into_iter().flatten().collect();
+    let lines = lines_of_the_page();
+    for line in &lines {
+        let own = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
+        assert_eq!(own.count(), 1, "a line of the page has no example, or several: {line}");
+    }
+    assert_eq!(lines.len(), examples.len(), "an example belongs to no line");
+    let stage = Stage::new();
+    for (beginning, example) in examples {
+        println!("{beginning}");
+        example(&stage);
+    }
+}
+
+#[test]
+fn answers_have_the_form_of_the_release() {
+    let stage = Stage::new();
+    let prices = stage.data("set_prices", json!({ "A": 12 }));
+    assert_eq!(prices.to_string(), r#"{"updated":{"A":12},"current":{"A":12,"B":0.0,"C":0.0}}"#);
+    let quotas = stage.data("set_usage_quotas", json!({ "A": 60.0, "B": 70, "C": 0.5 }));
+    assert_eq!(quotas.to_string(), r#"{"quotas":{"A":60.0,"B":70,"C":0.5}}"#);
+    let discounts = stage.data("set_promotion", json!({ "by_group": {"S2": 4}, "by_customer": {"7": 1} }));
+    let form = r#"{"global":0.0,"by_group":{"S2":4.0},"by_customer":{"7":1.0},"by_group_plan":{}}"#;
+    assert_eq!(discounts.to_string(), form);
+    let spend = stage.data("set_daily_spend", json!({ "operations": 350 }));
+    assert_eq!(spend["current"].to_string(), r#"{"operations":350,"development":0.0}"#);
+    let ads = stage.data("set_targeted_ad_spend", json!({ "search_ads": {"S1": 80, "S3": 40} }));
+    assert_eq!(ads["total_per_day"].to_string(), "120");
+    has(
+        stage.data("get_cost_info", json!({}))["note"].as_str().expect("a note"),
+        &["1 unit = 1K", "tier 4 = 1.0×"],
+    );
+    for tool in ["describe_tables", "get_tool_documentation"] {
+        let name = if tool == "describe_tables" { "table_names" } else { "tool_names" };
+        assert_eq!(stage.data(tool, json!({ name: ["all"] })), stage.data(tool, json!({})), "{tool}");
+    }
+    // Arguments of a targeted budget without a name are its map.
+    stage.data("set_targeted_ops_spend", json!({ "by_group": {"S1": 5}, "by_plan": {"A": 10} }));
+    let cleared = stage.data("set_targeted_ops_spend", json!({}));
+    assert_eq!((&cleared["by_group"], &cleared["by_plan"]["A"]), (&json!({}), &json!(10.0)));
+    assert_eq!(stage.data("set_targeted_ad_spend", json!({}))["targeted_spend"], json!({}));
+    assert_eq!(stage.data("set_targeted_dev_spend", json!({}))["total_extra_per_day"], 0);
+    // Keys are checked before values; maps by customer entry by entry.
+    stage.refuses("set_promotion", json!({ "by_group": {"S1": -1, "S9": 5} }), "unknown_group");
+    stage.refuses("set_promotion", json!({ "by_customer": {"1": -1, "x": 5} }), "promotion_negative");
+    let refused = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));
+    assert_eq!(refused["error"], "customer 5: no active thread\ncustomer 6: no active thread");
+    let one = stage.call("reject_enterprise_deal", json!({ "deals": [5] }));
+    assert_ne!(one["error"], "customer 5: no active thread", "a single deal has the full message");
+}
+
+#[test]
+fn game_status_counts_every_active_subscription() {
+    let home = Stage::new().home;
+    let server = Server::start(&home, &["--run", "latest"]);
+    let count = |rest: &str| {
+        let sql = format!("SELECT count(*) AS n FROM subscriptions WHERE status = 'subscribed' {rest}");
+        server.post("/query", &json!({ "sql": sql })).1["rows"][0]["n"].as_u64().expect("a number")
+    };
+    let companies = "AND customer_id IN (SELECT customer_id FROM customers WHERE customer_type = 'large')";
+    assert!(count(companies) > 0, "the story has companies");
+    assert_eq!(server.get("/game-status")["subscribers"], count(""));
+}

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
@@ -101,7 +102,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let seeds: Vec<u64> = (options.seed.first..=options.seed.last).collect();
     let progress = progress_bar(seeds.len() as u64, "runs");
     let results = start(&policy, &spec, seeds, options, context)?;
-    let failure = in_order(results, options.seed.first, &progress, &mut book).err();
+    let results = results.into_iter().inspect(|_| progress.inc(1));
+    let write = |(_, outcome, collector): Played| progress.suspend(|| book.write(&outcome?, collector));
+    let failure = in_order(results, options.seed.first..=options.seed.last, write).err();
     progress.finish_and_clear();
     if let Some(mut file) = book.metrics {
         file.flush().map_err(|error| Failure::failed(format!("the figures cannot be written: {error}")))?;
@@ -143,23 +146,29 @@ fn start(
 }
 
 /// Writes results in the order of their seeds, each as soon as all before it are written.
+///
+/// # Errors
+/// A result cannot be written. A seed has none: its thread has panicked.
 fn in_order(
-    results: Receiver<Played>,
-    first: u64,
-    progress: &indicatif::ProgressBar,
-    book: &mut Book<'_>,
+    results: impl IntoIterator<Item = Played>,
+    seeds: RangeInclusive<u64>,
+    mut write: impl FnMut(Played) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut waiting = BTreeMap::new();
-    let mut next = first;
-    for (seed, outcome, collector) in results {
-        progress.inc(1);
-        waiting.insert(seed, (outcome, collector));
-        while let Some((outcome, collector)) = waiting.remove(&next) {
+    let mut next = *seeds.start();
+    for result in results {
+        waiting.insert(result.0, result);
+        while let Some(result) = waiting.remove(&next) {
             next += 1;
-            progress.suspend(|| book.write(&outcome?, collector))?;
+            write(result)?;
         }
     }
-    Ok(())
+    match seeds.contains(&next) {
+        true => Err(Failure::failed(format!(
+            "the program has a defect: the run of seed {next} did not end; runs of lower seeds are complete"
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// Where results go.
@@ -244,6 +253,28 @@ pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::Refusal;
+
+    #[test]
+    fn a_seed_without_a_result_is_an_error() {
+        let played = |seed| {
+            let refusal = Refusal::new("no_play", "nothing was played");
+            let error = RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal };
+            (seed, Err(error), Collector::idle())
+        };
+        let written = |seeds: &[u64]| {
+            let mut written = Vec::new();
+            let done = in_order(seeds.iter().copied().map(played), 3..=5, |result| {
+                written.push(result.0);
+                Ok(())
+            });
+            (written, done.map_err(|failure| failure.to_string()))
+        };
+        assert_eq!(written(&[5, 3, 4]), (vec![3, 4, 5], Ok(())));
+        let (lower, failure) = written(&[5, 3]);
+        assert_eq!(lower, [3]);
+        assert!(failure.is_err_and(|text| text.contains("the run of seed 4 did not end")));
+    }
 
     #[test]
     fn a_parameter_is_set_by_its_key_and_its_value() {

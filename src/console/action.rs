@@ -439,7 +439,7 @@ actions! {
         DropDecision "drop-decision" "leave out" "Leave the selected call out, or make it as it was; take another decision back."
         AddDecision "add-decision" "decide" "Type another decision: a call, a factor, a tool whose settings stay."
         NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or begin one; up to three stand side by side."
-        SimulateBranches "simulate-branches" "simulate" "Simulate the run again as it was and under each alternative."
+        SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and under each alternative."
     }
     Branches {
         NextFigure "next-figure" "next figure" "Show the next figure."

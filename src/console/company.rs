@@ -14,8 +14,8 @@ use crate::report::lead_costs::{PairCost, pair_costs};
 use crate::report::needs::{Need, needs};
 use crate::session::{
     CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, HiddenValues, JournalEntry,
-    LessonPage, Mode, Numbers, Observation, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits,
-    WeekFigures,
+    LessonPage, Mode, Numbers, Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp,
+    ToolLimits, WeekFigures,
 };
 use crate::tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -72,6 +72,8 @@ pub struct Company {
     pub costs: PriceList,
     /// What can be researched.
     pub projects: ResearchProjects,
+    /// Mean duration and gain of each R&D tier, the first tier first.
+    pub research_means: Vec<ResearchMeans>,
     /// Everything that people have written, as get_social_posts tells it.
     pub posts: Posts,
     /// The known groups and the economy.
@@ -135,6 +137,7 @@ impl Company {
             settings: settings.collect(),
             costs: session.look_up(&GetCostInfo, ()).unwrap_or_default(),
             projects: session.look_up(&ListResearchProjects, ()).unwrap_or_default(),
+            research_means: session.research_means(),
             posts: posts::read(session, before.map(|company| &company.posts)),
             market: session.look_up(&GetMarketOverview, ()).unwrap_or_default(),
             names: session.company_names().clone(),

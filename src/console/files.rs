@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use super::message::{Message, News};
-use crate::session::{Configuration, Library, library};
+use super::worker::answer_on_thread;
+use crate::session::{Configuration, Library, Refusal, library};
 
 /// Writes files on a thread of its own and reports where they are.
 pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
-    std::thread::spawn(move || {
-        let write = |(path, contents): (PathBuf, Vec<u8>)| {
-            write_beside(&path, &contents).map_err(|error| format!("{}: {error}", path.display()))
-        };
-        let written: Result<Vec<PathBuf>, String> = files.into_iter().map(write).collect();
-        let _ = news.send(Message::News(News::Written(written.map(|paths| in_words(&paths)))));
+    let write = |(path, contents): (PathBuf, Vec<u8>)| {
+        let refused = |error| Refusal::new("io_error", format!("{}: {error}", path.display()));
+        write_beside(&path, &contents).map_err(refused)
+    };
+    let work = move || files.into_iter().map(write).collect::<Result<Vec<PathBuf>, _>>().map(Some);
+    answer_on_thread(news, work, |written| {
+        News::Written(written.map(|paths| in_words(&paths)).map_err(|refusal| refusal.message))
     });
 }
 
@@ -25,13 +27,11 @@ pub fn save_query_behind(
     [name, title, sql]: [String; 3],
     news: Sender<Message>,
 ) {
-    std::thread::spawn(move || {
-        let saved = match library::save(&configuration, &name, &title, &sql) {
-            Ok(path) => Ok((format!("saved: {}", path.display()), Library::of(&configuration))),
-            Err(error) => Err(error.to_string()),
-        };
-        let _ = news.send(Message::News(News::QuerySaved(saved)));
-    });
+    let work = move || match library::save(&configuration, &name, &title, &sql) {
+        Ok(path) => Ok(Some((format!("saved: {}", path.display()), Library::of(&configuration)))),
+        Err(error) => Err(Refusal::new("io_error", error.to_string())),
+    };
+    answer_on_thread(news, work, |saved| News::QuerySaved(saved.map_err(|refusal| refusal.message)));
 }
 
 /// Where files are: the whole path of the first, then the names of those beside it.

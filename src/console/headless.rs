@@ -237,6 +237,7 @@ impl Headless {
                     | News::WentOn(_)
                     | News::DatabaseBehind(_)
                     | News::DatabaseWhole(_)
+                    | News::Reconnected(_)
                     | News::Visit(VisitNews::Due(_))
             )
         };

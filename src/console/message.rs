@@ -113,6 +113,8 @@ pub enum News {
     DatabaseBehind(String),
     /// The database holds everything again; with a handle that stops the person's queries.
     DatabaseWhole(Option<Interrupt>),
+    /// Queries have a new connection after a defect; with a handle that stops the user's queries.
+    Reconnected(Interrupt),
     /// How many days were simulated for a question what would have been, and of how many; the number says which.
     BranchesProgress(u64, usize, usize),
     /// What would have been.
@@ -122,7 +124,7 @@ pub enum News {
     /// The curve of a group was drawn; the number says which question it answers.
     Curve(u64, Box<Result<Arc<CurveExplorer>, Refusal>>),
     /// The tree of branches in which a run stands, with its id.
-    Kin(String, Vec<Kin>),
+    Kin(String, Result<Vec<Kin>, Refusal>),
     /// What was seen of the run from within; the number says which question it answers. With the company where it has changed.
     LookedInside(u64, Box<Result<LookFound, Refusal>>, Option<Arc<Company>>),
     /// True values of a day were seen, or are not shown.

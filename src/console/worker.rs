@@ -4,6 +4,7 @@
 //! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
 //! unless a week is running: then it sees the state before it.
 
+mod answering;
 mod branches;
 mod causes;
 mod class;
@@ -50,6 +51,7 @@ use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
 
+pub use answering::answer_on_thread;
 pub use queries::Question;
 
 /// Work for the session's thread.
@@ -82,6 +84,8 @@ pub enum Job {
     LookInside(u64, LookQuestion),
     /// Look at the true values of a day.
     ReadHiddenValues(u32),
+    /// Give the query threads new connections: a defect has ended one.
+    Reconnect,
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
@@ -297,6 +301,9 @@ impl SessionThread {
                 run.queries.ask(question);
                 None
             }),
+            Job::Reconnect => {
+                self.with_run(|run| run.queries.connect(run.session).map(News::Reconnected));
+            }
             Job::NoteQuery(sql, answer, took, via) => self.with_run(|run| {
                 run.session.note_query(&sql, answer.as_ref(), took, via);
                 None

@@ -27,7 +27,7 @@ impl QueryConnection {
     /// Writes rows into a hidden table, in place of those it holds or after them. All of them are written, or none.
     ///
     /// # Errors
-    /// `sql_timeout`: it was stopped, or memory has run out; `sql_error`.
+    /// `sql_cancelled`: the user stopped it; `sql_timeout`: time or memory ran out; `sql_error`.
     pub fn fill_hidden<const COLUMNS: usize>(
         &self,
         ticket: Ticket,

@@ -32,7 +32,8 @@ use super::tokens::tokens;
 /// Why a query was not answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
-    /// Code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, `sql_error`.
+    /// Code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
+    /// `sql_error`.
     pub code: &'static str,
     /// What is wrong, with help where there is some.
     pub message: String,
@@ -198,7 +199,7 @@ impl QueryConnection {
         self.released.objections().clear();
         self.interrupt.begin(ticket, limits.time, limits.steps);
         if self.interrupt.is_stopped() {
-            return Err(refusal("sql_timeout", CANCELLED));
+            return Err(refusal(SQL_CANCELLED, CANCELLED));
         }
         let begin = || {
             self.as_desk("BEGIN; SELECT seq FROM projection")
@@ -363,12 +364,12 @@ impl QueryConnection {
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
             let seconds = limits.time.as_secs();
-            let message = match self.interrupt.cause() {
-                Cause::Request => CANCELLED.to_owned(),
-                Cause::Memory => TOO_MUCH_MEMORY.to_owned(),
-                Cause::Time => format!("the query ran longer than {seconds} s; ask for less at a time"),
+            let too_long = format!("the query ran longer than {seconds} s; ask for less at a time");
+            return match self.interrupt.cause() {
+                Cause::Request => refusal(SQL_CANCELLED, CANCELLED),
+                Cause::Memory => refusal("sql_timeout", TOO_MUCH_MEMORY),
+                Cause::Time => refusal("sql_timeout", &too_long),
             };
-            return refusal("sql_timeout", &message);
         }
         let (text, position) = match error {
             rusqlite::Error::SqlInputError { msg, offset, .. } => {
@@ -433,8 +434,11 @@ impl From<rusqlite::Error> for Fault {
 
 const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at a time";
 
-/// What is said of a query that the person stopped.
-pub const CANCELLED: &str = "the query was cancelled";
+/// Code of a query that the user has stopped.
+pub const SQL_CANCELLED: &str = "sql_cancelled";
+
+/// Message of a query that the user has stopped.
+const CANCELLED: &str = "the query was cancelled";
 
 const SCHEMA_WORDS: &str =
     "schema statements are not allowed; describe_tables and the table browser show all tables";

@@ -470,7 +470,7 @@ fn results_are_capped_and_slow_queries_end() {
         interrupt.stop();
     });
     let error = connection.ask_as(ticket, endless, LIMITS).expect_err("cancelled");
-    assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
+    assert_eq!((error.code, error.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     stopper.join().expect("the stopper ends");
     rows(&connection, "SELECT 1");
 }
@@ -485,7 +485,7 @@ fn a_stop_reaches_a_query_that_has_not_begun_and_none_that_is_asked_later() {
     interrupt.stop();
     for sql in [endless, "SELECT 1"] {
         let error = connection.ask_as(ticket, sql, LIMITS).expect_err("stopped before it began");
-        assert_eq!((error.code, error.message.as_str()), ("sql_timeout", "the query was cancelled"));
+        assert_eq!((error.code, error.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     }
     rows(&connection, "SELECT 1");
 }

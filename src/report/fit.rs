@@ -2,7 +2,7 @@
 //! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
 
 use super::words::{range, whole};
-use crate::notation::{cents, dollars, grouped, percent};
+use crate::notation::{cents, dollars, percent};
 use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 
@@ -51,10 +51,10 @@ impl TruthRange {
 
     /// As dollars: `$18 to $87`.
     pub fn money(&self) -> String {
-        format!("${} to ${}", grouped(self.least.floor(), 0), grouped(self.most.ceil(), 0))
+        format!("${}", range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// As units: `180 to 841`.
+    /// As whole units, or as dollars whose unit is in the label: `180 to 841`.
     pub fn units(&self) -> String {
         range(self.least, self.most, 0)
     }

@@ -9,6 +9,8 @@ pub struct Movement {
     pub new: f64,
     /// How unusual the change is: 0 is an ordinary week, above 3 is rare.
     pub unusual: f64,
+    /// How much the figure varies by chance alone.
+    pub noise: f64,
     /// Weeks since a change in this direction was as large; none if there was none before.
     pub since: Option<usize>,
     /// Changes before this one.
@@ -30,7 +32,7 @@ impl Movement {
     pub fn standing(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.since {
-            _ if self.known < ENOUGH => String::new(),
+            _ if self.known < ENOUGH || (self.new - self.old).abs() <= 2.0 * self.noise => String::new(),
             None => format!("largest {what} yet"),
             Some(weeks) if weeks >= ENOUGH => format!("largest {what} in {weeks} weeks"),
             Some(_) => String::new(),
@@ -39,8 +41,9 @@ impl Movement {
 }
 
 /// The last change of a series, oldest value first; none without two values or without a change. With enough weeks
-/// known it is measured against the median change and its usual distance from it, otherwise by its size.
-pub fn movement(series: &[f64]) -> Option<Movement> {
+/// known it is measured against the median change and its usual distance from it, otherwise by its size. A change of about
+/// `noise`, by which the figure varies by chance alone, is never unusual.
+pub fn movement(series: &[f64], noise: f64) -> Option<Movement> {
     let [.., old, new] = *series else { return None };
     if old == new || !old.is_finite() || !new.is_finite() {
         return None;
@@ -52,15 +55,15 @@ pub fn movement(series: &[f64]) -> Option<Movement> {
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < ENOUGH {
         // Half of the size of a figure counts as unusual, a tenth of it does not.
-        size * 6.0
+        (size * 6.0).min(change.abs() / noise)
     } else {
         let usual = median(&before);
         let distances: Vec<f64> = before.iter().map(|earlier| (earlier - usual).abs()).collect();
         // A figure that never moved makes nothing infinitely unusual.
         let spread = (NORMAL * median(&distances)).max(0.02 * old.abs().max(new.abs()));
-        (change - usual).abs() / spread
+        (change - usual).abs() / spread.max(noise)
     };
-    Some(Movement { old, new, unusual, since, known: before.len() })
+    Some(Movement { old, new, unusual, noise, since, known: before.len() })
 }
 
 fn median(values: &[f64]) -> f64 {
@@ -80,26 +83,44 @@ mod tests {
     #[test]
     fn what_breaks_with_the_habit_is_unusual() {
         let steady = [100.0, 110.0, 121.0, 130.0, 141.0, 150.0];
-        let ordinary = movement(&[&steady[..], &[160.0]].concat()).expect("it moved");
+        let ordinary = movement(&[&steady[..], &[160.0]].concat(), 0.0).expect("it moved");
         assert!(ordinary.unusual < 1.0, "{ordinary:?}");
         assert_eq!(ordinary.standing(), "");
-        let fall = movement(&[&steady[..], &[120.0]].concat()).expect("it moved");
+        let fall = movement(&[&steady[..], &[120.0]].concat(), 0.0).expect("it moved");
         assert!(fall.unusual > 10.0, "{fall:?}");
         assert_eq!(fall.standing(), "largest fall yet");
-        let jump = movement(&[0.0, 50.0, 60.0, 65.0, 70.0, 72.0, 110.0]).expect("it moved");
+        let jump = movement(&[0.0, 50.0, 60.0, 65.0, 70.0, 72.0, 110.0], 0.0).expect("it moved");
         assert_eq!((jump.since, jump.standing().as_str()), (Some(5), "largest rise in 5 weeks"));
     }
 
     #[test]
     fn few_weeks_are_judged_by_size() {
-        let half = movement(&[100.0, 50.0]).expect("it moved");
+        let half = movement(&[100.0, 50.0], 0.0).expect("it moved");
         assert_eq!((half.unusual, half.since, half.standing().as_str()), (3.0, None, ""));
-        assert!(movement(&[100.0, 98.0]).expect("it moved").unusual < 0.2);
+        assert!(movement(&[100.0, 98.0], 0.0).expect("it moved").unusual < 0.2);
         assert_eq!(
-            [movement(&[1.0]), movement(&[]), movement(&[2.0, 2.0]), movement(&[1.0, f64::NAN])],
+            [
+                movement(&[1.0], 0.0),
+                movement(&[], 0.0),
+                movement(&[2.0, 2.0], 0.0),
+                movement(&[1.0, f64::NAN], 0.0)
+            ],
             [None; 4]
         );
-        let first = movement(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0]).expect("it moved");
+        let first = movement(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], 0.0).expect("it moved");
         assert!(first.unusual.is_finite() && first.unusual > 3.0);
+    }
+
+    #[test]
+    fn few_cancellations_are_within_chance() {
+        let series = [0.0, 1.0, 0.0, 2.0, 1.0, 1.0, 0.0];
+        let one = movement(&series, 1.0).expect("it moved");
+        assert!(one.unusual <= 1.0, "{one:?}");
+        assert_eq!(one.standing(), "");
+        let first_weeks = movement(&[1.0, 0.0], 1.0).expect("it moved");
+        assert!(first_weeks.unusual <= 1.0, "{first_weeks:?}");
+        let many = movement(&[&series[..], &[40.0]].concat(), 40f64.sqrt()).expect("it moved");
+        assert!(many.unusual > 3.0);
+        assert_eq!(many.standing(), "largest rise yet");
     }
 }

@@ -1,10 +1,11 @@
 //! R&D in words: what a project can be expected to take and to gain before it is paid for, and which ones come too late.
 
-use crate::session::{LateProject, Observation, ResearchOutlook, ResearchSpread};
+use crate::notation::grouped;
+use crate::session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
 /// Lines on a project before it is started, the first one on time.
 pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
-    let ResearchOutlook { earliest, last_day, spread } = outlook;
+    let ResearchOutlook { earliest, last_day, spread, .. } = outlook;
     if earliest > last_day {
         return vec![format!(
             "no project started now is done before day {earliest}, after the last day ({last_day})"
@@ -47,6 +48,16 @@ fn of_100(share: f64) -> String {
         100.0 if share < 1.0 => "more than 99 of 100".to_owned(),
         count => format!("{count} of 100"),
     }
+}
+
+/// Mean duration of a tier in whole days: `39`, or `≥30` if only a lower bound is known.
+pub fn mean_days(means: &ResearchMeans) -> String {
+    format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped(means.days, 0))
+}
+
+/// Mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
+pub fn mean_gain(means: &ResearchMeans, decimals: usize) -> String {
+    format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
 /// A line for each project that was started since the last week and runs beyond the last day.
@@ -103,6 +114,31 @@ mod tests {
                 "35 of 100 finish on day 30, the earliest, half by day 466, three quarters by day 1222; done by \
                  the last day (500) in 51 of 100",
                 "half gain between +3.6833 and +12.3167 quality; the least, +0.001, in 11 of 100",
+            ]
+        );
+    }
+
+    #[test]
+    fn mean_days_are_never_less_than_the_earliest_day() {
+        let told = |mode| {
+            let session = run(500, mode);
+            let means = session.research_means();
+            assert_eq!(means[4], session.research_outlook(5).means);
+            [0, 1, 2, 4].map(|at| (mean_days(&means[at]), mean_gain(&means[at], 4)))
+        };
+        let words = |days: &str, gain: &str| (days.to_owned(), gain.to_owned());
+        assert_eq!(
+            told(Mode::Sandbox),
+            [words("30", "+0.0402"), words("33", "+0.0703"), words("39", "+0.1105"), words("59", "+0.2210")]
+        );
+        // Agents are not told the spread.
+        assert_eq!(
+            told(Mode::Baseline),
+            [
+                words("≥30", "≥0.0400"),
+                words("≥30", "≥0.0700"),
+                words("≥30", "≥0.1100"),
+                words("≥42", "≥0.2200")
             ]
         );
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
-use super::words::{category_name, money, number, short_week_in_words, whole};
+use super::words::{category_name, money, number, points, short_week_in_words, whole};
 use crate::notation::{compact, percent};
 use crate::session::{
     Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, WeekFigures,
@@ -25,6 +25,8 @@ pub struct Move {
     pub up: bool,
     /// Whether that is good for the company; none where it depends.
     pub good: Option<bool>,
+    /// It is a share, 0 to 1.
+    pub is_share: bool,
     /// How it moved against the weeks before.
     pub movement: Movement,
     /// Categories of the ledger whose changes add up to this one, the largest first; empty where the figure is none of
@@ -33,9 +35,12 @@ pub struct Move {
 }
 
 impl Move {
-    /// The change in percent, where there was something before.
-    pub fn in_percent(&self) -> Option<String> {
+    /// The size of the change: of shares in percentage points, otherwise in percent of the value before. `None` if that was 0.
+    pub fn size_in_words(&self) -> Option<String> {
         let (old, new) = (self.movement.old, self.movement.new);
+        if self.is_share {
+            return Some(points((new - old).abs(), 1));
+        }
         let share = (old > 0.0).then(|| (new - old) / old)?;
         let decimals = if share.abs() < 0.0995 { 1 } else { 0 };
         Some(if share.abs() < 10.0 {
@@ -73,9 +78,50 @@ pub struct WeekReport {
     limit_days: Vec<u32>,
 }
 
-/// A figure: its name, how it is read and written, whether more of it is better, and the categories of the ledger that
-/// make it up.
-struct Row(&'static str, fn(&WeekFigures) -> f64, fn(f64) -> String, Option<bool>, &'static [Category]);
+/// A figure: its name, how it is read, its unit, whether more of it is better, and the categories of the ledger that make it
+/// up.
+struct Row(&'static str, fn(&WeekFigures) -> f64, Unit, Option<bool>, &'static [Category]);
+
+/// The unit of a figure: how its values are written and how much they vary by chance.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Unit {
+    Dollars,
+    Count,
+    Units,
+    Minutes,
+    /// A share of the leads.
+    ShareOfLeads,
+    /// Another share.
+    Share,
+}
+
+impl Unit {
+    fn write(self, value: f64) -> String {
+        match self {
+            Unit::Dollars => money(value),
+            Unit::Count => whole(value),
+            Unit::Units => compact(value),
+            Unit::Minutes => number(value),
+            Unit::ShareOfLeads | Unit::Share => percent(value, 1),
+        }
+    }
+
+    fn is_share(self) -> bool {
+        matches!(self, Unit::ShareOfLeads | Unit::Share)
+    }
+
+    /// How much a value of a week varies by chance alone, or is too little to matter to the company.
+    fn noise(self, value: f64, week: &WeekFigures) -> f64 {
+        match self {
+            // A hundredth of what the company turns over.
+            Unit::Dollars => 0.01 * (week.payments + week.costs).max(100.0),
+            // Counts of independent events.
+            Unit::Count | Unit::Units | Unit::Minutes => value.max(1.0).sqrt(),
+            Unit::ShareOfLeads => 0.5 / f64::from(week.new_individual_leads.max(1)).sqrt(),
+            Unit::Share => 0.01,
+        }
+    }
+}
 
 /// Costs that run from day to day.
 const RUNNING: [Category; 5] = [
@@ -86,25 +132,21 @@ const RUNNING: [Category; 5] = [
     Category::Advertising,
 ];
 
-fn in_percent(share: f64) -> String {
-    percent(share, 1)
-}
-
 const FIGURES: [Row; 14] = [
-    Row("recurring revenue", |week| week.recurring_revenue, money, Some(true), &[]),
-    Row("payments", |week| week.payments, money, Some(true), &[]),
-    Row("running costs", |week| week.costs, money, Some(false), &RUNNING),
-    Row("subscribers", |week| f64::from(week.individual_subscribers), whole, Some(true), &[]),
-    Row("enterprise seats", |week| f64::from(week.enterprise_seats), whole, Some(true), &[]),
-    Row("individual leads", |week| f64::from(week.new_individual_leads), whole, Some(true), &[]),
-    Row("enterprise leads", |week| f64::from(week.new_enterprise_leads), whole, Some(true), &[]),
-    Row("new subscribers", |week| f64::from(week.new_individual_subscribers), whole, Some(true), &[]),
-    Row("conversion", WeekFigures::conversion, in_percent, Some(true), &[]),
-    Row("cancellations", |week| f64::from(week.cancellations), whole, Some(false), &[]),
-    Row("usage, units", |week| week.usage as f64, compact, None, &[]),
-    Row("overload, peak", |week| week.overload_peak, in_percent, Some(false), &[]),
-    Row("outage, minutes", |week| f64::from(week.downtime_minutes), number, Some(false), &[]),
-    Row("open issues", |week| f64::from(week.open_issues), whole, Some(false), &[]),
+    Row("recurring revenue", |week| week.recurring_revenue, Unit::Dollars, Some(true), &[]),
+    Row("payments", |week| week.payments, Unit::Dollars, Some(true), &[]),
+    Row("running costs", |week| week.costs, Unit::Dollars, Some(false), &RUNNING),
+    Row("subscribers", |week| f64::from(week.individual_subscribers), Unit::Count, Some(true), &[]),
+    Row("enterprise seats", |week| f64::from(week.enterprise_seats), Unit::Count, Some(true), &[]),
+    Row("individual leads", |week| f64::from(week.new_individual_leads), Unit::Count, Some(true), &[]),
+    Row("enterprise leads", |week| f64::from(week.new_enterprise_leads), Unit::Count, Some(true), &[]),
+    Row("new subscribers", |week| f64::from(week.new_individual_subscribers), Unit::Count, Some(true), &[]),
+    Row("conversion", WeekFigures::conversion, Unit::ShareOfLeads, Some(true), &[]),
+    Row("cancellations", |week| f64::from(week.cancellations), Unit::Count, Some(false), &[]),
+    Row("usage, units", |week| week.usage as f64, Unit::Units, None, &[]),
+    Row("overload, peak", |week| week.overload_peak, Unit::Share, Some(false), &[]),
+    Row("outage, minutes", |week| f64::from(week.downtime_minutes), Unit::Minutes, Some(false), &[]),
+    Row("open issues", |week| f64::from(week.open_issues), Unit::Count, Some(false), &[]),
 ];
 
 /// What the report of a week is made from.
@@ -219,12 +261,13 @@ fn decided(sources: &Sources<'_>, days: Range<u32>) -> Vec<String> {
 fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
     let nothing = WeekFigures::default();
     let before = sources.weeks.len().checked_sub(2).map_or(&nothing, |at| &sources.weeks[at]);
-    let moved = |Row(name, read, write, more_is_better, categories): &Row| {
+    let moved = |Row(name, read, unit, more_is_better, categories): &Row| {
         // Before the first week there was nothing.
         let series: Vec<f64> = std::iter::once(&nothing).chain(sources.weeks).map(read).collect();
-        let movement = movement(&series)?;
+        let noise = unit.noise(read(before), before).max(unit.noise(read(week), week));
+        let movement = movement(&series, noise)?;
         let up = movement.new > movement.old;
-        let (old, new) = (write(movement.old), write(movement.new));
+        let (old, new) = (unit.write(movement.old), unit.write(movement.new));
         // What is written the same, or moved by less than a thousandth, did not move for the reader.
         let moved = old != new && movement.size() >= 0.001;
         moved.then(|| Move {
@@ -233,6 +276,7 @@ fn moves(sources: &Sources<'_>, week: &WeekFigures) -> Vec<Move> {
             new,
             up,
             good: more_is_better.map(|better| better == up),
+            is_share: unit.is_share(),
             movement,
             split: split(categories, &before.booked, &week.booked),
         })
@@ -326,7 +370,54 @@ mod tests {
         let report = WeekReport::of_session(&test_kit::played(1)).expect("a week");
         let costs = report.moves.iter().find(|moved| moved.name == "running costs").expect("they rose");
         assert_eq!((costs.old.as_str(), costs.up, costs.good), ("$0", true, Some(false)));
-        assert_eq!(costs.in_percent(), None);
+        assert_eq!(costs.size_in_words(), None);
         assert!(report.decided.contains(&"price A: 0 → 12 $/month".to_owned()), "{:?}", report.decided);
+    }
+
+    fn two_weeks(before: WeekFigures, week: WeekFigures, more: usize) -> WeekReport {
+        let mut weeks: Vec<WeekFigures> = (0..more).map(|_| before).collect();
+        weeks.extend([before, week]);
+        for (at, own) in weeks.iter_mut().enumerate() {
+            (own.day, own.days_run) = (7 * (at as u32 + 1), 7);
+        }
+        let sources = Sources {
+            weeks: &weeks,
+            decisions: &[],
+            journal: &[],
+            cash_by_day: &[0.0],
+            posts: [&[], &[], &[]],
+        };
+        WeekReport::of(&sources).expect("weeks")
+    }
+
+    #[test]
+    fn large_money_ranks_above_one_cancellation_less() {
+        let before =
+            WeekFigures { cancellations: 1, payments: 4_000.0, costs: 20_000.0, ..WeekFigures::default() };
+        let week = WeekFigures { cancellations: 0, payments: 9_800.0, ..before };
+        for more in [0, 5] {
+            let report = two_weeks(before, week, more);
+            let names: Vec<&str> = report.moves.iter().map(|moved| moved.name).collect();
+            assert_eq!(names, ["payments", "cancellations"], "after {more} weeks");
+            assert_eq!(report.moves[1].movement.standing(), "", "after {more} weeks");
+        }
+        // Many cancellations are told before money that hardly changed.
+        let wave = WeekFigures { cancellations: 90, payments: 4_100.0, ..before };
+        assert_eq!(two_weeks(before, wave, 5).moves[0].name, "cancellations");
+    }
+
+    #[test]
+    fn shares_change_by_percentage_points() {
+        let before = WeekFigures {
+            new_individual_leads: 1_000,
+            new_individual_subscribers: 517,
+            ..WeekFigures::default()
+        };
+        let week = WeekFigures { new_individual_subscribers: 424, ..before };
+        let report = two_weeks(before, week, 0);
+        let size =
+            |name: &str| report.moves.iter().find(|moved| moved.name == name).and_then(Move::size_in_words);
+        assert_eq!(size("conversion").as_deref(), Some("9.3 pt"));
+        assert_eq!(size("new subscribers").as_deref(), Some("18%"));
     }
 }

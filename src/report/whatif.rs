@@ -9,13 +9,13 @@ use crate::session::{
 };
 use crate::statistics::Interval;
 
-/// The name of the run as it was.
-pub const AS_IT_WAS: &str = "as it was";
+/// The name of the branch without edits. Days after the end of the record were not played in it either.
+const UNCHANGED: &str = "your decisions unchanged";
 
 /// What a branch decides otherwise, as it is written.
 pub fn name(edits: &[DecisionEdit]) -> String {
     match edits {
-        [] => AS_IT_WAS.to_owned(),
+        [] => UNCHANGED.to_owned(),
         edits => edits.iter().map(DecisionEdit::to_string).collect::<Vec<_>>().join("; "),
     }
 }
@@ -25,7 +25,9 @@ pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     let BranchComparison { from, until, recorded_until, .. } = comparison;
     let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
     let beyond = match recorded_until < until {
-        true => format!("; after day {recorded_until} nothing is decided, the settings stay"),
+        true => format!(
+            "; days after {recorded_until} were not played yet: nothing is decided, the settings stay"
+        ),
         false => String::new(),
     };
     format!("weeks {first} to {last} (days {} to {until}) again, the same luck{beyond}", from + 1)
@@ -117,7 +119,13 @@ fn otherwise(call: &DecisionDifference) -> String {
     }
 }
 
-/// Headers and rows: a figure at each milestone, in each branch, with its difference from the run as it was.
+/// The week after which figures are shown; `ahead` if it was not played to its end yet.
+pub fn week_of_milestone(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
+    let ahead = if day > comparison.recorded_until { " ahead" } else { "" };
+    format!("{}{ahead}", day.div_ceil(days_per_week))
+}
+
+/// Headers and rows: a figure at each milestone, in each branch, with its difference from the unchanged run.
 pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>, Vec<Vec<String>>) {
     let cell = |at: usize, figure, day| cell(comparison, &comparison.branches[at], figure, day);
     table_of(comparison, days_per_week, cell)
@@ -135,7 +143,8 @@ fn table_of(
     let mut rows = Vec::new();
     for day in comparison.milestones(days_per_week) {
         for (at, figure) in comparison.figures.iter().enumerate() {
-            let first = if at == 0 { day.div_ceil(days_per_week).to_string() } else { String::new() };
+            let first =
+                if at == 0 { week_of_milestone(comparison, day, days_per_week) } else { String::new() };
             let cells = numbers().map(|branch| cell(branch, *figure, day));
             rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
         }
@@ -265,6 +274,25 @@ mod tests {
 
     use super::*;
     use crate::session::ToolId;
+
+    #[test]
+    fn weeks_after_the_end_of_the_record_are_not_called_played() {
+        let comparison = BranchComparison {
+            from: 21,
+            until: 49,
+            recorded_until: 35,
+            branches: Vec::new(),
+            figures: Vec::new(),
+        };
+        let told = |day| week_of_milestone(&comparison, day, 7);
+        assert_eq!([28, 35, 42, 49].map(told), ["4", "5", "6 ahead", "7 ahead"]);
+        assert_eq!(
+            heading(&comparison, 7),
+            "weeks 4 to 7 (days 22 to 49) again, the same luck; days after 35 were not played yet: nothing is decided, \
+             the settings stay"
+        );
+        assert_eq!(name(&[]), "your decisions unchanged");
+    }
 
     #[test]
     fn calls_that_differ_alike_are_told_together() {

@@ -1,7 +1,7 @@
 //! Why a figure changed, in words and numbers.
 
 use super::chapters::change_in_words;
-use super::words::{count, number, short_week_in_words, whole};
+use super::words::{count, number, points, short_week_in_words, whole};
 use crate::notation::{grouped, percent};
 use crate::session::{Detail, FigureUnit, InputDetail, Why};
 
@@ -66,8 +66,8 @@ pub fn signed(unit: FigureUnit, change: f64) -> String {
         FigureUnit::Dollars => format!("${}", grouped(size, 0)),
         FigureUnit::Count if size < 100.0 && (size - size.round()).abs() > 0.05 => grouped(size, 1),
         FigureUnit::Count => grouped(size, 0),
-        FigureUnit::Share => format!("{} pt", grouped(100.0 * size, 1)),
-        FigureUnit::FineShare => format!("{} pt", grouped(100.0 * size, 2)),
+        FigureUnit::Share => points(size, 1),
+        FigureUnit::FineShare => points(size, 2),
         FigureUnit::Level => grouped(size, 3),
     };
     let is_nothing = !text.contains(|digit: char| ('1'..='9').contains(&digit));

@@ -76,6 +76,11 @@ pub fn range(least: f64, most: f64, decimals: usize) -> String {
     format!("{} to {}", grouped(least, decimals), grouped(most, decimals))
 }
 
+/// A difference of shares in percentage points: `9.3 pt`. Shares are never compared in percent of each other.
+pub fn points(difference: f64, decimals: usize) -> String {
+    format!("{} pt", grouped(100.0 * difference, decimals))
+}
+
 /// A count with its noun: `1 week`, `3 weeks`.
 pub fn count(number: u32, noun: &str) -> String {
     let plural = match noun.strip_suffix("ny") {

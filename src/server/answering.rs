@@ -82,7 +82,7 @@ fn status_of_query(code: &str) -> Status {
     match code {
         "sql_empty" => Status::Refused,
         "sql_schema" | "sql_hidden_table" | "sql_hidden_column" | "sql_write" => Status::Forbidden,
-        "sql_timeout" => Status::TimedOut,
+        "sql_timeout" | "sql_cancelled" => Status::TimedOut,
         _ => Status::Failed,
     }
 }

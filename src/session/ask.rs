@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-use crate::database::query::{CANCELLED, Limits};
+use crate::database::query::{Limits, SQL_CANCELLED};
 use crate::database::{
     Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Scope, Ticket, query_connection,
 };
@@ -132,7 +132,7 @@ impl Session {
             truncated: rows.is_some_and(|rows| rows.truncated),
             error: refusal.map(|refusal| refusal.code.to_owned()),
             message: refusal.map(|refusal| refusal.message.clone()),
-            stopped: refusal.is_some_and(|refusal| refusal.message.starts_with(CANCELLED)),
+            stopped: refusal.is_some_and(|refusal| refusal.code == SQL_CANCELLED),
             via: Some(via),
             took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
         };

@@ -61,7 +61,7 @@ pub use figures::journal::JournalEntry;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
-pub use figures::research_outlook::{LateProject, ResearchOutlook, ResearchSpread};
+pub use figures::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId};
 pub use figures::sitting_count::SittingCount;

@@ -39,7 +39,12 @@ impl Console {
 
     /// A console of a person with a configuration.
     pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
-        let settings = Settings {
+        Console::of(Console::settings(configuration, runs), size)
+    }
+
+    /// What a console is started with.
+    pub fn settings(configuration: Configuration, runs: &Path) -> Settings {
+        Settings {
             theme: Theme::find("dark", &configuration).expect("a theme"),
             keys: Keys::shipped(),
             glyphs: Glyphs::Braille,
@@ -48,7 +53,11 @@ impl Console {
             again: "novamind --run latest".to_owned(),
             lists_everybody: false,
             opponents: novamind::lab::play_opponents,
-        };
+        }
+    }
+
+    /// A console in its start menu, started with settings.
+    pub fn of(settings: Settings, size: (u16, u16)) -> Console {
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");
         console

@@ -1,6 +1,6 @@
 //! A run that is over: it offers what can still be done, and no next week.
 
-use novamind::session::Mode;
+use novamind::session::{Configuration, Mode};
 
 use super::harness::Console;
 use super::looks::SIZES;
@@ -51,6 +51,20 @@ fn a_what_if_of_the_final_page_begins_twelve_weeks_before_the_end() {
     console.shows("What if, from week 2 on");
     console.press("esc ; b");
     console.shows("What if, from week 2 on");
+}
+
+#[test]
+fn a_defect_in_background_work_is_reported_in_its_dialog() {
+    let runs = tempfile::tempdir().expect("a folder");
+    drop(over(runs.path(), Mode::Baseline, (120, 40)));
+    let mut settings = Console::settings(Configuration::shipped(), runs.path());
+    settings.opponents = |_, _, _| panic!("seat 3 is missing");
+    let mut console = Console::of(settings, (120, 40));
+    console.open("latest").expect("it opens");
+    console.press("o");
+    console.shows("the program has a defect (seat 3 is missing); nothing was changed");
+    console.press("esc");
+    console.shows("You end with");
 }
 
 #[test]

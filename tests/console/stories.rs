@@ -206,9 +206,28 @@ fn a_post_is_published_from_the_feed_after_one_question() {
     console.press("p 'Again' ctrl-s");
     console.shows("already posted");
     console.press("esc q");
-    console.shows("discard");
+    console.shows("It is kept with this run");
     console.press("esc 1 5");
     console.shows("Again");
+}
+
+#[test]
+fn quitting_keeps_drafts_of_forms_and_posts() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut console = Console::in_new_run(runs.path(), (120, 40));
+    console.press("8 enter enter '14' enter");
+    console.shows("draft, kept until sent or reset");
+    console.press("esc 5 p 'Unsent' esc q");
+    console.shows("It is kept with this run");
+    console.press("y");
+    assert_eq!(console.left, Some((0, None)), "the program ends");
+    drop(console);
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.shows("Unsent text");
+    console.press("enter 5");
+    console.shows("Unsent");
+    console.press("8");
+    console.shows("draft, kept until sent or reset: A 0 → 14");
 }
 
 #[test]

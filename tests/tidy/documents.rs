@@ -221,6 +221,24 @@ fn every_parameter_is_explained_on_one_page() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// How long lessons take is told in two documents and follows from the lessons.
+#[test]
+fn minutes_of_lessons_in_documents_are_those_of_the_lessons() {
+    let minutes: Vec<i64> = files(&root().join("configs/lessons"), "toml")
+        .iter()
+        .filter_map(|path| {
+            let lesson: Table = fs::read_to_string(path).expect("a lesson").parse().expect("TOML");
+            lesson.get("minutes").and_then(Value::as_integer)
+        })
+        .collect();
+    let (least, most) = (minutes.iter().min().expect("a lesson"), minutes.iter().max().expect("a lesson"));
+    let span = format!("{least} to {most} minutes");
+    for path in ["README.md", "docs/lessons/README.md"] {
+        let text = fs::read_to_string(root().join(path)).expect("a document");
+        assert!(text.contains(&span), "{path} says something else than {span}");
+    }
+}
+
 #[test]
 fn links_lead_somewhere() {
     let pages = pages();

@@ -10,7 +10,6 @@ use super::{App, Closing, Layer, Order, Stage};
 use crate::console::action::{Action, Scope};
 use crate::console::attention::Edit;
 use crate::console::canvas::Click;
-use crate::console::dialogs::confirm::Confirm;
 use crate::console::dialogs::help::Help;
 use crate::console::dialogs::palette::Palette;
 use crate::console::dialogs::reader::Reader;
@@ -487,14 +486,5 @@ impl App {
             lines.push("u undoes the last setting, U redoes it; purchases stay.".to_owned());
         }
         self.open(Reader::new("Changes of this week", lines.join("\n")));
-    }
-
-    fn quit(&mut self) {
-        if self.holds_unsent_text() {
-            let text = "A form, the notes or the next-week dialog holds unsent text. The run itself is saved. Leave and discard that text?";
-            self.open(Confirm::new("Leave", text, vec![Effect::LeaveNow]));
-            return;
-        }
-        self.leave(Closing::ToShell);
     }
 }

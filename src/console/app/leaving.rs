@@ -39,17 +39,38 @@ impl Closing {
     }
 }
 
-/// Asked before a run is left with text that was not sent.
-const KEEPS_TEXT: &str = "A form, the notes or the next-week dialog holds unsent text. It is kept with this run and offered \
-                          when you open it again. Leave this run now?";
+/// Said of unsent text before a run is left.
+const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog holds unsent text. It is kept with this run and \
+                          offered when you open the run again.";
+/// The same once the run is over: nothing can be sent any more.
+const DROPS_TEXT: &str = "The notes hold unsaved text. The run is over: the text is not kept.";
+/// Said of unsent offers.
+const DROPS_OFFERS: &str = "Unsent offers in the inbox are not kept.";
 
 impl App {
-    /// Whether text was typed and not sent.
-    pub(super) fn holds_unsent_text(&self) -> bool {
-        self.run().filter(|run| run.viewer.is_none()).is_some_and(|run| {
-            run.filing.has_draft()
-                || ScreenId::ALL.iter().any(|screen| run.screens.get(*screen).holds_unsent_text())
-        })
+    /// What happens to unsent text when the run is left, with the question whether to leave. `None` if there is none.
+    fn unsent_question(&self) -> Option<String> {
+        let run = self.run().filter(|run| run.viewer.is_none())?;
+        let holds = |screen: &ScreenId| run.screens.get(*screen).holds_unsent_text();
+        let (offers, texts): (Vec<ScreenId>, Vec<ScreenId>) =
+            ScreenId::ALL.into_iter().filter(holds).partition(|screen| *screen == ScreenId::Inbox);
+        let mut sentences = Vec::new();
+        if run.filing.has_draft() || !texts.is_empty() {
+            sentences.push(if run.company.is_running() { KEEPS_TEXT } else { DROPS_TEXT });
+        }
+        if !offers.is_empty() {
+            sentences.push(DROPS_OFFERS);
+        }
+        let question = || format!("{} Leave this run now?", sentences.join(" "));
+        (!sentences.is_empty()).then(question)
+    }
+
+    /// Leaves the program, after a question if there is unsent text.
+    pub(super) fn quit(&mut self) {
+        match self.unsent_question() {
+            Some(question) => self.open(Confirm::new("Leave", question, vec![Effect::LeaveNow])),
+            None => self.leave(Closing::ToShell),
+        }
     }
 
     /// Opens another run of the folder in place of what is open.
@@ -62,9 +83,9 @@ impl App {
             return self.complain("days are running; try again when they are done");
         }
         let open = Effect::Request(Request::Open(id.clone(), Access::Write));
-        match self.holds_unsent_text() {
-            true => self.open(Confirm::new(format!("open run {id}"), KEEPS_TEXT, vec![open])),
-            false => self.follow(vec![open]),
+        match self.unsent_question() {
+            Some(question) => self.open(Confirm::new(format!("open run {id}"), question, vec![open])),
+            None => self.follow(vec![open]),
         }
     }
 

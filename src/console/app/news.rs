@@ -105,6 +105,11 @@ impl App {
                     run.behind = Some(problem);
                 }
             }
+            News::Reconnected(interrupt) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.interrupt = Some(interrupt);
+                }
+            }
             News::DatabaseWhole(interrupt) => self.database_whole(interrupt),
             News::Told(story) => self.told(&story),
             News::Reported(files) => {

@@ -179,10 +179,7 @@ impl App {
             Effect::Receive(study) => self.receive(study),
             Effect::SettleOffer(restore) => self.settle_offer(restore),
             Effect::StopClock(reason) => self.stop_clock(reason, false),
-            Effect::LeaveNow => {
-                self.discard_texts();
-                self.leave(Closing::ToShell);
-            }
+            Effect::LeaveNow => self.leave(Closing::ToShell),
             Effect::Do(action) => self.act(action),
         }
     }

@@ -50,14 +50,6 @@ impl App {
         }
     }
 
-    /// The person leaves and does not want what they typed.
-    pub(super) fn discard_texts(&mut self) {
-        self.keep_texts();
-        self.orders.push(Order::Job(Job::KeepDrafts(Box::default())));
-        // What is typed now is what was discarded: it is not kept again on the way out.
-        self.unsent.texts = Some(self.unsent_texts());
-    }
-
     fn unsent_texts(&self) -> UnsentTexts {
         let Some(run) = self.run().filter(|run| run.viewer.is_none() && run.company.is_running()) else {
             return UnsentTexts::default();

@@ -303,7 +303,7 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16, name: Role) -> Se
         None => Role::Text,
     };
     let glyph = if own.up { "▲" } else { "▼" };
-    let share = own.in_percent().unwrap_or_default();
+    let share = own.size_in_words().unwrap_or_default();
     let mark = if name == Role::Selection { "›" } else { " " };
     let mut line = vec![
         canvas.span(format!("{mark} {:<17}", own.name), name),

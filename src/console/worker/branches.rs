@@ -1,10 +1,11 @@
 //! What would have been, found on a thread of its own: the run goes on meanwhile.
 
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 use std::sync::mpsc::Sender;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use super::answering::{answer_on_thread, lock_kept};
 use super::causes::folder_of;
 use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::console::message::{Message, News};
@@ -25,18 +26,15 @@ impl SessionThread {
             BranchesQuestion::Decisions => false,
         };
         let (news, kept) = (self.news.clone(), self.branches.clone());
-        std::thread::spawn(move || {
-            let found = folder.and_then(|folder| {
-                let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-                let own = kept.of(folder)?;
-                own.tell_hidden(is_recorded);
-                answer(&asked, own, &news)
-            });
-            // Nobody waits for what was stopped.
-            if let Some(found) = found.transpose() {
-                let _ = news.send(Message::News(News::Branches(asked.number, Box::new(found))));
-            }
-        });
+        let number = asked.number;
+        let progress = news.clone();
+        let work = move || {
+            let mut kept = lock_kept(&kept);
+            let own = kept.of(folder?)?;
+            own.tell_hidden(is_recorded);
+            answer(&asked, own, &progress)
+        };
+        answer_on_thread(news, work, move |found| News::Branches(number, Box::new(found)));
     }
 
     /// Makes a branch that keeps the decisions of the run, some of them edited, and opens it.

@@ -1,9 +1,10 @@
 //! Causes of a change, found on a thread of their own: the run goes on meanwhile.
 
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::mpsc::Sender;
-use std::sync::{Mutex, PoisonError};
 
+use super::answering::{answer_on_thread, lock_kept};
 use super::{Open, SessionThread};
 use crate::console::message::{Message, News};
 use crate::console::resimulation::WhyAsked;
@@ -22,13 +23,12 @@ impl SessionThread {
             folder = looked.and(folder);
         }
         let (news, kept) = (self.news.clone(), self.causes.clone());
-        std::thread::spawn(move || {
-            let answer = folder.and_then(|folder| answer(&asked, question, folder, &kept, &news));
-            // Nobody waits for what was stopped.
-            if let Some(answer) = answer.transpose() {
-                let _ = news.send(Message::News(News::Why(asked.number, Box::new(answer))));
-            }
-        });
+        let number = asked.number;
+        answer_on_thread(
+            news.clone(),
+            move || folder.and_then(|folder| answer(&asked, question, folder, &kept, &news)),
+            move |answer| News::Why(number, Box::new(answer)),
+        );
     }
 }
 
@@ -50,7 +50,7 @@ fn answer(
     kept: &Mutex<LastRead<Causes>>,
     news: &Sender<Message>,
 ) -> Result<Option<Why>, Refusal> {
-    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut kept = lock_kept(kept);
     kept.of(folder)?.why(question, &|progress| {
         let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
         unless_stopped(&asked.stop)

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
-use crate::console::message::{Message, News};
+use crate::console::message::News;
 use crate::session::branches_of;
 
 impl SessionThread {
@@ -15,16 +16,14 @@ impl SessionThread {
             Some(Open::Replayed(playback)) => Some(playback.session()),
             None => None,
         };
-        let Some(session) = session else { return self.say(News::Kin(String::new(), Vec::new())) };
+        let Some(session) = session else { return self.say(News::Kin(String::new(), Ok(Vec::new()))) };
         let id = session.manifest().id.clone();
         let is_among_runs = session.folder().and_then(Path::parent) == Some(self.runs.as_path());
         if self.desk.is_some() || session.manifest().study.is_some() || !is_among_runs {
-            return self.say(News::Kin(id, Vec::new()));
+            return self.say(News::Kin(id, Ok(Vec::new())));
         }
         let (news, runs) = (self.news.clone(), self.runs.clone());
-        std::thread::spawn(move || {
-            let tree = branches_of(&runs, &id);
-            let _ = news.send(Message::News(News::Kin(id, tree)));
-        });
+        let run = id.clone();
+        answer_on_thread(news, move || Ok(Some(branches_of(&runs, &run))), |tree| News::Kin(id, tree));
     }
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
-use crate::console::message::{Message, News};
+use crate::console::message::News;
 use crate::console::request::LessonRequest;
 use crate::rules::answers_to_companies;
 use crate::session::record::LeavingCause;
@@ -50,9 +51,7 @@ impl SessionThread {
     fn find_debrief(&mut self) {
         let Some(open) = &mut self.open else { return };
         let (played, news) = (open.session().played_part(), self.news.clone());
-        std::thread::spawn(move || {
-            let debrief = played.map(|played| played.debrief(answers_to_companies));
-            let _ = news.send(Message::News(News::Debriefed(Arc::new(debrief))));
-        });
+        let work = move || played.map(|played| Some(played.debrief(answers_to_companies)));
+        answer_on_thread(news, work, |debrief| News::Debriefed(Arc::new(debrief)));
     }
 }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::SessionThread;
-use crate::console::message::{Message, News};
+use super::answering::answer_on_thread;
+use crate::console::message::News;
 use crate::report::opponents::PlayOpponents;
 use crate::session::Refusal;
 
@@ -16,13 +17,10 @@ impl SessionThread {
         let missing = || Refusal::new("not_possible", "a run in memory has no record to play against");
         let folder = open.session().folder().map(Path::to_owned).ok_or_else(missing);
         let (news, configuration) = (self.news.clone(), self.configuration.clone());
-        std::thread::spawn(move || {
+        let work = move || {
             let goes_on = || !stop.load(Ordering::Relaxed);
-            let found = folder.and_then(|folder| play(&folder, &configuration, &goes_on));
-            // Nobody waits for what was stopped.
-            if let Some(found) = found.transpose() {
-                let _ = news.send(Message::News(News::Opponents(number, Box::new(found))));
-            }
-        });
+            folder.and_then(|folder| play(&folder, &configuration, &goes_on))
+        };
+        answer_on_thread(news, work, move |found| News::Opponents(number, Box::new(found)));
     }
 }

@@ -4,10 +4,11 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::Instant;
 
 use super::Job;
+use super::answering::catch_defect;
 use crate::console::message::{Message, News};
 use crate::console::readings::Reading;
 use crate::database::query::Limits;
-use crate::session::{Interrupt, QueryConnection, QuerySource, Refusal, Session, Ticket};
+use crate::session::{Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket};
 
 /// A question for the database.
 pub struct Question {
@@ -40,6 +41,11 @@ pub(super) struct QueryThreads {
     screens: Sender<QueryJob>,
 }
 
+type Connection = (Box<QueryConnection>, Limits);
+
+/// Answers a question over a connection.
+type AskDatabase = fn(&Connection, &Question) -> Result<Rows, Refusal>;
+
 enum QueryJob {
     Connect(Box<QueryConnection>, Limits),
     Ask(Question),
@@ -49,7 +55,7 @@ enum QueryJob {
 impl QueryThreads {
     /// Starts the threads; what they report goes into the channel of news, what is recorded into that of jobs.
     pub(super) fn start(news: &Sender<Message>, jobs: &Sender<Job>) -> QueryThreads {
-        let start = || start_thread(news.clone(), jobs.clone());
+        let start = || start_thread(news.clone(), jobs.clone(), ask);
         QueryThreads { person: start(), screens: start() }
     }
 
@@ -85,15 +91,15 @@ impl QueryThreads {
     }
 }
 
-fn start_thread(news: Sender<Message>, jobs: Sender<Job>) -> Sender<QueryJob> {
+fn start_thread(news: Sender<Message>, jobs: Sender<Job>, ask: AskDatabase) -> Sender<QueryJob> {
     let (asked, questions) = channel();
     std::thread::spawn(move || {
-        let mut connection: Option<(Box<QueryConnection>, Limits)> = None;
+        let mut connection: Option<Connection> = None;
         while let Ok(job) = questions.recv() {
             match job {
                 QueryJob::Connect(own, limits) => connection = Some((own, limits)),
                 QueryJob::Disconnect => connection = None,
-                QueryJob::Ask(question) => answer(question, connection.as_ref(), &news, &jobs),
+                QueryJob::Ask(question) => answer(question, &mut connection, ask, &news, &jobs),
             }
         }
     });
@@ -102,17 +108,21 @@ fn start_thread(news: Sender<Message>, jobs: Sender<Job>) -> Sender<QueryJob> {
 
 fn answer(
     question: Question,
-    connection: Option<&(Box<QueryConnection>, Limits)>,
+    connection: &mut Option<Connection>,
+    ask: AskDatabase,
     news: &Sender<Message>,
     jobs: &Sender<Job>,
 ) {
     let started = Instant::now();
-    let rows = match (connection, &question.by) {
-        (Some((connection, limits)), AskedBy::Person(_, Some(ticket), _)) => {
-            connection.ask_as(*ticket, &question.sql, *limits).map_err(Refusal::from)
+    let rows = match connection.as_ref().map(|own| catch_defect(|| ask(own, &question))) {
+        None => Err(Refusal::new("sql_error", "no run is open")),
+        Some(Ok(rows)) => rows,
+        Some(Err(defect)) => {
+            // What guards the connection may be half done: it is never used again.
+            *connection = None;
+            let _ = jobs.send(Job::Reconnect);
+            Err(defect)
         }
-        (Some((connection, limits)), _) => connection.ask(&question.sql, *limits).map_err(Refusal::from),
-        (None, _) => Err(Refusal::new("sql_error", "no run is open")),
     };
     let took = started.elapsed();
     let report = match question.by {
@@ -124,4 +134,56 @@ fn answer(
         AskedBy::Screen(reading, changes) => News::Read(reading, changes, rows),
     };
     let _ = news.send(Message::News(report));
+}
+
+fn ask((connection, limits): &Connection, question: &Question) -> Result<Rows, Refusal> {
+    let rows = match question.by {
+        AskedBy::Person(_, Some(ticket), _) => connection.ask_as(ticket, &question.sql, *limits),
+        AskedBy::Person(..) | AskedBy::Screen(..) => connection.ask(&question.sql, *limits),
+    };
+    rows.map_err(Refusal::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::test_kit::played;
+
+    /// Panics on one statement.
+    fn ask_or_panic(connection: &Connection, question: &Question) -> Result<Rows, Refusal> {
+        assert_ne!(question.sql, "SELECT 'defect'", "a defect");
+        ask(connection, question)
+    }
+
+    #[test]
+    fn query_thread_answers_after_a_panic_and_asks_for_a_new_connection() {
+        let session = played(0);
+        let (news, answers) = channel();
+        let (jobs, asked) = channel();
+        let thread = start_thread(news, jobs, ask_or_panic);
+        let connect = || {
+            let connection = session.open_connection().expect("a connection");
+            let _ = thread.send(QueryJob::Connect(Box::new(connection), session.query_limits()));
+        };
+        let answer = |sql: &str, number| {
+            let question = Question::of_person(sql.to_owned(), number, None, QuerySource::Typed);
+            let _ = thread.send(QueryJob::Ask(question));
+            match answers.recv().expect("an answer") {
+                Message::News(News::Answered(of, rows, _)) if of == number => rows,
+                _ => panic!("other news"),
+            }
+        };
+        connect();
+        assert!(answer("SELECT 1", 1).is_ok());
+        let refused = answer("SELECT 'defect'", 2).expect_err("a panic");
+        assert_eq!(refused.code, "internal_error");
+        // The connection that met the panic is never used again.
+        assert_eq!(answer("SELECT 1", 3).expect_err("no connection").code, "sql_error");
+        let noted = |job| matches!(job, Job::NoteQuery(..));
+        assert!(noted(asked.recv().expect("a job")));
+        assert!(matches!(asked.recv().expect("a job"), Job::Reconnect));
+        assert!(noted(asked.recv().expect("a job")));
+        connect();
+        assert!(answer("SELECT 1", 4).is_ok());
+    }
 }

@@ -68,21 +68,25 @@ pub(super) fn nothing_on_sale(situation: &Situation<'_>) -> Option<Need> {
 fn no_price(situation: &Situation<'_>) -> Need {
     let mut budgets: Vec<&Estimates> = situation.individuals().collect();
     budgets.sort_by(|left, right| left.budget.total_cmp(&right.budget));
-    let half = |at: usize| budgets.get(at).map(|own| (own.budget / 2.0).round().max(1.0));
+    let half = |at: usize| budgets.get(at).map(|own| (own.budget.round() / 2.0).round().max(1.0));
     let prices: Map<String, Value> = Plan::ALL
         .into_iter()
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
+    // The form holds half of the figure that is shown, not half of the middle of its range.
     let told: Vec<String> = budgets
         .iter()
-        .map(|own| format!("{} {}", own.group, TruthRange::behind(own.budget, own.noise).money()))
+        .map(|own| {
+            let range = TruthRange::behind(own.budget, own.noise).money();
+            format!("{} {range} (estimate {})", own.group, money(own.budget.round()))
+        })
         .collect();
     Need {
         problem: Problem::NoPrice,
         text: "no plan has a price: nobody can subscribe".to_owned(),
         proposal: Some(format!(
-            "budgets a month as far as known: {}; the form proposes half of the estimates",
+            "mean budgets a month: {}; the form proposes half of each estimate",
             told.join(", ")
         )),
         place: Place::Call(ToolId::SetPrices, Value::Object(prices)),
@@ -237,6 +241,20 @@ impl<'a> Offers<'a> {
         })
     }
 
+    /// The quality of the best plan. One that delivers more and lacks more is named, too: its quota does not cover their use.
+    fn best_in_words(&self, plan: Plan, delivered: f64) -> String {
+        let quality = |plan: Plan| self.quality.by_plan[plan];
+        let more = self.affordable().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
+        match more.filter(|more| quality(*more) > delivered) {
+            None => format!("the best within their estimated budget, {delivered:.4} on {plan}"),
+            Some(more) => format!(
+                "{delivered:.4} on {plan}; {more} delivers {:.4} within their estimated budget, but its quota is too small \
+                 for them",
+                quality(more)
+            ),
+        }
+    }
+
     pub(super) fn missing(&self) -> Missing {
         match self.best() {
             None => Missing::Price,
@@ -330,7 +348,8 @@ impl<'a> Offers<'a> {
                 let plan = self.best()?;
                 let delivered = self.quality.by_plan[plan];
                 let told = format!(
-                    "quality: the best for them, {delivered:.4} on {plan}, against a mean floor of {floor} ({as_of})"
+                    "quality: {}, against a mean floor of {floor} ({as_of})",
+                    self.best_in_words(plan, delivered)
                 );
                 let (proposal, place) =
                     better_quality(self.situation, group, plan, (delivered, own.floor), at_risk)?;

@@ -16,6 +16,8 @@ const SOON: f64 = 2.0;
 const OFTEN: f64 = 0.01;
 /// Share of the subscribers that may wait for support.
 const WAITING: f64 = 0.02;
+/// Days in which a backlog is to be cleared.
+const DAYS_TO_CLEAR: f64 = 7.0;
 
 /// Usage above capacity, or soon above it.
 pub(super) fn capacity(situation: &Situation<'_>) -> Option<Need> {
@@ -134,7 +136,7 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
     // Whoever waits opens no other issue: more are opened once nobody does.
     let free = (people - f64::from(week.open_issues)).max(1.0);
-    let needed = opened * people / free + waiting / 7.0;
+    let needed = opened * people / free + f64::from(week.open_issues) / DAYS_TO_CLEAR;
     let dollars = rounded_up((needed - base) / per_dollar);
     if dollars <= operations {
         return None;
@@ -144,6 +146,9 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     if (dollars - operations) * AHEAD > at_risk {
         return None;
     }
+    let solved = (base + per_dollar * dollars).round();
+    // Follows from the numbers of the sentence, as they are written.
+    let days = (f64::from(week.open_issues) / (solved - opened.round())).ceil();
     Some(Need {
         problem: Problem::Backlog,
         text: format!(
@@ -154,9 +159,10 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
             whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day solve about {}: the daily inflow, and the backlog within a week",
+            "{} a day solve about {}: the daily inflow, and the backlog in {}",
             money(dollars),
-            whole(base + per_dollar * dollars)
+            whole(solved),
+            count(days as u32, "day")
         )),
         place: Place::Call(ToolId::SetDailySpend, json!({ "operations": json_number(general) })),
         at_risk,

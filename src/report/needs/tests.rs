@@ -6,6 +6,7 @@ use super::*;
 use crate::session::Mode;
 use crate::session::ToolId;
 use crate::session::{Configuration, NewRun, Storage, Via};
+use crate::world::identifiers::Plan;
 
 /// A company that can be bought from, is heard of and has room to grow.
 fn sound() -> Vec<(&'static str, Value)> {
@@ -82,9 +83,18 @@ fn without_prices_nobody_can_subscribe() {
     let need = is_first(
         &company(3, 1e6, &[], 0),
         Problem::NoPrice,
-        &["no plan has a price", "budgets a month as far as known: S1 $"],
+        &["no plan has a price", "mean budgets a month: S1 $", "the form proposes half of each estimate"],
     );
-    assert!(matches!(need.place, Place::Call(ToolId::SetPrices, _)));
+    let Place::Call(ToolId::SetPrices, arguments) = &need.place else { panic!("{need:?}") };
+    let proposal = need.proposal.as_deref().unwrap_or_default();
+    let estimates: Vec<f64> = proposal
+        .split("(estimate $")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next()?.replace(',', "").parse().ok())
+        .collect();
+    let prices: Vec<f64> = ["A", "B", "C"].iter().filter_map(|plan| arguments[plan].as_f64()).collect();
+    let halves: Vec<f64> = estimates.iter().take(3).map(|estimate| (estimate / 2.0).round()).collect();
+    assert_eq!(prices, halves, "{proposal}");
 }
 
 #[test]
@@ -131,7 +141,11 @@ fn quality_below_the_floor_wins_nobody() {
         ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
     ]);
     let session = company(7, 1e6, &calls, 2);
-    let need = is_first(&session, Problem::NoSales(group("S2")), &["quality: the best for them"]);
+    let need = is_first(
+        &session,
+        Problem::NoSales(group("S2")),
+        &["quality: the best within their estimated budget"],
+    );
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
     let mut session = session;
@@ -140,6 +154,26 @@ fn quality_below_the_floor_wins_nobody() {
         needs(&session).iter().all(|need| need.problem != Problem::NoSales(group("S2"))),
         "it is on its way"
     );
+}
+
+#[test]
+fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
+    let calls = but(&[
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+        ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+        ("set_usage_quotas", json!({"A": 2_000, "B": 4_000, "C": 4})),
+    ]);
+    let session = company(7, 1e6, &calls, 2);
+    let quality = session.delivered_quality();
+    let own = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
+    assert!(own.by_plan[Plan::C] > own.by_plan[Plan::B], "C has the better model");
+    let named = format!(
+        "quality: {:.4} on B; C delivers {:.4} within their estimated budget, but its quota is too small",
+        own.by_plan[Plan::B],
+        own.by_plan[Plan::C]
+    );
+    is_first(&session, Problem::NoSales(group("S2")), &[named.as_str()]);
 }
 
 #[test]
@@ -156,7 +190,7 @@ fn an_offer_that_was_changed_today_is_not_blamed_for_the_week_before() {
     };
     let need = about_s1(&session).expect("few sign");
     assert!(
-        need.text.contains("quality: the best for them") && need.text.contains(" on A,"),
+        need.text.contains("quality: the best within their estimated budget") && need.text.contains(" on A,"),
         "{}",
         need.text
     );
@@ -241,7 +275,20 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
         }
         play(&mut session, 1);
     }
-    let need = is_first(&session, Problem::Backlog, &["waiting for support", "the backlog within a week"]);
+    let need = is_first(
+        &session,
+        Problem::Backlog,
+        &["waiting for support", "the daily inflow, and the backlog in "],
+    );
+    // The days follow from the numbers of the two sentences.
+    let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
+        .replace(',', "")
+        .split(|sign: char| !sign.is_ascii_digit())
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let [waiting, inflow, _, _, _, solved, days] = numbers[..] else { panic!("{need:?}") };
+    assert_eq!((waiting / (solved - inflow)).ceil(), days, "{need:?}");
+    assert!(days <= 7.0, "{need:?}");
     let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     session.call("set_daily_spend", arguments, Via::Script).expect("it is set");
     assert!(
@@ -465,7 +512,11 @@ fn the_plan_that_lacks_least_is_named_and_development_of_others_stays() {
     let session = company(7, 1e6, &calls, 2);
     let all = needs(&session);
     let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
-    assert!(need.text.contains("quality: the best for them"), "A lacks a quota, too: {}", need.text);
+    assert!(
+        need.text.contains("quality: the best within their estimated budget"),
+        "A lacks a quota, too: {}",
+        need.text
+    );
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"], json!({"S1": 700, "S2": 5_000}));
 }

@@ -5,7 +5,10 @@ use serde::Serialize;
 
 use crate::session::folder::mode::Mode;
 use crate::session::state::Session;
-use crate::world::product::research_spread::{days_for, done_within, gain_at, share_of_least_gain};
+use crate::world::params::ResearchTier;
+use crate::world::product::research_spread::{
+    days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,
+};
 
 /// When a project that is started now can be done.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -14,8 +17,21 @@ pub struct ResearchOutlook {
     pub earliest: u32,
     /// Last day of the run.
     pub last_day: u32,
+    /// Means of its tier.
+    pub means: ResearchMeans,
     /// How projects of its tier spread; none in a baseline session, because agents are not told.
     pub spread: Option<ResearchSpread>,
+}
+
+/// Mean duration and gain of the projects of a tier, with the least duration and gain applied.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ResearchMeans {
+    /// Days.
+    pub days: f64,
+    /// Quality.
+    pub gain: f64,
+    /// Both are lower bounds, as in a baseline session: they follow from what agents are told, which leaves out the spread.
+    pub are_lower_bounds: bool,
 }
 
 /// How the projects of a tier spread that are started now.
@@ -67,7 +83,29 @@ impl Session {
         ResearchOutlook {
             earliest: today + development.rd_min_duration_days,
             last_day,
+            means: self.means_of(law),
             spread: (self.manifest.mode != Mode::Baseline).then(spread),
+        }
+    }
+
+    /// Means of every R&D tier, the first tier first.
+    pub fn research_means(&self) -> Vec<ResearchMeans> {
+        self.simulation.params.research_tier.iter().map(|law| self.means_of(law)).collect()
+    }
+
+    fn means_of(&self, law: &ResearchTier) -> ResearchMeans {
+        let development = &self.simulation.params.development;
+        match self.manifest.mode {
+            Mode::Baseline => ResearchMeans {
+                days: law.mean_days.max(f64::from(development.rd_min_duration_days)),
+                gain: law.mean_quality_boost.max(development.rd_min_quality_boost),
+                are_lower_bounds: true,
+            },
+            _ => ResearchMeans {
+                days: mean_days(law, development),
+                gain: mean_gain(law, development),
+                are_lower_bounds: false,
+            },
         }
     }
 

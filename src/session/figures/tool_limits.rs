@@ -63,8 +63,6 @@ pub struct ToolLimits {
     pub models: Vec<ModelTier>,
     /// Issues of individuals that a day of operations solves: without spending, and for each dollar.
     pub issues_solved: (f64, f64),
-    /// Least days that an R&D project takes.
-    pub research_least_days: u32,
     /// Names under which rivals appear in the news.
     pub rivals: Vec<String>,
 }
@@ -124,7 +122,6 @@ impl Session {
                 })
                 .collect(),
             issues_solved: (params.issues.issue_resolution_base_rate, params.issues.individual_ops_scale),
-            research_least_days: params.development.rd_min_duration_days,
             rivals: params.competitor.competitor_names.clone(),
         }
     }

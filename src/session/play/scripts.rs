@@ -7,6 +7,7 @@
 use std::time::{Duration, Instant};
 
 use super::surroundings::Calculated;
+use crate::database::query::SQL_CANCELLED;
 use crate::database::{self, text};
 use crate::session::python::refuse_unless_played;
 use crate::session::state::Session;
@@ -105,7 +106,8 @@ impl Session {
             Ok(()) => Ok(said),
             Err(stopped) => {
                 let refusal = Refusal::from(stopped.error);
-                let kind = if refusal.code == "sql_timeout" { "script_timeout" } else { "script_failed" };
+                let was_stopped = ["sql_timeout", SQL_CANCELLED].contains(&refusal.code);
+                let kind = if was_stopped { "script_timeout" } else { "script_failed" };
                 let (number, why) = (stopped.statement, refusal.message);
                 let hint = hint_at_python(code).map(|hint| format!("; {hint}")).unwrap_or_default();
                 let message =

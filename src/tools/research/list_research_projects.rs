@@ -26,7 +26,7 @@ static SPEC: Spec = Spec {
     returns: &[Output {
         name: "tiers",
         kind: "list of {tier, name, cost, mean_days, mean_quality_boost, in_progress, completed, total_quality_boost}",
-        doc: "$, days, quality; counts of projects",
+        doc: "$; days and quality on average before the least duration and the least gain apply; counts of projects",
     }],
     example: "{}",
 };
@@ -47,10 +47,10 @@ pub struct ResearchTierFacts {
     pub name: String,
     /// Dollars.
     pub cost: u32,
-    /// Days that a project takes on average.
+    /// Days that a project takes on average before the least duration applies.
     #[serde(serialize_with = "plain")]
     pub mean_days: f64,
-    /// Quality that a project adds on average.
+    /// Quality that a project adds on average before the least gain applies.
     pub mean_quality_boost: f64,
     /// Projects that run.
     pub in_progress: usize,

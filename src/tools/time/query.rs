@@ -26,7 +26,15 @@ static SPEC: Spec = Spec {
     effect: "",
     cost: "nothing",
     writes: &[],
-    refusals: &["sql_empty", "sql_schema", "sql_hidden_table", "sql_write", "sql_timeout", "sql_error"],
+    refusals: &[
+        "sql_empty",
+        "sql_schema",
+        "sql_hidden_table",
+        "sql_write",
+        "sql_timeout",
+        "sql_cancelled",
+        "sql_error",
+    ],
     returns: &[
         Output { name: "columns", kind: "list of text", doc: "names of the columns" },
         Output { name: "rows", kind: "list of objects", doc: "at most {limits.query_row_limit:,}" },

@@ -25,6 +25,24 @@ pub fn days_for(share: f64, tier: &ResearchTier, development: &Development) -> u
     }
 }
 
+/// Mean duration of the projects in days: the least duration, plus the chance of each day after it.
+pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
+    let (least, mean, std) = (development.rd_min_duration_days, tier.mean_days, tier.std_days);
+    if std < 1.0 {
+        let last = (mean + 9.0 * std).ceil() as u32;
+        let lasts_longer = |days| 1.0 - done_within(days, tier, development);
+        return f64::from(least) + (least..last).map(lasts_longer).sum::<f64>();
+    }
+    // The sum over days as an integral: the midpoint rule with its first correction leaves less than a thousandth of a day.
+    let floor = f64::from(least);
+    mean_above(floor + 0.5, mean, std) - 0.5 - normal_density((floor + 0.5 - mean) / std) / (24.0 * std)
+}
+
+/// Mean quality gain of the projects.
+pub fn mean_gain(tier: &ResearchTier, development: &Development) -> f64 {
+    mean_above(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
+}
+
 /// The quality that a share of the projects does not exceed; the share lies between 0 and 1.
 pub fn gain_at(share: f64, tier: &ResearchTier, development: &Development) -> f64 {
     let drawn = tier.mean_quality_boost + tier.std_quality_boost * inverse_normal(share);
@@ -34,6 +52,22 @@ pub fn gain_at(share: f64, tier: &ResearchTier, development: &Development) -> f6
 /// Share of the projects that gain no more than the least, 0..=1.
 pub fn share_of_least_gain(tier: &ResearchTier, development: &Development) -> f64 {
     share_below(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
+}
+
+/// Mean of a normal number that is raised to `floor` if it is below.
+fn mean_above(floor: f64, mean: f64, std: f64) -> f64 {
+    match std > 0.0 {
+        true => {
+            let below = share_below(floor, mean, std);
+            floor * below + mean * (1.0 - below) + std * normal_density((floor - mean) / std)
+        }
+        false => mean.max(floor),
+    }
+}
+
+/// Density of the standard normal distribution.
+fn normal_density(z: f64) -> f64 {
+    libm::exp(-z * z / 2.0) / libm::sqrt(2.0 * std::f64::consts::PI)
 }
 
 /// Share of a normal distribution below a bound.
@@ -110,6 +144,37 @@ mod tests {
     }
 
     #[test]
+    fn mean_days_agree_with_the_chances_of_every_day() {
+        let params = Params::shipped();
+        let development = &params.development;
+        let told = |tier| (mean_days(params.research(tier), development) * 1e4).round() / 1e4;
+        assert_eq!([1, 2, 3, 5, 20].map(told), [30.3192, 32.9799, 38.5898, 59.3417, 728.5759]);
+        let mut tiers = params.research_tier.clone();
+        tiers.push(ResearchTier { mean_days: 30.5, std_days: 1.5, ..params.research(1).clone() });
+        tiers.push(ResearchTier { mean_days: 30.5, std_days: 0.9, ..params.research(1).clone() });
+        for tier in &tiers {
+            let last = (tier.mean_days + 10.0 * tier.std_days) as u32;
+            let longer = |days| 1.0 - done_within(days, tier, development);
+            let summed = 30.0 + (30..last).map(longer).sum::<f64>();
+            let mean = mean_days(tier, development);
+            assert!((mean - summed).abs() < 1e-3, "{tier:?}: {mean}, not {summed}");
+        }
+    }
+
+    #[test]
+    fn mean_gain_agrees_with_its_quantiles() {
+        let params = Params::shipped();
+        for tier in &params.research_tier {
+            let parts = 20_000;
+            let at = |part| gain_at((f64::from(part) + 0.5) / f64::from(parts), tier, &params.development);
+            let summed = (0..parts).map(at).sum::<f64>() / f64::from(parts);
+            let mean = mean_gain(tier, &params.development);
+            assert!((mean / summed - 1.0).abs() < 1e-4, "{tier:?}: {mean}, not {summed}");
+            assert!(mean > tier.mean_quality_boost);
+        }
+    }
+
+    #[test]
     fn a_tier_without_spread_is_certain() {
         let params = Params::shipped();
         let certain = ResearchTier { std_days: 0.0, std_quality_boost: 0.0, ..params.research(9).clone() };
@@ -117,5 +182,7 @@ mod tests {
         assert_eq!([within(102), within(103)], [0.0, 1.0]);
         assert_eq!(days_for(0.5, &certain, &params.development), 103);
         assert_eq!(share_of_least_gain(&certain, &params.development), 0.0);
+        assert_eq!(mean_days(&certain, &params.development), 103.0);
+        assert_eq!(mean_gain(&certain, &params.development), certain.mean_quality_boost);
     }
 }

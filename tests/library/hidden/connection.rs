@@ -85,7 +85,7 @@ fn a_statement_that_is_stopped_leaves_the_tables_as_they_were() {
     let ticket = interrupt.ticket();
     interrupt.stop();
     let refused = session.xray_query_as(ticket, "SELECT * FROM hidden.groups", None).expect_err("stopped");
-    assert_eq!((refused.code, refused.message.as_str()), ("sql_timeout", "the query was cancelled"));
+    assert_eq!((refused.code, refused.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), [[whole(14 * 26)]]);
 }
 

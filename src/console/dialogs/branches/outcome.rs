@@ -9,7 +9,7 @@ use crate::console::widgets::chart::chart;
 use crate::console::widgets::{Axis, Line, Side, Unit};
 use crate::report::whatif::{
     bankrupt, branch_line, cell, cell_in_two, decisions, difference_line, futures_cell, futures_cell_in_two,
-    futures_heading, heading,
+    futures_heading, heading, week_of_milestone,
 };
 use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
@@ -176,7 +176,8 @@ impl Figures {
         for day in days {
             let rows: Vec<Rect> = rows.by_ref().take(lines).collect();
             let Some(first_row) = rows.first() else { return };
-            canvas.text(*first_row, &day.div_ceil(self.days_per_week).to_string(), Role::Dim);
+            let week = week_of_milestone(&self.comparison, day, self.days_per_week);
+            canvas.text(*first_row, &week, Role::Dim);
             for number in 0..self.comparison.branches.len() {
                 for (row, text) in rows.iter().zip(self.cell(number, figure, day, lines)) {
                     let text = format!(" {}", fit(&text, usize::from(width).saturating_sub(1)));

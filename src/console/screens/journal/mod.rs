@@ -134,8 +134,13 @@ impl ScreenState for Journal {
     }
 
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
-        if let News::Kin(run, tree) = news {
-            self.take_tree(run, tree, look.company);
+        match news {
+            News::Kin(run, Ok(tree)) => self.take_tree(run, tree, look.company),
+            News::Kin(_, Err(refusal)) => {
+                self.reads_tree = false;
+                return vec![Effect::Complain(refusal.message.clone())];
+            }
+            _ => {}
         }
         Vec::new()
     }

@@ -50,7 +50,7 @@ const QUALITY_FLOOR: &str = "quality floor";
 
 const ESTIMATES: [Estimate; 8] = [
     (|all| Some(all.willingness_to_pay), BUDGET, "$/month", figure),
-    (|all| Some(all.usage_volume), "usage demand", "units/day", figure),
+    (|all| Some(all.usage_volume), USAGE, "units/day", figure),
     (|all| Some(all.quality_floor_q_min), QUALITY_FLOOR, "", exact),
     (|all| Some(all.market_cap as f64), MARKET, "customers", figure),
     (|all| Some(all.annual_market_cap_growth_rate), "growth of the market", "a year", share),
@@ -59,7 +59,10 @@ const ESTIMATES: [Estimate; 8] = [
     (|all| all.avg_response_days, "days to an answer", "", figure),
 ];
 
-/// The budget has a true value on other screens, too, and so has the market.
+/// The use has a range on other screens, too.
+const USAGE: &str = "usage demand";
+
+/// The budget has a range and a true value on other screens, too, and so has the market.
 const BUDGET: &str = "budget";
 const MARKET: &str = "market";
 
@@ -110,6 +113,7 @@ pub fn lines(company: &Company, group: Group) -> Vec<ReportLine> {
         let truth = TruthRange::behind(value, noise);
         let range = match words {
             QUALITY_FLOOR => truth.quality(),
+            BUDGET | USAGE => truth.units(),
             _ => format!("{} to {}", write(from), write(to)),
         };
         lines.push(ReportLine::of(format!("{words:<21}{unit}").trim_end().to_owned(), range));

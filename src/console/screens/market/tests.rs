@@ -102,6 +102,9 @@ fn the_report_tells_estimates_and_what_the_truth_can_be() {
             assert!(text.contains(words), "{group} {words}: {text}");
         }
         assert_eq!(text.contains("smallest company"), group.is_enterprise());
+        // The ends of the budget are those of every other screen, rounded the same way.
+        let budget = company.fit(*group).expect("a known group").budget.money().replace('$', "");
+        assert!(text.contains(&budget), "{group} {budget}: {text}");
     }
 }
 

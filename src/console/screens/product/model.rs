@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::console::company::Company;
 use crate::report::plan_margins::{PlanUse, Sales};
-use crate::session::{Category, Rows, WeekFigures};
+use crate::session::{Category, ResearchMeans, Rows, WeekFigures};
 use crate::session::{number_at, text_at};
 use crate::tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
 use crate::world::identifiers::Plan;
@@ -169,25 +169,22 @@ pub struct ProjectOffer {
     pub name: String,
     /// Dollars.
     pub cost: f64,
-    /// Mean of its days, or the least a project takes where that is more.
-    pub days: f64,
-    /// Quality it adds on average.
-    pub boost: f64,
+    /// Mean days and mean gain.
+    pub means: ResearchMeans,
     /// How many run, and how many are done.
     pub counts: (usize, usize),
 }
 
 /// The kinds of R&D projects.
 pub fn offers(company: &Company) -> Vec<ProjectOffer> {
-    let offer = |tier: &ResearchTierFacts| ProjectOffer {
+    let offer = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| ProjectOffer {
         tier: u32::from(tier.tier),
         name: tier.name.clone(),
         cost: f64::from(tier.cost),
-        days: tier.mean_days.max(f64::from(company.terms.research_least_days)),
-        boost: tier.mean_quality_boost,
+        means: *means,
         counts: (tier.in_progress, tier.completed),
     };
-    company.projects.tiers.iter().map(offer).collect()
+    company.projects.tiers.iter().zip(&company.research_means).map(offer).collect()
 }
 
 /// Dollars spent on a category by week, from the first week on.

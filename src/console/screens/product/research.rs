@@ -13,7 +13,8 @@ use crate::console::screens::panes::Seat;
 use crate::console::theme::Role;
 use crate::console::widgets::spark;
 use crate::console::widgets::table::first_row;
-use crate::notation::{compact, dollars, grouped, short_dollars};
+use crate::notation::{compact, dollars, short_dollars};
+use crate::report::research::{mean_days, mean_gain};
 use crate::tools::ToolId;
 
 /// Weekly spend on development and operations.
@@ -199,8 +200,11 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
             (false, true) => Role::Text,
             (false, false) => Role::Dim,
         };
-        let each =
-            if offer.boost > 0.0 { short_dollars(offer.cost / offer.boost * 0.01) } else { "–".to_owned() };
+        let bound = if offer.means.are_lower_bounds { "≤" } else { "" };
+        let each = match offer.means.gain > 0.0 {
+            true => format!("{bound}{}", short_dollars(offer.cost / offer.means.gain * 0.01)),
+            false => "–".to_owned(),
+        };
         let mut remarks = Vec::new();
         if offer.counts.0 > 0 {
             remarks.push(format!("{} running", offer.counts.0));
@@ -219,12 +223,12 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
         };
         canvas.clear(row, role);
         let text = format!(
-            "{:>4} {:<17} {:>8} {:>5} {:>+7.3} {each:>8} {}",
+            "{:>4} {:<17} {:>8} {:>5} {:>7} {each:>8} {}",
             offer.tier,
             fit(&offer.name, 17),
             short_dollars(offer.cost),
-            grouped(offer.days, 0),
-            offer.boost,
+            mean_days(&offer.means),
+            mean_gain(&offer.means, 3),
             remarks
         );
         canvas.text(row, text.trim_end(), role);

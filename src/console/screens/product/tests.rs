@@ -64,7 +64,7 @@ fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
     assert_eq!(arguments, &json!({"tier": 5}));
     let text = drawn(&screen, &company, 120, 37);
     assert!(!text.contains(" 12 days"), "no project takes less than 30 days:\n{text}");
-    assert!(screen.offers.iter().all(|offer| offer.days >= 30.0));
+    assert!(screen.offers.iter().all(|offer| offer.means.days > 30.0));
 }
 
 #[test]

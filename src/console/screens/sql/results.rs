@@ -263,10 +263,7 @@ impl Results {
     pub fn head(&self) -> (String, String) {
         match &self.answer {
             Answer::None => ("Result".to_owned(), "no query yet".to_owned()),
-            Answer::Refused(refusal) if refusal.code == "sql_timeout" => {
-                ("Result · stopped".to_owned(), String::new())
-            }
-            Answer::Refused(_) => ("Result · refused".to_owned(), String::new()),
+            Answer::Refused(refusal) => (format!("Result · {}", outcome(refusal.code)), String::new()),
             Answer::Rows(rows, took) => {
                 let drawn = self.plot.as_ref().map(|plot| format!(" · {}", plot.title(rows)));
                 (title(rows, *took) + &drawn.unwrap_or_default(), self.table.note())
@@ -289,7 +286,7 @@ impl Results {
         match &self.answer {
             Answer::None => draw_nothing(canvas, seat.area, library),
             Answer::Refused(refusal) => {
-                let role = if refusal.code == "sql_timeout" { Role::Warning } else { Role::Bad };
+                let role = if outcome(refusal.code) == "refused" { Role::Bad } else { Role::Warning };
                 text(canvas, seat.area, refusal.code, &refusal.message, role);
             }
             Answer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
@@ -371,6 +368,15 @@ fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
         canvas.text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
         let what = Rect { x: row.x + titles + 2, width: row.width.saturating_sub(titles + 2), ..row };
         canvas.text(what, &query.what, Role::Dim);
+    }
+}
+
+/// What became of a statement that was not answered.
+fn outcome(code: &str) -> &'static str {
+    match code {
+        "sql_timeout" => "stopped at a limit",
+        "sql_cancelled" => "cancelled",
+        _ => "refused",
     }
 }
 

@@ -239,7 +239,7 @@ mod tests {
     fn a_refusal_takes_no_rows_away_and_goes_with_the_next_answer() {
         let mut tabs = Tabs::default();
         take(&mut tabs, 1);
-        tabs.take("SELECT 1", Err(Refusal::new("sql_timeout", "cancelled")), Duration::ZERO);
+        tabs.take("SELECT 1", Err(Refusal::new("sql_cancelled", "cancelled")), Duration::ZERO);
         assert_eq!((tabs.tabs.len(), tabs.at), (2, 1));
         tabs.take("SELECT x", Err(Refusal::new("sql_error", "no")), Duration::ZERO);
         assert_eq!(tabs.tabs.len(), 2);

@@ -6,6 +6,8 @@ use unicode_width::UnicodeWidthStr;
 use crate::console::company::Company;
 use crate::console::text::number;
 use crate::notation::{cents, dollars, grouped};
+use crate::report::research::{mean_days, mean_gain};
+use crate::session::ResearchMeans;
 use crate::tools::{ResearchTierFacts, ToolId};
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
@@ -52,21 +54,23 @@ fn capacities(company: &Company) -> Vec<String> {
 }
 
 fn projects(company: &Company) -> Vec<String> {
-    let row = |tier: &ResearchTierFacts| {
+    let row = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| {
         let running = if tier.in_progress > 0 { "running" } else { "" };
         [
             tier.tier.to_string(),
             tier.name.clone(),
             dollars(f64::from(tier.cost)),
-            number(tier.mean_days),
-            format!("{:.4}", tier.mean_quality_boost),
+            mean_days(means),
+            mean_gain(means, 4),
             running.to_owned(),
         ]
     };
     let now = if company.projects.tiers.iter().any(|tier| tier.in_progress > 0) { "now" } else { "" };
     let head = ["tier", "name", "cost", "mean days", "mean gain", now].map(str::to_owned);
     let rows: Vec<[String; 6]> =
-        std::iter::once(head).chain(company.projects.tiers.iter().map(row)).collect();
+        std::iter::once(head)
+            .chain(company.projects.tiers.iter().zip(&company.research_means).map(row))
+            .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
     let line = |row: &[String; 6]| {

@@ -1,0 +1,98 @@
+//! Work on its own thread whose question is always answered.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::Sender;
+use std::sync::{Mutex, MutexGuard};
+
+use super::words_of;
+use crate::console::message::{Message, News};
+use crate::session::Refusal;
+
+/// Runs `work` on its own thread and reports its result. A panic is reported as a refusal, so that no pane waits forever.
+/// Nothing is reported if `work` returns `None`: the user has stopped it.
+pub fn answer_on_thread<T>(
+    news: Sender<Message>,
+    work: impl FnOnce() -> Result<Option<T>, Refusal> + Send + 'static,
+    report: impl FnOnce(Result<T, Refusal>) -> News + Send + 'static,
+) {
+    std::thread::spawn(move || {
+        let result = catch_defect(work).unwrap_or_else(Err);
+        if let Some(result) = result.transpose() {
+            let _ = news.send(Message::News(report(result)));
+        }
+    });
+}
+
+/// Runs `work`, and returns a refusal if it panics.
+///
+/// # Errors
+/// `internal_error`: `work` has panicked. What it used may be half done.
+pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let reason = words_of(&*panic);
+        let message = format!(
+            "the program has a defect ({reason}); nothing was changed; the run is safe, and play can continue"
+        );
+        Refusal::new("internal_error", message)
+    })
+}
+
+/// Locks what an earlier question has kept. A panic during that question may have left it half done: then it is dropped.
+pub(super) fn lock_kept<T: Default>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(|poisoned| {
+        let mut guard = poisoned.into_inner();
+        *guard = T::default();
+        kept.clear_poison();
+        guard
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    fn report(result: Result<u32, Refusal>) -> News {
+        News::Written(result.map(|value| value.to_string()).map_err(|refusal| refusal.message))
+    }
+
+    #[test]
+    fn answer_on_thread_reports_a_result_a_refusal_and_a_panic() {
+        let answered = |work: fn() -> Result<Option<u32>, Refusal>| {
+            let (sender, news) = channel();
+            answer_on_thread(sender, work, report);
+            // The channel closes once the thread has ended.
+            news.into_iter()
+                .map(|message| match message {
+                    Message::News(News::Written(written)) => written,
+                    _ => panic!("other news"),
+                })
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(answered(|| Ok(Some(7))), [Ok("7".to_owned())]);
+        assert_eq!(answered(|| Ok(None)), []);
+        assert_eq!(answered(|| Err(Refusal::new("no", "refused"))), [Err("refused".to_owned())]);
+        let defect = answered(|| panic!("row 3 is missing"));
+        let [Err(words)] = defect.as_slice() else { panic!("{defect:?}") };
+        assert!(
+            words.starts_with("the program has a defect (row 3 is missing); nothing was changed"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn lock_kept_drops_what_a_panic_left_half_done() {
+        let kept = Arc::new(Mutex::new(vec![1]));
+        assert_eq!(*lock_kept(&kept), [1]);
+        let panicked = catch_defect(|| {
+            let mut guard = lock_kept(&kept);
+            guard.push(2);
+            panic!("half done")
+        });
+        assert_eq!(panicked.map(|()| 0).expect_err("a panic").code, "internal_error");
+        assert!(lock_kept(&kept).is_empty());
+        assert!(!kept.is_poisoned());
+    }
+}

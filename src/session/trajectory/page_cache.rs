@@ -10,10 +10,10 @@ use super::medium::Medium;
 
 /// The file; clones are the same one.
 #[derive(Clone)]
-pub(in crate::session) struct PageCache(Arc<Mutex<Pages>>);
+pub(in crate::session) struct PageCache(Arc<Mutex<CachedBytes>>);
 
 #[derive(Default)]
-struct Pages {
+struct CachedBytes {
     /// What a power cut leaves.
     disk: Vec<u8>,
     /// What programs read.
@@ -29,7 +29,7 @@ struct Pages {
 impl PageCache {
     /// A file that holds synced bytes.
     pub fn holding(bytes: Vec<u8>) -> PageCache {
-        PageCache(Arc::new(Mutex::new(Pages { disk: bytes.clone(), cache: bytes, ..Pages::default() })))
+        PageCache(Arc::new(Mutex::new(CachedBytes { disk: bytes.clone(), cache: bytes, ..CachedBytes::default() })))
     }
 
     /// Lets the next syncs fail.
@@ -52,7 +52,7 @@ impl PageCache {
         self.pages().cache.clone()
     }
 
-    fn pages(&self) -> MutexGuard<'_, Pages> {
+    fn pages(&self) -> MutexGuard<'_, CachedBytes> {
         self.0.lock().expect("a lock")
     }
 }

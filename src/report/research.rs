@@ -1,5 +1,7 @@
 //! R&D in words: what a project can be expected to take and to gain before it is paid for, and which ones come too late.
 
+use serde_json::Value;
+
 use crate::notation::grouped;
 use crate::session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
@@ -58,6 +60,17 @@ pub fn mean_days(means: &ResearchMeans) -> String {
 /// Mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
 pub fn mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
+}
+
+/// What `list_research_projects` answers, as people are shown it: means with the least duration and gain applied.
+pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
+    let mut shown = answer.clone();
+    let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
+    for (tier, means) in tiers.filter_map(Value::as_object_mut).zip(means) {
+        tier.insert("mean_days".to_owned(), mean_days(means).into());
+        tier.insert("mean_quality_boost".to_owned(), mean_gain(means, 4).into());
+    }
+    shown
 }
 
 /// A line for each project that was started since the last week and runs beyond the last day.
@@ -130,6 +143,12 @@ mod tests {
         assert_eq!(
             told(Mode::Sandbox),
             [words("30", "+0.0402"), words("33", "+0.0703"), words("39", "+0.1105"), words("59", "+0.2210")]
+        );
+        let session = run(500, Mode::Sandbox);
+        let answer = json!({"tiers": [{"tier": 1, "mean_days": 12, "mean_quality_boost": 0.04}]});
+        assert_eq!(
+            projects_with_means(&answer, &session.research_means()),
+            json!({"tiers": [{"tier": 1, "mean_days": "30", "mean_quality_boost": "+0.0402"}]})
         );
         // Agents are not told the spread.
         assert_eq!(

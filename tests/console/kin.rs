@@ -77,7 +77,7 @@ fn enter_opens_a_branch_and_asks_before_text_is_left() {
     let here = |console: &Console| console.app.run().map(|run| run.company.seen.run.clone());
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("0 e 'mine' esc shift-tab shift-tab down down enter");
-    console.shows("dialog holds unsent");
+    console.shows("It is kept with this run");
     console.press("esc");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("enter y");

@@ -10,6 +10,7 @@ use crate::notation::{cents, dollars, grouped, nearest};
 use crate::report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
 use crate::report::insights::{insights_as_ranges, overview_with_ages};
 use crate::report::lead_costs::{AdSpell, PairCost, pair_costs};
+use crate::report::research::projects_with_means;
 use crate::session::{GroupWeek, Session};
 use crate::tools;
 use crate::world::identifiers::{Group, Plan};
@@ -76,7 +77,8 @@ fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Resu
     Err(problem(arguments, &format!("{id} is no known group; known: {known}")))
 }
 
-/// What a tool answered with ranges in place of estimates and the days they are of; none where it holds no estimates.
+/// What a tool answered with ranges in place of estimates, the days they are of, and true means of projects; none where it
+/// holds none of them.
 pub(super) fn with_ranges(session: &Session, answer: &tools::Answer) -> Option<Value> {
     match answer {
         tools::Answer::GetGroupInsights(insights) => {
@@ -85,6 +87,9 @@ pub(super) fn with_ranges(session: &Session, answer: &tools::Answer) -> Option<V
             Some(insights_as_ranges(&answer.to_json(), fit))
         }
         tools::Answer::GetMarketOverview(_) => Some(overview_with_ages(&answer.to_json(), &fits(session))),
+        tools::Answer::ListResearchProjects(_) => {
+            Some(projects_with_means(&answer.to_json(), &session.research_means()))
+        }
         _ => None,
     }
 }

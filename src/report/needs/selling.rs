@@ -244,12 +244,16 @@ impl<'a> Offers<'a> {
     /// The quality of the best plan. One that delivers more and lacks more is named, too: its quota does not cover their use.
     fn best_in_words(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
+        // Screens show the range of the budget: which plans are compared follows from the estimate in it.
+        let scope = match self.own.group.is_enterprise() {
+            true => String::new(),
+            false => format!(" within their estimated budget of {}", money(self.own.budget.round())),
+        };
         let more = self.affordable().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
-            None => format!("the best within their estimated budget, {delivered:.4} on {plan}"),
+            None => format!("the best{scope}, {delivered:.4} on {plan}"),
             Some(more) => format!(
-                "{delivered:.4} on {plan}; {more} delivers {:.4} within their estimated budget, but its quota is too small \
-                 for them",
+                "{delivered:.4} on {plan}; {more} delivers {:.4}{scope}, but its quota is too small for them",
                 quality(more)
             ),
         }

@@ -31,6 +31,7 @@ use crate::console::widgets::Field;
 use crate::notation::plain_numbers;
 use crate::report::insights::{insights_as_ranges, overview_with_ages};
 use crate::report::plan_margins::Sales;
+use crate::report::research::projects_with_means;
 use crate::session::{JournalEntry, Rows};
 use crate::tools::{Answer, CATALOGUE, Spec, ToolId};
 use form::{Form, spaced};
@@ -271,7 +272,7 @@ impl ScreenState for Tools {
     }
 }
 
-/// An answer as people are shown it: estimates as ranges, with the day they are of.
+/// An answer as people are shown it: estimates as ranges, with the day they are of; means of projects with the least applied.
 fn for_people(answer: &Answer, company: &Company) -> Value {
     let told = plain_numbers(answer.to_json());
     match answer {
@@ -279,6 +280,7 @@ fn for_people(answer: &Answer, company: &Company) -> Value {
             company.fit(insights.group_id).map_or_else(|| told.clone(), |fit| insights_as_ranges(&told, fit))
         }
         Answer::GetMarketOverview(_) => overview_with_ages(&told, &company.fits),
+        Answer::ListResearchProjects(_) => projects_with_means(&told, &company.research_means),
         _ => told,
     }
 }

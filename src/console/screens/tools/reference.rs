@@ -67,10 +67,9 @@ fn projects(company: &Company) -> Vec<String> {
     };
     let now = if company.projects.tiers.iter().any(|tier| tier.in_progress > 0) { "now" } else { "" };
     let head = ["tier", "name", "cost", "mean days", "mean gain", now].map(str::to_owned);
-    let rows: Vec<[String; 6]> =
-        std::iter::once(head)
-            .chain(company.projects.tiers.iter().zip(&company.research_means).map(row))
-            .collect();
+    let rows: Vec<[String; 6]> = std::iter::once(head)
+        .chain(company.projects.tiers.iter().zip(&company.research_means).map(row))
+        .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
     let widths: [usize; 6] = std::array::from_fn(width);
     let line = |row: &[String; 6]| {

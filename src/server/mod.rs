@@ -8,6 +8,7 @@ mod announcement;
 mod answering;
 mod client;
 mod http;
+mod inspect_log;
 mod mcp;
 mod openapi;
 mod owner;
@@ -17,6 +18,7 @@ mod request;
 mod running;
 mod schema;
 mod transcript;
+mod zip;
 
 pub use announcement::Announcement;
 pub use client::write_client;

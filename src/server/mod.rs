@@ -23,7 +23,7 @@ mod zip;
 pub use announcement::Announcement;
 pub use client::write_client;
 pub use http::{HeldPort, HttpOptions, serve_http};
-pub use mcp::serve_mcp;
+pub use mcp::{refuse_mcp, serve_mcp};
 pub use page::{PageOf, page, write_documents};
 pub use remote::{Remote, Reply};
 pub use schema::functions;

@@ -1,7 +1,10 @@
-//! A file that is added to a folder of `configs/` is compiled in at the next build.
+//! The program is rebuilt when a file is added to the folders that are compiled in: the compiler only tracks files that were there.
+
+/// Folders whose contents are compiled in, with everything below them.
+const COMPILED_IN: [&str; 2] = ["assets", "configs"];
 
 fn main() {
-    for folder in ["scenarios", "themes", "policies", "grids"] {
-        println!("cargo:rerun-if-changed=configs/{folder}");
+    for folder in COMPILED_IN {
+        println!("cargo:rerun-if-changed={folder}");
     }
 }

@@ -12,7 +12,7 @@ use crate::notation::compact;
 use crate::report::debrief::in_words;
 use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::rules::answers_to_companies;
-use crate::session::{Access, Configuration, Lesson, MEASURED_SEEDS, Session, find_run_to_read};
+use crate::session::{Configuration, Lesson, MEASURED_SEEDS, Session, find_run_to_read};
 
 /// Options of `lesson`.
 #[derive(Debug, Args)]
@@ -144,7 +144,7 @@ fn debrief(
 ) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, run)?;
     context.look(&folder, "lesson", "debrief")?;
-    let session = Session::open(&folder, Access::Read, true)?;
+    let session = Session::open_to_read(&folder, true)?;
     let played = session.played_part().map_err(|refusal| Failure::failed(refusal.message))?;
     let debrief = played.debrief(answers_to_companies);
     let (path, text) = match (html, markdown) {

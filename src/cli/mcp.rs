@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::which_run::WhichRun;
 use super::{Context, Failure};
-use crate::server::serve_mcp;
+use crate::server::{refuse_mcp, serve_mcp};
 
 /// Options of `mcp`.
 #[derive(Debug, Args)]
@@ -15,5 +15,11 @@ pub struct Options {
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    Ok(serve_mcp(options.which.open(context)?, |words| eprintln!("{words}"))?)
+    let session = options.which.open(context).map_err(|failure| {
+        // A host shows either of them, and rarely both.
+        eprintln!("novamind: {failure}");
+        refuse_mcp(&failure.to_string());
+        Failure::code_only(failure.code)
+    })?;
+    Ok(serve_mcp(session, |words| eprintln!("{words}"))?)
 }

@@ -4,6 +4,8 @@ use clap::Args;
 
 use super::run::parse_override;
 use super::{Context, Failure};
+#[cfg(feature = "server")]
+use crate::session::baseline_terms;
 use crate::session::{ConsentGiven, Fault, Mode, NewRun, Storage};
 
 /// What a new run is made of.
@@ -12,16 +14,17 @@ pub struct NewRunOptions {
     /// Seed of the new run.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Days of the new run, at least 7.
+    /// Days of the new run, at least 7; a baseline run has 500.
     #[arg(long, value_name = "N")]
     days: Option<u32>,
-    /// Starting cash of the new run, in dollars.
+    /// Starting cash of the new run, in dollars; a baseline run has 1000000.
     #[arg(long, value_name = "X")]
     cash: Option<f64>,
-    /// Scenario of the new run.
+    /// Scenario of the new run; a baseline run has `default`.
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Mode of the new run [default: sandbox where a person plays, baseline where a program does].
+    /// Mode of the new run [default: baseline if a program plays it with the days, cash and scenario of a baseline run;
+    /// otherwise sandbox].
     #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
     mode: Option<Mode>,
     /// Who plays.
@@ -71,6 +74,25 @@ impl NewRunOptions {
             participant: Some(self.participant.clone().unwrap_or_else(|| label.to_owned())),
             ..self.clone()
         }
+    }
+
+    /// Returns the run of a program, and a sentence if days, cash or scenario make it a sandbox run.
+    ///
+    /// # Errors
+    /// As [`NewRunOptions::new_run`].
+    #[cfg(feature = "server")]
+    pub fn new_run_of_program(&self, context: &Context) -> Result<(NewRun, Option<String>), Failure> {
+        let sandbox = self.new_run(Mode::Sandbox, context)?;
+        if self.mode.is_some() {
+            return Ok((sandbox, None));
+        }
+        let other = sandbox.other_terms(&context.configuration)?;
+        if other.is_empty() {
+            return Ok((self.new_run(Mode::Baseline, context)?, None));
+        }
+        let terms = baseline_terms(&context.configuration)?;
+        let remark = format!("this is a sandbox run with {}; a baseline run has {terms}", other.join(", "));
+        Ok((sandbox, Some(remark)))
     }
 
     /// The run, in a mode unless another was asked for.

@@ -144,7 +144,7 @@ fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
         Some(id) => {
             let folder = find_run(&context.runs()?, id)?;
             Ok(match options.watch {
-                true => Session::open(&folder, Access::Read, true)?,
+                true => Session::open_to_read(&folder, true)?,
                 false => Session::open_to_play(&folder, &context.configuration)?,
             })
         }

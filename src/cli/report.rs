@@ -9,7 +9,7 @@ use super::{Context, Failure, print};
 use crate::report::{
     Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
 };
-use crate::session::{Access, Session, Trajectory, find_run_to_read, lines_afterwards};
+use crate::session::{Session, Trajectory, find_run_to_read, lines_afterwards};
 
 /// Options of `report`.
 #[derive(Debug, Args)]
@@ -66,7 +66,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 /// The report of the run in a folder; nothing of the run is changed.
 fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let told = |write: fn(&Story) -> String| -> Result<String, Failure> {
-        Ok(write(&Story::of(&Session::open(folder, Access::Read, true)?)))
+        Ok(write(&Story::of(&Session::open_to_read(folder, true)?)))
     };
     match format {
         ReportFormat::Markdown => told(as_markdown),
@@ -85,7 +85,7 @@ fn card_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
         ReportFormat::Svg => card_as_svg,
         _ => return Err(Failure::usage("a card is text or svg")),
     };
-    Ok(write(&Story::of(&Session::open(folder, Access::Read, true)?)))
+    Ok(write(&Story::of(&Session::open_to_read(folder, true)?)))
 }
 
 fn only_of_cards() -> Failure {
@@ -105,7 +105,7 @@ fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
 
 /// The logbook of the run in a folder.
 pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
-    let session = Session::open(folder, Access::Read, true)?;
+    let session = Session::open_to_read(folder, true)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     let afterwards = lines_afterwards(folder, &trajectory)?;
     Ok(Logbook::of(&session, &trajectory.lines, &afterwards.lines))

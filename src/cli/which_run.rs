@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::new_run::NewRunOptions;
 use super::{Context, Failure};
-use crate::session::{Mode, RunError, Session, find_run};
+use crate::session::{RunError, Session, find_run};
 
 /// The run that a program plays: one that is there, or a new one.
 #[derive(Debug, Args, Clone)]
@@ -52,7 +52,10 @@ impl WhichRun {
 pub fn begin(made_of: &NewRunOptions, context: &Context) -> Result<Session, Failure> {
     // A baseline run says who played it.
     let label = context.participant.as_deref().unwrap_or("program");
-    let new = made_of.played_by(label).new_run(Mode::Baseline, context)?;
+    let (new, remark) = made_of.played_by(label).new_run_of_program(context)?;
+    if let Some(remark) = remark {
+        eprintln!("{remark}");
+    }
     match Session::create(new, &context.configuration) {
         Err(RunError::ConsentNeeded(_)) => Err(Failure::usage(
             "this folder of configuration asks participants to agree to a text first, which no program can do: \

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
 use super::guard::is_unsafe_function;
+use super::mathematics;
 use super::tokens::{Token, TokenKind, tokens};
 use crate::notation::nearest;
 
@@ -56,6 +57,7 @@ fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
 fn functions() -> Vec<String> {
     let names = || -> rusqlite::Result<Vec<String>> {
         let engine = rusqlite::Connection::open_in_memory()?;
+        mathematics::register(&engine)?;
         let mut statement = engine.prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name")?;
         statement.query_map([], |row| row.get(0))?.collect()
     };
@@ -213,6 +215,7 @@ mod tests {
                 "; subscriptions has a column of that",
             ),
             ("no such function: roundd", "", "there is no function roundd; did you mean round?"),
+            ("no such function: sqr", "", "there is no function sqr; did you mean sqrt?"),
             ("no such function: median_of_all", "", "there is no function median_of_all"),
         ] {
             let text = explain_error(message, sql);

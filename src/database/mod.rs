@@ -25,6 +25,7 @@ mod issues;
 mod ledger;
 mod loading;
 mod location;
+mod mathematics;
 mod memory;
 mod notices;
 mod packed_tables;

@@ -3,9 +3,14 @@
 use serde_json::{Map, Value};
 
 use super::answering::answer;
+use super::inspect_log;
 use super::request::Request;
+use super::zip::ZipArchive;
 use crate::session::{PYTHON_NOT_RUN, Session, Via};
 use crate::tools::{ToolId, find};
+
+/// Largest file that is read from an archive, bytes: 500 days of an agent take a few megabytes.
+const MAX_FILE_BYTES: u64 = 512 << 20;
 
 /// What somebody did with the tools of this program, in order.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,14 +56,21 @@ pub struct PlayedTranscript {
 }
 
 impl ForeignTranscript {
-    /// Reads a trajectory in the Agent Trajectory Interchange Format, or lines with a `tool` and its `args` each.
+    /// Reads a trajectory in the Agent Trajectory Interchange Format, a log of Inspect (JSON or `.eval`), or lines with a
+    /// `tool` and its `args` each.
     ///
     /// # Errors
-    /// It is neither, or no call in it is one of a tool of this program: why, in words.
-    pub fn read(text: &str) -> Result<ForeignTranscript, String> {
-        let read = match serde_json::from_str::<Value>(text) {
+    /// It is none of them, or no call in it is one of a tool of this program.
+    pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
+        let read = match serde_json::from_slice::<Value>(bytes) {
             Ok(Value::Object(whole)) if whole.contains_key("steps") => of_steps(&whole),
-            _ => of_lines(text)?,
+            Ok(whole) if whole["eval"].is_object() => inspect_log::of_json(&whole)?,
+            _ if ZipArchive::is_one(bytes) => inspect_log::of_archive(bytes, MAX_FILE_BYTES)?,
+            _ => {
+                let text = std::str::from_utf8(bytes)
+                    .map_err(|_| "it is neither text nor an .eval archive of Inspect".to_owned())?;
+                of_lines(text)?
+            }
         };
         match read.calls.is_empty() {
             true => Err("it holds no call of a tool of this program".to_owned()),
@@ -89,7 +101,7 @@ impl ForeignTranscript {
 }
 
 /// The tool behind a name as clients write it: some put the name of the server before it.
-fn own_tool(name: &str) -> Option<&'static str> {
+pub(super) fn own_tool(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
     let known = |name: &str| ToolId::all().map(ToolId::name).find(|own| *own == name);
@@ -127,7 +139,12 @@ fn of_steps(whole: &Map<String, Value>) -> ForeignTranscript {
 fn accepted(step: &Value, id: &Value) -> Option<bool> {
     let results = step["observation"]["results"].as_array()?;
     let own = results.iter().find(|result| result["source_call_id"] == *id)?;
-    let said: Value = serde_json::from_str(own["content"].as_str()?).ok()?;
+    says_accepted(own["content"].as_str()?)
+}
+
+/// Whether an answer says that its call was accepted. Returns `None` if there is no such statement.
+pub(super) fn says_accepted(answer: &str) -> Option<bool> {
+    let said: Value = serde_json::from_str(answer).ok()?;
     match (&said["success"], said.get("dashboard")) {
         (Value::Bool(success), _) => Some(*success),
         (_, Some(_)) => Some(true),
@@ -205,7 +222,7 @@ mod tests {
             ],
         });
         for (text, place) in [(lines, 3), (steps.to_string(), 2)] {
-            let read = ForeignTranscript::read(&text).expect("a transcript");
+            let read = ForeignTranscript::read(text.as_bytes()).expect("a transcript");
             assert_eq!(read.calls.len(), 3, "{read:?}");
             let new = NewRun { seed: read.seed, days: Some(28), ..NewRun::default() };
             let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
@@ -218,7 +235,7 @@ mod tests {
     #[test]
     fn programs_in_a_transcript_are_not_started() {
         let script = json!({"tool": "python_exec", "args": {"code": "# python\nprint(1)"}, "success": true});
-        let read = ForeignTranscript::read(&script.to_string()).expect("a transcript");
+        let read = ForeignTranscript::read(script.to_string().as_bytes()).expect("a transcript");
         let new = NewRun { days: Some(28), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let played = read.play(&mut session, &mut |_| {});
@@ -235,7 +252,7 @@ mod tests {
             ("{\"args\": {}}", "names no tool"),
             ("{\"tool\": \"set_prices\", \"args\": [1]}", "no object"),
         ] {
-            let said = ForeignTranscript::read(text).expect_err(text);
+            let said = ForeignTranscript::read(text.as_bytes()).expect_err(text);
             assert!(said.contains(words), "{text}: {said}");
         }
     }

@@ -69,6 +69,8 @@ pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use folder::agreement::Agreed;
+#[cfg(feature = "server")]
+pub use folder::baseline::baseline_terms;
 pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days};
 pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use folder::create::{NewRun, Storage, StudyEntry};

@@ -25,7 +25,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIST = pathlib.Path(__file__).with_name("errors.toml")
-COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md", ".cargo", "assets", "configs", "src", "tests"]
+COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md", "assets", "configs", "src", "tests"]
 # Seconds after which a suite that hangs counts as having noticed.
 LONGEST = 1200
 SWITCH = '''//! Which planted error is made.

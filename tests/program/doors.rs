@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::support::home::Home;
+use crate::support::home::{Home, said};
 
 /// A server of a new run; it ends with the test.
 pub struct Server {
@@ -339,4 +339,54 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
         assert_eq!(server.stop(), 0);
         assert_eq!(last_hash(&home), of_plain_mode());
     }
+}
+
+#[test]
+fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() {
+    // A client that closes at once: the run has begun.
+    let mode_of = |options: &[&str]| {
+        let home = Home::new();
+        let said = home.run(&[&["mcp", "--seed", "3"], options].concat());
+        let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).out).expect("JSON");
+        (list[0]["mode"].clone(), said.err)
+    };
+    for (options, mode, words) in [
+        (&[][..], "baseline", None),
+        (&["--days", "500", "--cash", "1000000"], "baseline", None),
+        (
+            &["--days", "28"],
+            "sandbox",
+            Some(
+                "this is a sandbox run with 28 days; a baseline run has scenario default, 500 days and $1,000,000",
+            ),
+        ),
+        (&["--cash", "5e5"], "sandbox", Some("with $500,000;")),
+        (&["--scenario", "paper"], "sandbox", Some("with scenario paper;")),
+        (&["--days", "28", "--mode", "debug"], "debug", None),
+    ] {
+        let (found, err) = mode_of(options);
+        assert_eq!(found, json!(mode), "{options:?}: {err}");
+        match words {
+            Some(words) => assert!(err.contains(words), "{options:?}: {err}"),
+            None => assert!(!err.contains("sandbox run"), "{options:?}: {err}"),
+        }
+    }
+    assert!(mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days needs a study"));
+    let help = Home::new().run(&["serve", "--help"]).out;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("a baseline run has 500 ") && help.contains("otherwise sandbox]"), "{help}");
+}
+
+#[test]
+fn client_of_a_run_that_cannot_be_opened_is_answered() {
+    let home = Home::new();
+    let lines = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"initialize\",\"params\":{}}\n";
+    let said = said(home.program().args(["mcp", "--run", "nothere"]), lines);
+    said.fails(3, &["nothere"]);
+    let answer: Value = serde_json::from_str(&said.out).expect("JSON");
+    assert_eq!((&answer["id"], &answer["jsonrpc"]), (&json!(1), &json!("2.0")));
+    let message = answer["error"]["message"].as_str().expect("a message");
+    assert!(said.err.contains(message) && message.contains("nothere"), "{answer}");
+    // A client that sends nothing sees the sentence on standard error.
+    home.run(&["mcp", "--run", "nothere"]).fails(3, &["nothere"]);
 }

@@ -70,7 +70,7 @@ fn behaviour_is_told_of_one_run_and_of_many() {
         |name: &str| rows(&home.run(&["lab", "behaviour", runs[0], runs[1], "--csv", "--table", name]));
     let measures = table("measures");
     let share = |row: &BTreeMap<String, String>| {
-        row["ad spend on the truly best channel"].parse::<f64>().expect("a share")
+        row["ad_spend_on_the_truly_best_channel"].parse::<f64>().expect("a share")
     };
     let shares: Vec<f64> = measures.iter().map(share).collect();
     assert_eq!(shares.len(), 2, "rows of runs alone: {measures:?}");
@@ -78,10 +78,12 @@ fn behaviour_is_told_of_one_run_and_of_many() {
     let told = home.run(&["lab", "behaviour", runs[0], runs[1], "--json"]).out;
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
     let summary = &told["tables"]["measures"]["summary"];
-    assert_eq!(summary[0]["ad spend on the truly best channel"].as_f64(), Some(shares[0]));
-    assert_eq!(summary[1]["ad spend on the truly best channel"].as_f64(), Some(0.0));
-    assert_eq!(measures[0]["\"if\" in notes"], "1");
+    assert_eq!(summary[0]["ad_spend_on_the_truly_best_channel"].as_f64(), Some(shares[0]));
+    assert_eq!(summary[1]["ad_spend_on_the_truly_best_channel"].as_f64(), Some(0.0));
+    assert_eq!(measures[0]["if_in_notes"], "1");
     assert_eq!(table("tools")[0]["tool"], "set_prices");
+    let cash = table("cash");
+    assert_eq!((cash.len(), cash[0]["day"].as_str(), cash[0]["cash"].as_str()), (2 * 15, "0", "1000000"));
     let notes = table("notes");
     assert_eq!((notes.len(), notes[0]["plans"].as_str()), (2, "If rivals move, cut ads."));
     assert!(table("customers").iter().any(|row| row["group"] == "S1"));

@@ -43,7 +43,7 @@ fn last_hash(folder: &Path) -> String {
 }
 
 fn export(home: &Home, run: &str, format: &str) -> Value {
-    let out = home.0.path().join(format);
+    let out = home.0.path().join(format!("{format}.json"));
     let said = home.run(&["runs", "export", run, "--format", format, "--out", &out.to_string_lossy()]);
     assert_eq!(said.code, 0, "{}", said.err);
     serde_json::from_str(&fs::read_to_string(out).expect("a file")).expect("JSON")
@@ -63,7 +63,7 @@ fn so_does_a_script_of_a_baseline() {
 fn a_run_is_exported_to_a_name_alone() {
     let home = Home::new();
     let (run, _) = played(&home);
-    for format in ["archive", "atif", "inspect"] {
+    for format in ["archive", "atif"] {
         let mut command = home.program();
         command
             .current_dir(home.0.path())
@@ -132,18 +132,122 @@ fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told
 }
 
 #[test]
-fn an_evaluation_log_has_a_sample_with_every_message_and_the_cash_as_its_score() {
+fn evaluation_log_has_a_sample_with_every_message() {
     let home = Home::new();
     let (run, _) = played(&home);
     let log = export(&home, &run, "inspect");
     let sample = &log["samples"][0];
     assert_eq!((&log["version"], &sample["id"]), (&json!(2), &json!(run)));
-    assert_eq!(sample["scores"]["cash"]["value"], log["results"]["scores"][0]["metrics"]["value"]["value"]);
     let messages = sample["messages"].as_array().expect("messages");
     let roles = |role: &str| messages.iter().filter(|message| message["role"] == role).count();
     assert_eq!((roles("system"), roles("user")), (1, 1));
     let called = messages.iter().filter(|message| message["tool_calls"].is_array()).count();
     assert!(called > 8 && roles("tool") == called, "{called}");
+    // Tables of messages are made of the events of the model: each message is in one of them.
+    let events = sample["events"].as_array().expect("events");
+    let of_model = events.iter().filter(|event| event["event"] == "model");
+    let of_events: Vec<&Value> = of_model
+        .flat_map(|event| {
+            let choices = event["output"]["choices"].as_array().expect("choices");
+            event["input"]
+                .as_array()
+                .expect("input")
+                .iter()
+                .chain(choices.iter().map(|choice| &choice["message"]))
+        })
+        .collect();
+    assert_eq!(of_events, messages.iter().collect::<Vec<_>>());
+    let ids: std::collections::BTreeSet<&str> =
+        messages.iter().filter_map(|message| message["id"].as_str()).collect();
+    assert!(ids.len() == messages.len() && ids.iter().all(|id| id.starts_with(&run)), "{ids:?}");
+}
+
+/// Logs of an unfinished, a finished and a bankrupt run, in a folder for Inspect; each with what `runs show` prints.
+fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
+    played(home);
+    for options in [&["--days", "14"][..], &["--days", "14", "--cash", "500"]] {
+        let said = home.run(&[&["run", "--policy", "P0", "--seed", "3", "--save"], options].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+    }
+    let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).out).expect("JSON");
+    let logs = home.0.path().join("logs");
+    let of_run = |run: &Value| {
+        let id = run["id"].as_str().expect("a name");
+        let shown = home.run(&["runs", "show", id, "--json"]);
+        let said = home.run(&["runs", "export", id, "--format", "inspect", "--out", &logs.to_string_lossy()]);
+        assert_eq!((shown.code, said.code), (0, 0), "{}{}", shown.err, said.err);
+        let moment = run["created"].as_str().expect("a moment")[..19].replace(':', "-");
+        let file = logs.join(format!("{moment}-00-00_novamind_{id}.json"));
+        let log = fs::read_to_string(file).expect("a log");
+        let parsed = [shown.out, log].map(|text| serde_json::from_str(&text).expect("JSON"));
+        parsed.into()
+    };
+    list.as_array().expect("runs").iter().map(of_run).collect()
+}
+
+#[test]
+fn score_of_a_run_is_that_of_the_rules_wherever_it_is_shown() {
+    let home = Home::new();
+    let mut seen = Vec::new();
+    for (shown, log) in shown_and_logged(&home) {
+        let cash = shown["cash"].clone();
+        let (status, score) = match shown["ended"].as_str() {
+            None => ("started", None),
+            Some("horizon") => ("success", Some(cash)),
+            Some("bankruptcy") => ("success", Some(json!(0.0))),
+            Some(other) => panic!("{other}"),
+        };
+        seen.push(shown["ended"].clone());
+        let folder = home.runs().join(shown["id"].as_str().expect("a name"));
+        assert_eq!((&shown["score"], &shown["state_hash"]), (&json!(score), &json!(last_hash(&folder))));
+        let sample = log["samples"][0]["scores"]["cash"]["value"].clone();
+        let result = log["results"]["scores"][0]["metrics"]["value"]["value"].clone();
+        assert_eq!((&log["status"], &sample, &result), (&json!(status), &json!(score), &json!(score)));
+    }
+    seen.sort_by_key(Value::to_string);
+    assert_eq!(seen, [json!("bankruptcy"), json!("horizon"), Value::Null]);
+}
+
+#[test]
+fn log_is_not_written_as_an_archive_that_inspect_cannot_read() {
+    let home = Home::new();
+    let (run, _) = played(&home);
+    let out = home.0.path().join("log.eval").to_string_lossy().into_owned();
+    home.run(&["runs", "export", &run, "--format", "inspect", "--out", &out])
+        .fails(2, &["log.eval", ".json", "folder"]);
+}
+
+#[test]
+fn evaluation_log_becomes_a_run_in_the_same_state() {
+    let home = Home::new();
+    let (run, hash) = played(&home);
+    export(&home, &run, "inspect");
+    let file = home.0.path().join("inspect.json");
+    let other = Home::new();
+    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains(&hash), "{}", said.out);
+}
+
+/// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of this program's tools, one of which was refused, and one of
+/// another tool.
+#[test]
+fn archive_of_inspect_is_imported() {
+    let home = Home::new();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/inspect.eval");
+    let said = home.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--days", "28"]);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains(": 4 calls, day 7,"), "{}", said.out);
+    let manifest = fs::read_to_string(home.only_run().join("run.toml")).expect("a manifest");
+    assert!(
+        manifest.contains("seed = 9") && manifest.contains("participant = \"mockllm/model\""),
+        "{manifest}"
+    );
+    let bytes = fs::read(&file).expect("an archive");
+    let cut = home.0.path().join("cut.eval");
+    fs::write(&cut, &bytes[..bytes.len() - 30]).expect("a file");
+    home.run(&["runs", "import", "--transcript", &cut.to_string_lossy(), "--seed", "3"])
+        .fails(1, &["cut short"]);
 }
 
 #[test]
@@ -151,7 +255,7 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
     let home = Home::new();
     let (run, hash) = played(&home);
     export(&home, &run, "atif");
-    let file = home.0.path().join("atif");
+    let file = home.0.path().join("atif.json");
     let other = Home::new();
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);

@@ -1,4 +1,4 @@
-"""The scripts of ten runs, played on new runs: in plain mode, and over the Python client. Both end in the state that they name."""
+"""The scripts of eleven runs, played on new runs: in plain mode, and over the Python client. Both end in the state that they name."""
 import json
 import os
 import re
@@ -58,7 +58,7 @@ def main(work):
     client = os.path.join(work, "client")
     novamind("serve", "--client", client)
     runs = [run["id"] for run in json.loads(novamind("runs", "list", "--json"))]
-    assert len(runs) == 10, runs
+    assert len(runs) == 11, runs
     for run in runs:
         out = os.path.join(work, f"script-{run}")
         novamind("runs", "export", run, "--format", "script", "--out", out)

@@ -91,6 +91,23 @@ fn a_file_is_one_idea() {
 }
 
 #[test]
+fn build_script_watches_every_folder_that_is_compiled_in() {
+    let script = fs::read_to_string(root().join("build.rs")).expect("a build script");
+    let sources = sources();
+    let macros: Vec<&str> = sources
+        .iter()
+        .flat_map(Source::code)
+        .filter_map(|(_, line)| Some(line.split_once("include_dir!(\"$CARGO_MANIFEST_DIR/")?.1))
+        .collect();
+    assert!(macros.len() > 5, "macros are found");
+    let folders = macros.iter().filter_map(|path| path.split('/').next());
+    let unwatched = folders.filter(|folder| !script.contains(&format!("\"{folder}\"")));
+    assert_none(
+        &unwatched.map(|folder| format!("build.rs does not watch {folder}")).collect::<Vec<String>>(),
+    );
+}
+
+#[test]
 fn a_type_name_means_one_thing_in_its_house() {
     // Every subcommand has options; a machine without vector registers has other streams.
     const TWINS: [&str; 2] = ["Options", "Key"];

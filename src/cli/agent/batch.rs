@@ -17,7 +17,7 @@ use crate::cli::new_run::NewRunOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::results::{FinishedRun, Try, tries_exhibit};
 use crate::server::write_client;
-use crate::session::{Access, Session, Trajectory, write_whole};
+use crate::session::{Session, Trajectory, write_whole};
 
 /// Options of `agent batch`.
 #[derive(Debug, Args)]
@@ -137,7 +137,7 @@ fn shell(command: &str) -> Command {
 }
 
 fn outcome(number: u32, own: &AgentRun, attempts: u32, exit_code: Option<i32>) -> Result<Try, Failure> {
-    let session = Session::open(&own.folder, Access::Read, false)?;
+    let session = Session::open_to_read(&own.folder, false)?;
     let trajectory = Trajectory::read(&own.folder.join("trajectory.jsonl"))?;
     let result = session.ended().and_then(|_| FinishedRun::of(&session, &trajectory.lines));
     Ok(Try { number, run: own.id.clone(), attempts, exit_code, day: session.day(), result })

@@ -68,16 +68,19 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Axis {
             name: "copy",
             caption: format!("Copying of the shared bank, policy: {}", shared.name),
+            policy: &shared.name,
             settings: &COPY,
             results: &copy,
         },
         Axis {
             name: "drain",
             caption: format!("Draining of the targeted bank, policy: {}", targeted.name),
+            policy: &targeted.name,
             settings: &DRAIN,
             results: &drain,
         },
     ];
-    let short: Vec<ShortRun<'_>> = short.iter().map(|(name, results)| ShortRun { name, results }).collect();
+    let short: Vec<ShortRun<'_>> =
+        short.iter().map(|(name, results)| ShortRun { name, settings: &few, results }).collect();
     options.output.show(&ablation_exhibit(&axes, &short, options.day))
 }

@@ -8,7 +8,7 @@ use crate::database::text::aligned;
 use crate::lab::play_opponents;
 use crate::notation::dollars;
 use crate::report::opponents::{Opponent, Opponents};
-use crate::session::{Access, Ended, Session, find_run_to_read};
+use crate::session::{Ended, Session, find_run_to_read};
 
 /// Options of `lab opponents`.
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let found = play_opponents(&folder, &context.configuration, &|| true);
     let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
     let opponents = found.ok_or_else(|| Failure::failed("stopped"))?;
-    let run = Session::open(&folder, Access::Read, false)?;
+    let run = Session::open_to_read(&folder, false)?;
     if options.json {
         let manifest = run.manifest();
         let object = json!({

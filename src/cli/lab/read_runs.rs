@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
-use crate::session::{Access, Manifest, Session, Trajectory, find_run_to_read};
+use crate::session::{Manifest, Session, Trajectory, find_run_to_read};
 
 /// What is read of each run that was named; that it is read is recorded with the run.
 ///
@@ -29,7 +29,7 @@ pub fn of_runs<T>(
             return Err(Failure::usage(message));
         }
         context.look(&own, command, &names.join(" "))?;
-        let session = Session::open(&own, Access::Read, true)?;
+        let session = Session::open_to_read(&own, true)?;
         read.push(of(&session, &Trajectory::read(&own.join("trajectory.jsonl"))?));
         progress.inc(1);
     }

@@ -11,8 +11,7 @@ use crate::lab::Policy;
 use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsBy, ResultsTable, idle_company};
 use crate::report::comparable::{Obstacle, RunTerms};
 use crate::session::{
-    Access, Configuration, Ended, RunError, RunSummary, Session, Trajectory, all_run_folders, list_runs,
-    run_folder,
+    Configuration, Ended, RunError, RunSummary, Session, Trajectory, all_run_folders, list_runs, run_folder,
 };
 
 /// Options of `lab table`.
@@ -100,7 +99,7 @@ fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Fail
 }
 
 fn result_of(folder: &Path) -> Result<Option<FinishedRun>, RunError> {
-    let session = Session::open(folder, Access::Read, false)?;
+    let session = Session::open_to_read(folder, false)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
     Ok(FinishedRun::of(&session, &trajectory.lines))
 }

@@ -10,7 +10,9 @@ use super::output::OutputOptions;
 use crate::cli::output_file::{is_same_file, write_file};
 use crate::cli::runs::as_csv;
 use crate::cli::{Context, Failure, print};
-use crate::lab::study::{Shard, ShardHead, Shards, StudyPlan, head, parse_shard, rows, size, summary};
+use crate::lab::study::{
+    Shard, ShardHead, Shards, StudyPlan, equal_arms, head, parse_shard, played_alike, rows, size, summary,
+};
 use crate::report::count;
 
 /// Options of `lab study`.
@@ -55,6 +57,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
     check_places(options)?;
+    warn(&equal_arms(&plan, &context.configuration)?);
     if options.check {
         return print(&format!("{}: {}, {}\n", plan.name, size(&plan), count(runs as u32, "run")));
     }
@@ -74,7 +77,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
     let kept = "the runs are kept, and the same command goes on";
     match (&options.out, options.shard) {
-        (None, _) if options.output.is_of_rows() => print(&text),
+        (None, _) if options.output.is_of_rows() => {
+            warn(&played_alike(&plan, &results));
+            print(&text)
+        }
         (None, _) => options.output.show(&summary(&plan, &results)),
         (Some(file), None) => {
             write_file(file, Some(kept), |out| out.write_all(text.as_bytes()))?;
@@ -87,6 +93,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print(&format!("shard {part}: {} in {}\n", count(numbers.len() as u32, "run"), file.display()))
         }
     }
+}
+
+/// Prints warnings on standard error.
+fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
 }
 
 /// What is written replaces neither the study file nor something else that is written.

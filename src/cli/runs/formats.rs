@@ -8,7 +8,9 @@ use serde_json::Value;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
-use crate::report::transcript::{Surroundings, Transcript, atif, inspect, plain_script, python_script};
+use crate::report::transcript::{
+    Surroundings, Transcript, atif, inspect, inspect_file_name, plain_script, python_script,
+};
 use crate::session::manifest_of;
 
 /// What a run is written as.
@@ -26,15 +28,25 @@ pub enum ExportFormat {
 
 /// Writes the run of a folder in a format. A file that is there stays.
 pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context) -> Result<(), Failure> {
-    let files = match format {
-        ExportFormat::Script => vec![out.join("play.txt"), out.join("play.py")],
-        _ => vec![out.to_owned()],
+    let manifest = manifest_of(folder)?;
+    let (made, files) = match format {
+        ExportFormat::Script => (Some(out), vec![out.join("play.txt"), out.join("play.py")]),
+        ExportFormat::Inspect if has_ending(out, "eval") => {
+            return Err(Failure::usage(format!(
+                "{}: the log is written as JSON, and Inspect expects an archive in a file that ends in .eval: name a file that \
+                 ends in .json, or a folder. Nothing was written",
+                out.display()
+            )));
+        }
+        ExportFormat::Inspect if !has_ending(out, "json") => {
+            (Some(out), vec![out.join(inspect_file_name(&manifest))])
+        }
+        _ => (None, vec![out.to_owned()]),
     };
     if let Some(there) = files.iter().find(|file| file.exists()) {
         let message = format!("{} already exists: choose another name, or remove it", there.display());
         return Err(Failure::failed(message));
     }
-    let manifest = manifest_of(folder)?;
     if let (Some(lesson), ExportFormat::Script) = (&manifest.lesson, format) {
         return Err(Failure::usage(format!(
             "run {} belongs to lesson {}, whose start no script makes; atif and inspect tell it",
@@ -47,13 +59,13 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
     progress.finish_and_clear();
     let run = run?;
     let json = |value: Value| serde_json::to_string_pretty(&value).unwrap_or_default() + "\n";
+    if let Some(made) = made {
+        std::fs::create_dir_all(made)
+            .map_err(|error| Failure::failed(format!("{}: {error}", made.display())))?;
+    }
     let texts = match format {
         ExportFormat::Archive => return Ok(()),
-        ExportFormat::Script => {
-            std::fs::create_dir_all(out)
-                .map_err(|error| Failure::failed(format!("{}: {error}", out.display())))?;
-            vec![plain_script(&run), python_script(&run).unwrap_or_default()]
-        }
+        ExportFormat::Script => vec![plain_script(&run), python_script(&run).unwrap_or_default()],
         ExportFormat::Atif => vec![json(atif(&run, &surroundings(&run)))],
         ExportFormat::Inspect => vec![json(inspect(&run, &surroundings(&run)))],
     };
@@ -68,6 +80,10 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
         (ExportFormat::Script, Err(error)) => Err(Failure::failed(format!("{error}; play.txt is written"))),
         _ => Ok(()),
     }
+}
+
+fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 /// What whoever plays is told.

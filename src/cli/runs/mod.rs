@@ -10,14 +10,14 @@ pub use transfer::{as_csv, tidy_up_on_signals, write_tables};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{Context, Failure, print};
 use crate::notation::{dollars, printable};
 use crate::report::origin_in_words;
 use crate::session::{
-    BranchOrigin, RunSummary, all_run_folders, delete_run, end_run, find_run, find_run_to_read, list_runs,
-    manifest_text, origin_of, rescue,
+    BranchOrigin, Record, RunSummary, Trajectory, all_run_folders, delete_run, end_run, find_run,
+    find_run_to_read, list_runs, manifest_text, origin_of, rescue,
 };
 
 /// Options of `runs`.
@@ -96,21 +96,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(RunsCommand::List { participant }) => {
             list(&runs, &folders, participant.as_deref().or(options.participant.as_deref()), options.json)
         }
-        Some(RunsCommand::Show { run }) => {
-            let folder = find_in(&folders, run)?;
-            let text = manifest_text(&folder)?;
-            let id = id_of(&folder);
-            let summary = list_all(&folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
-            if options.json {
-                return print(&(serde_json::to_string_pretty(&summary).unwrap_or_default() + "\n"));
-            }
-            let origin = origin_of(&folder);
-            print(&format!(
-                "{}\n{}",
-                summary.as_ref().map(|run| line(run, origin.as_ref())).unwrap_or_default(),
-                printable(&text)
-            ))
-        }
+        Some(RunsCommand::Show { run }) => show(&folders, run, options.json),
         Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
         Some(RunsCommand::End { run }) => {
             let id = id_of(&find_run(&runs, run)?);
@@ -141,6 +127,36 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(RunsCommand::Columns) => transfer::explain_columns(options.json),
         Some(RunsCommand::Schema) => print(SCHEMA),
     }
+}
+
+/// Prints what a run is; as JSON, with the hash of its last recorded state and its score.
+fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
+    let folder = find_in(folders, run)?;
+    let text = manifest_text(&folder)?;
+    let id = id_of(&folder);
+    let summary = list_all(folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
+    if json {
+        let mut shown = serde_json::to_value(&summary).unwrap_or_default();
+        // The summary names what keeps a damaged trajectory from being read.
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).ok();
+        let lines = trajectory.iter().flat_map(|trajectory| trajectory.lines.iter().rev());
+        let mut hashes = lines.filter_map(|line| match &line.record {
+            Record::Week(closing) | Record::Step(closing) => Some(&closing.state_hash),
+            _ => None,
+        });
+        shown["state_hash"] = json!(hashes.next());
+        shown["score"] = json!(trajectory.as_ref().and_then(|trajectory| match &trajectory.end()?.record {
+            Record::End(end) => end.score,
+            _ => None,
+        }));
+        return print(&(serde_json::to_string_pretty(&shown).unwrap_or_default() + "\n"));
+    }
+    let origin = origin_of(&folder);
+    print(&format!(
+        "{}\n{}",
+        summary.as_ref().map(|run| line(run, origin.as_ref())).unwrap_or_default(),
+        printable(&text)
+    ))
 }
 
 /// Every run of some folders, each with its own.

@@ -21,8 +21,8 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     if length > LARGEST {
         return Err(named(format!("it has {length} bytes; a transcript has at most {LARGEST}")));
     }
-    let text = std::fs::read_to_string(file).map_err(|error| named(error.to_string()))?;
-    let read = ForeignTranscript::read(&text).map_err(named)?;
+    let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
+    let read = ForeignTranscript::read(&bytes).map_err(named)?;
     let asked = made_of.played_by(read.player.as_deref().unwrap_or("transcript"));
     let asked = asked.new_run(Mode::Sandbox, context)?;
     let scenario = read.scenario.clone().filter(|_| !made_of.names_scenario());

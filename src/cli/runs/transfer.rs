@@ -35,7 +35,8 @@ pub struct Export {
     /// With --all: only runs of this participant.
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
-    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all or --format script a folder.
+    /// File of the archive, compressed when its name ends in .gz or .tgz; with --all or --format script a folder. With --format
+    /// inspect a file that ends in .json, or a folder, in which the log gets the name that Inspect expects.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// What is written: the sealed archive, or the run in a format of programs that study or train agents.
@@ -56,8 +57,8 @@ pub struct Import {
     /// Import one archive under this name, beside another record of the same run.
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
-    /// Play a transcript that was made elsewhere in a new run: a trajectory of the Agent Trajectory Interchange Format, or lines
-    /// with a tool and its args each.
+    /// Play a transcript that was made elsewhere in a new run: a trajectory of the Agent Trajectory Interchange Format, a log of
+    /// Inspect (.eval or .json), or lines with a tool and its args each.
     #[cfg(feature = "server")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
     transcript: Option<PathBuf>,

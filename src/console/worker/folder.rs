@@ -83,7 +83,7 @@ impl SessionThread {
             self.refuse_session_of_study(&folder, access)?;
             match access {
                 Access::Write => Session::open_to_play(&folder, &self.configuration),
-                Access::Read => Session::open(&folder, access, true),
+                Access::Read => Session::open_to_read(&folder, true),
             }
         });
         if opened.is_ok() {

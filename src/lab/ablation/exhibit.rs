@@ -14,6 +14,8 @@ pub struct Axis<'a> {
     pub name: &'static str,
     /// What varies, and with which policy.
     pub caption: String,
+    /// Name of the policy.
+    pub policy: &'a str,
     /// Arms.
     pub settings: &'a [RivalSetting],
     /// Results, one arm for each setting.
@@ -24,7 +26,9 @@ pub struct Axis<'a> {
 pub struct ShortRun<'a> {
     /// Policy.
     pub name: &'a str,
-    /// Results: rivals off, default, hard.
+    /// Settings of the rivals: off, default, hard.
+    pub settings: &'a [RivalSetting],
+    /// Results, one arm for each setting.
     pub results: &'a ExperimentResults,
 }
 
@@ -53,6 +57,7 @@ pub fn ablation_exhibit(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> 
         exhibit.notes.push(alike(axis));
     }
     exhibit.tables.push(short_runs(short));
+    exhibit.tables.push(every_run(axes, short, day));
     exhibit.notes.push(format!(
         "Over {SHORT_DAYS} days there are neither rivals nor drift, for both wait longer: what is measured there says nothing about them."
     ));
@@ -199,6 +204,52 @@ fn short_runs(short: &[ShortRun<'_>]) -> Tabulation {
             Datum::number((0..own.results.seeds.len()).filter(is_alike).count() as f64),
             Datum::number(own.results.seeds.len() as f64),
         ]);
+    }
+    table
+}
+
+/// Every run, for programs.
+fn every_run(axes: &[Axis<'_>], short: &[ShortRun<'_>], day: u32) -> Tabulation {
+    let columns = vec![
+        Column::words("axis", "axis"),
+        Column::words("policy", "policy"),
+        Column::words("rivals", "rivals"),
+        Column::words("seed", "seed"),
+        Column::numbers("days", "days of the run", Measure::Days),
+        Column::numbers("last_day", "last day", Measure::Days),
+        Column::words("bankrupt", "bankrupt"),
+        Column::numbers("cash", "final cash", Measure::Dollars),
+        Column::numbers("subscribers_on_day", &format!("subscribers, day {day}"), Measure::Count),
+        Column::numbers("subscribers", "subscribers at the end", Measure::Count),
+        Column::numbers("peak", "peak subscribers", Measure::Count),
+        Column::numbers("peak_day", "on day", Measure::Days),
+        Column::words("state_hash", "state hash"),
+    ];
+    let of_axes = axes.iter().map(|own| (own.name, own.policy, own.settings, own.results));
+    let of_short = short.iter().map(|own| ("short", own.name, own.settings, own.results));
+    let mut table = Tabulation { is_for_programs: true, ..Tabulation::new("runs", "Every run", columns) };
+    for (axis, policy, settings, results) in of_axes.chain(of_short) {
+        for (setting, runs) in settings.iter().zip(&results.by_arm) {
+            let row = |run: &RunResult| {
+                let then = (day <= run.days).then(|| subscribers_on(run, day));
+                vec![
+                    Datum::words(axis),
+                    Datum::words(policy),
+                    Datum::words(setting.name),
+                    Datum::words(run.seed.to_string()),
+                    Datum::number(f64::from(run.days)),
+                    Datum::number(f64::from(run.day)),
+                    Datum::words(if run.is_bankrupt() { "yes" } else { "no" }),
+                    Datum::number(run.cash),
+                    Datum::number(then),
+                    Datum::number(f64::from(run.subscribers)),
+                    Datum::number(f64::from(run.peak_subscribers)),
+                    Datum::number(f64::from(run.peak_day)),
+                    Datum::words(&*run.state_hash),
+                ]
+            };
+            table.rows.extend(runs.iter().map(row));
+        }
     }
     table
 }

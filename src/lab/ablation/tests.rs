@@ -38,9 +38,21 @@ fn fifty_days_have_neither_rivals_nor_drift() {
     let results = played(&probe, &rivals, (SHORT_DAYS, SHORT_DAYS));
     let cash = |arm: usize| results.of(arm, |run| run.cash);
     assert!(cash(0) == cash(1) && cash(1) == cash(2));
-    let short = [ShortRun { name: "the probe", results: &results }];
-    let axis = Axis { name: "copy", caption: "the probe".to_owned(), settings: &rivals, results: &results };
-    let text = ablation_exhibit(&[axis], &short, 49).as_text(100);
+    let short = [ShortRun { name: "the probe", settings: &rivals, results: &results }];
+    let axis = Axis {
+        name: "copy",
+        caption: "the probe".to_owned(),
+        policy: "probe",
+        settings: &rivals,
+        results: &results,
+    };
+    let exhibit = ablation_exhibit(&[axis], &short, 49);
+    let runs = exhibit.table("runs").expect("every run").as_csv();
+    assert_eq!(runs.len(), 1 + 2 * 3 * 2, "axis and short runs, three settings, two seeds");
+    assert_eq!(runs[1][..4], ["copy", "probe", "off", "1"]);
+    assert_eq!(runs[12][..4], ["short", "the probe", "hard", "2"]);
+    assert_eq!(runs[1][7], results.by_arm[0][0].cash.to_string());
+    let text = exhibit.as_text(100);
     assert!(text.contains("neither rivals nor drift") && text.contains("identical in 2 of 2"), "{text}");
     let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
     assert_eq!(named, ["the paper's baseline", "ads from day 0"]);

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use crate::lab::exhibit::{
-    AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
+    AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation, column_name,
 };
 use crate::lab::experiment::{ExperimentResults, RunResult};
 use crate::lab::ranks::{concordance, places};
@@ -71,9 +71,14 @@ impl<'a> Board<'a> {
     }
 }
 
+/// A column for each axis.
 fn head(grid: &Grid) -> Vec<Column> {
-    let names = grid.axes.join(" / ");
-    vec![Column::words("configuration", &names)]
+    grid.axes.iter().map(|axis| Column::words(&column_name(axis), axis)).collect()
+}
+
+/// The levels of a configuration.
+fn levels(grid: &Grid, arm: usize) -> Vec<Datum> {
+    grid.configurations[arm].levels.iter().map(Datum::words).collect()
 }
 
 fn of_one_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
@@ -87,13 +92,14 @@ fn of_one_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut table = Tabulation::new("configurations", "The best first", columns);
     for arm in &board.order {
         let Some(run) = board.runs(*arm).first() else { continue };
-        table.rows.push(vec![
-            Datum::words(grid.configurations[*arm].label()),
+        let mut row = levels(grid, *arm);
+        row.extend([
             Datum::number(run.cash),
             Datum::number(f64::from(run.day)),
             Datum::number(f64::from(run.peak_subscribers)),
             Datum::number(f64::from(run.peak_day)),
         ]);
+        table.rows.push(row);
     }
     table
 }
@@ -112,14 +118,15 @@ fn over_seeds(grid: &Grid, board: &Board<'_>) -> Tabulation {
         let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
         let cash = of(|run| run.cash);
         let quartiles = Quartiles::of(&cash);
-        table.rows.push(vec![
-            Datum::words(grid.configurations[*arm].label()),
+        let mut row = levels(grid, *arm);
+        row.extend([
             Datum::number(quartiles.map(|own| own.median)),
             Datum::interval(Interval::of_median(&cash)),
             Datum::number(quartiles.map(|own| own.lower)),
             Datum::number(quartiles.map(|own| own.upper)),
             Datum::number(mean(&of(|run| f64::from(u8::from(run.is_bankrupt()))))),
         ]);
+        table.rows.push(row);
     }
     table
 }
@@ -135,24 +142,26 @@ fn stability(grid: &Grid, board: &Board<'_>) -> Tabulation {
     let mut table = Tabulation::new("stability", "Survival, size, and places by final cash", columns);
     for arm in &board.order {
         let of = |figure: fn(&RunResult) -> f64| board.results.of(*arm, figure);
-        table.rows.push(vec![
-            Datum::words(grid.configurations[*arm].label()),
+        let mut row = levels(grid, *arm);
+        row.extend([
             Datum::number(mean(&of(|run| f64::from(run.day)))),
             Datum::number(median(&of(|run| f64::from(run.peak_subscribers)))),
             Datum::number(board.first(*arm)),
             Datum::number(board.mean_place(*arm)),
         ]);
+        table.rows.push(row);
     }
     table
 }
 
 fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
-    let columns = vec![
-        Column::words("seed", "seed"),
-        Column::words("configuration", "best configuration"),
+    let mut columns = vec![Column::words("seed", "seed")];
+    columns.extend(head(grid));
+    columns.extend([
+        Column::numbers("equal", "equal to it", Measure::Count),
         Column::numbers("cash", "its cash", Measure::Dollars),
         Column::numbers("bankrupt", "bankrupt", Measure::Count),
-    ];
+    ]);
     let mut table = Tabulation::new("seeds", "The best configuration of each seed", columns);
     for (at, seed) in board.results.seeds.iter().enumerate() {
         let run = |arm: usize| board.runs(arm).get(at);
@@ -161,12 +170,11 @@ fn best_by_seed(grid: &Grid, board: &Board<'_>) -> Tabulation {
         let first: Vec<usize> = board.order.iter().copied().filter(|arm| cash(arm) == best).collect();
         let bankrupt =
             board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
-        table.rows.push(vec![
-            Datum::words(seed.to_string()),
-            Datum::words(labels(grid, &first)),
-            Datum::number(best),
-            Datum::number(bankrupt as f64),
-        ]);
+        let Some((one, equal)) = first.split_first() else { continue };
+        let mut row = vec![Datum::words(seed.to_string())];
+        row.extend(levels(grid, *one));
+        row.extend([equal.len() as f64, best, bankrupt as f64].map(Datum::number));
+        table.rows.push(row);
     }
     table
 }
@@ -184,7 +192,7 @@ fn labels(grid: &Grid, first: &[usize]) -> String {
 
 /// Every run with its levels, for programs: people read the tables above.
 fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
-    let mut columns: Vec<Column> = grid.axes.iter().map(|axis| Column::words(axis, axis)).collect();
+    let mut columns = head(grid);
     columns.extend([
         Column::words("seed", "seed"),
         Column::numbers("cash", "final cash", Measure::Dollars),
@@ -194,9 +202,9 @@ fn every_run(grid: &Grid, board: &Board<'_>) -> Tabulation {
         Column::numbers("peak_day", "on day", Measure::Days),
     ]);
     let mut table = Tabulation { is_for_programs: true, ..Tabulation::new("runs", "Every run", columns) };
-    for (arm, point) in grid.configurations.iter().enumerate() {
+    for arm in 0..grid.configurations.len() {
         for run in board.runs(arm) {
-            let mut row: Vec<Datum> = point.levels.iter().map(Datum::words).collect();
+            let mut row = levels(grid, arm);
             row.extend([
                 Datum::words(run.seed.to_string()),
                 Datum::number(run.cash),

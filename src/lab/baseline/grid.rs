@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
+use crate::lab::exhibit::column_name;
 use crate::lab::policy::{Policy, PolicyError};
 use crate::shipped;
 use crate::world::params::ParameterSource;
@@ -116,15 +117,17 @@ impl Grid {
         for axis in file.axis {
             let span = axis.span();
             let axis = axis.into_inner();
+            let column = column_name(&axis.name);
             if !is_label(&axis.name)
-                || COLUMNS_OF_RUNS.contains(&axis.name.as_str())
-                || axes.iter().any(|(name, _)| *name == axis.name)
+                || column.is_empty()
+                || COLUMNS_OF_TABLES.contains(&column.as_str())
+                || axes.iter().any(|(name, _)| column_name(name) == column)
             {
                 return Err(reader.at(
                     Some(span),
                     &format!(
-                        "axes have names, each another one and none of {}; a name {LABEL}",
-                        COLUMNS_OF_RUNS.join(", ")
+                        "axes have names with letters or digits, each another one and none of {}; a name {LABEL}",
+                        COLUMNS_OF_TABLES.join(", ")
                     ),
                 ));
             }
@@ -152,8 +155,22 @@ impl Grid {
 /// What a name is.
 const LABEL: &str = "is one line of text without \" / \", which stands between the levels of a combination";
 
-/// Names that the table of all runs has besides the axes.
-const COLUMNS_OF_RUNS: [&str; 6] = ["seed", "cash", "survival", "bankrupt", "peak", "peak_day"];
+/// Names of columns that the tables have besides the axes.
+const COLUMNS_OF_TABLES: [&str; 13] = [
+    "seed",
+    "cash",
+    "survival",
+    "bankrupt",
+    "peak",
+    "peak_day",
+    "median_cash",
+    "median_cash_interval",
+    "lower_quartile",
+    "upper_quartile",
+    "first",
+    "place",
+    "equal",
+];
 
 /// Whether a name can stand in a label of a combination, and be found there again.
 fn is_label(name: &str) -> bool {

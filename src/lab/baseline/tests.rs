@@ -40,6 +40,15 @@ fn one_seed_is_told_as_the_paper_does_and_many_with_their_spread() {
     let two = baseline_exhibit(&few, false, &played(&few.configurations, &[1, 2], 28));
     let text = two.as_text(100);
     assert!(text.contains("quartile") && text.contains("Kendall") && !text.contains("15,756"), "{text}");
-    let row = two.table("seeds").expect("a table").rows.len();
-    assert_eq!(row, 2);
+    let rows = |name: &str| two.table(name).expect(name).as_csv();
+    const AXES: [&str; 4] = ["price_book", "target", "spend", "floor"];
+    for name in ["configurations", "stability", "runs"] {
+        assert_eq!(rows(name)[0][..4], AXES, "{name}");
+        assert_eq!(rows(name)[1][..4].iter().filter(|level| level.contains('/')).count(), 0, "{name}");
+    }
+    let seeds = rows("seeds");
+    assert_eq!(
+        (seeds.len(), &seeds[0][1..5], seeds[0][5].as_str()),
+        (1 + 2, &AXES.map(str::to_owned)[..], "equal")
+    );
 }

@@ -6,7 +6,7 @@ mod drawn;
 
 use super::ranks::rank_correlation;
 use crate::lab::comparison::{ComparedFigure, figure_of, measure_of};
-use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
 use crate::report::Logbook;
 use crate::report::books::{Books, GroupBook};
 use crate::report::measures::{Wording, planning_sentences};
@@ -80,7 +80,7 @@ const MOST_TOOLS: usize = 10;
 /// How runs were played, as tables and graphs.
 pub fn exhibit_of(runs: &[ObservedRun]) -> Exhibit {
     let mut exhibit = Exhibit::of("How the runs were played", figures(runs));
-    exhibit.tables.extend([tools(runs), customers(runs), cash(runs), notes(runs)]);
+    exhibit.tables.extend([tools(runs), customers(runs), cash_range(runs), notes(runs), cash(runs)]);
     exhibit.tables.retain(|table| !table.rows.is_empty());
     exhibit.graphs = drawn::graphs(runs);
     if runs.len() > drawn::MOST_WITH_CUSTOMERS {
@@ -108,7 +108,7 @@ fn figures(runs: &[ObservedRun]) -> Tabulation {
             Measure::Count | Measure::Days => Measure::Number(1),
             other => other,
         };
-        Column::numbers(&figure.title(), heading, measure)
+        Column::numbers(&column_name(&figure.title()), heading, measure)
     };
     let mut columns = vec![Column::words("run", "run"), Column::words("participant", "who")];
     columns.extend(figures.iter().map(column));
@@ -210,8 +210,8 @@ fn customers(runs: &[ObservedRun]) -> Tabulation {
 /// Points of a small curve.
 const POINTS: usize = 36;
 
-/// The curves of cash beside each other, all on one scale.
-fn cash(runs: &[ObservedRun]) -> Tabulation {
+/// Lowest, highest and last cash, with the curves on one scale.
+fn cash_range(runs: &[ObservedRun]) -> Tabulation {
     let all = || runs.iter().flat_map(|run| run.cash_by_day.iter().copied());
     let (least, most) = (all().fold(0.0, f64::min), all().fold(1.0, f64::max));
     let height = |value: f64| level((value - least) / (most - least));
@@ -227,13 +227,11 @@ fn cash(runs: &[ObservedRun]) -> Tabulation {
     let columns = vec![
         Column::words("run", "run"),
         Column::words("participant", "who"),
-        Column::words("curve", "cash by day"),
-        Column::numbers("least", "lowest", Measure::Dollars),
-        Column::numbers("most", "highest", Measure::Dollars),
+        Column::drawings("curve", "cash by day"),
+        Column::numbers("lowest", "lowest", Measure::Dollars),
+        Column::numbers("highest", "highest", Measure::Dollars),
         Column::numbers("last", "at the end", Measure::Dollars),
     ];
-    let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
-    ordered.sort_by_key(|run| who(run));
     let row = |run: &ObservedRun| {
         let of = |fold: fn(f64, f64) -> f64| run.cash_by_day.iter().copied().reduce(fold);
         vec![
@@ -245,8 +243,39 @@ fn cash(runs: &[ObservedRun]) -> Tabulation {
             Datum::number(run.cash_by_day.last().copied()),
         ]
     };
-    let rows = ordered.into_iter().map(row).collect();
-    Tabulation { rows, ..Tabulation::new("cash", "Cash, all curves on one scale", columns) }
+    let rows = by_participant(runs).into_iter().map(row).collect();
+    Tabulation { rows, ..Tabulation::new("cash_range", "Cash, all curves on one scale", columns) }
+}
+
+/// Cash at the end of every day.
+fn cash(runs: &[ObservedRun]) -> Tabulation {
+    let columns = vec![
+        Column::words("run", "run"),
+        Column::words("participant", "who"),
+        Column::numbers("day", "day", Measure::Count),
+        Column::numbers("cash", "cash", Measure::Dollars),
+    ];
+    let days = |run: &ObservedRun| {
+        let (name, who) = (run.book.run.clone(), who(run));
+        let row = move |(day, cash): (u32, f64)| {
+            vec![
+                Datum::words(name.clone()),
+                who.clone().map_or(Datum::Missing, Datum::Words),
+                Datum::Number(f64::from(day)),
+                Datum::Number(cash),
+            ]
+        };
+        (0..).zip(run.cash_by_day.clone()).map(row).collect::<Vec<_>>()
+    };
+    let rows = by_participant(runs).into_iter().flat_map(days).collect();
+    Tabulation { rows, is_for_programs: true, ..Tabulation::new("cash", "Cash by day", columns) }
+}
+
+/// The runs, those of a participant one after the other.
+fn by_participant(runs: &[ObservedRun]) -> Vec<&ObservedRun> {
+    let mut ordered: Vec<&ObservedRun> = runs.iter().collect();
+    ordered.sort_by_key(|run| who(run));
+    ordered
 }
 
 /// What the notes say, each time they were kept.
@@ -328,8 +357,8 @@ mod tests {
         let table = measures(&runs);
         let spread = Sample::of(&[14.0, 7.0]).std;
         assert_eq!(survival(&table), [14.0, 7.0, 10.5, spread].map(Datum::Number));
-        assert_eq!(of(&table, 0, "\"if\" in rationales"), Datum::Number(1.0));
-        assert_eq!(of(&table, 0, "\"if\" in notes"), Datum::Number(0.0));
+        assert_eq!(of(&table, 0, "if_in_rationales"), Datum::Number(1.0));
+        assert_eq!(of(&table, 0, "if_in_notes"), Datum::Number(0.0));
         assert_eq!(table.as_csv().len(), 1 + 2, "rows of runs alone");
         let alone = exhibit_of(&runs[..1]);
         let alone = alone.table("measures").expect("measures");
@@ -346,7 +375,24 @@ mod tests {
         assert_eq!(rows("tools")[1][..3], ["set_prices", "2", "1"]);
         let groups = runs[0].groups.len();
         assert_eq!(rows("customers").len(), 1 + groups);
-        assert_eq!(rows("cash").len(), 1 + 2);
+        assert_eq!(rows("cash_range")[0], ["run", "participant", "lowest", "highest", "last"]);
+        assert_eq!(rows("cash_range").len(), 1 + 2);
+        let days: usize = runs.iter().map(|run| run.cash_by_day.len()).sum();
+        assert_eq!(
+            (rows("cash")[0].join(","), rows("cash").len()),
+            ("run,participant,day,cash".to_owned(), 1 + days)
+        );
+        assert_eq!(rows("cash")[1][2..], ["0", "1000000"]);
+        let names = exhibit.tables.iter().flat_map(|table| table.as_csv().remove(0));
+        let is_plain = |name: &String| {
+            name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+        };
+        assert_eq!(names.filter(|name| !is_plain(name)).collect::<Vec<_>>(), Vec::<String>::new());
+        let curves = exhibit.as_text(100);
+        assert!(
+            curves.contains("cash by day") && curves.contains("Cash by day: --csv --table cash"),
+            "{curves}"
+        );
         assert_eq!(rows("notes")[1][1..], ["14", "2", "0", ""].map(str::to_owned));
     }
 }

@@ -1,7 +1,7 @@
 //! Many runs: one row each, the best result first.
 
 use super::compared::{Comparison, Row};
-use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
 use crate::notation::grouped;
 use crate::session::Ended;
 
@@ -32,7 +32,11 @@ pub(super) fn one_a_row(beside: &Comparison) -> Exhibit {
     let mut columns = vec![Column::words("run", "run"), Column::numbers("place", "#", Measure::Count)];
     columns.extend(has_labels.then(|| Column::words("participant", "who")));
     columns.push(Column::words("end", "end"));
-    columns.extend(figures.iter().map(|(row, heading)| Column::numbers(&row.figure, heading, row.measure())));
+    columns.extend(
+        figures
+            .iter()
+            .map(|(row, heading)| Column::numbers(&column_name(&row.figure), heading, row.measure())),
+    );
     let row = |(place, run): (usize, &usize)| {
         let mut cells = vec![Datum::words(&*beside.runs[*run]), Datum::Number((place + 1) as f64)];
         cells.extend(has_labels.then(|| Datum::words(label(beside.participants[*run].as_deref()))));

@@ -34,13 +34,19 @@ impl Tabulation {
     pub fn as_csv(&self) -> Vec<Vec<String>> {
         let names = |column: &Column| match column.holds {
             Holds::Intervals(_) => vec![format!("{}_low", column.name), format!("{}_high", column.name)],
-            Holds::Words | Holds::Numbers(_) => vec![column.name.clone()],
+            Holds::Words | Holds::Numbers(_) | Holds::Drawings => vec![column.name.clone()],
         };
         let row = |cells: &Vec<Datum>| {
-            self.columns.iter().zip(cells).flat_map(|(column, cell)| raw(column, cell)).collect()
+            self.for_programs(cells).flat_map(|(column, cell)| raw(column, cell)).collect()
         };
-        let head = self.columns.iter().flat_map(names).collect();
+        let head =
+            self.columns.iter().filter(|column| column.holds != Holds::Drawings).flat_map(names).collect();
         std::iter::once(head).chain(self.rows.iter().map(row)).collect()
+    }
+
+    /// The cells of a row that programs get, with their columns.
+    fn for_programs<'a>(&'a self, cells: &'a [Datum]) -> impl Iterator<Item = (&'a Column, &'a Datum)> {
+        self.columns.iter().zip(cells).filter(|(column, _)| column.holds != Holds::Drawings)
     }
 
     fn as_json(&self) -> Value {
@@ -49,12 +55,13 @@ impl Tabulation {
             json!({ "name": own.name, "heading": own.heading, "unit": unit })
         };
         let row = |cells: &Vec<Datum>| -> Value {
-            let pairs = self.columns.iter().zip(cells);
+            let pairs = self.for_programs(cells);
             Value::Object(pairs.map(|(column, cell)| (column.name.clone(), value(cell))).collect())
         };
+        let columns = self.columns.iter().filter(|column| column.holds != Holds::Drawings);
         let mut object = json!({
             "caption": self.caption,
-            "columns": self.columns.iter().map(column).collect::<Vec<_>>(),
+            "columns": columns.map(column).collect::<Vec<_>>(),
             "rows": self.rows.iter().map(row).collect::<Vec<_>>(),
         });
         if !self.summary.is_empty() {

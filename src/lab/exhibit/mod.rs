@@ -49,7 +49,7 @@ pub struct Tabulation {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Name for programs, without blanks.
+    /// Name for programs, as [`column_name`] makes it of a text.
     pub name: String,
     /// Name for people; it may be broken at blanks.
     pub heading: String,
@@ -66,6 +66,8 @@ pub enum Holds {
     Numbers(Measure),
     /// Intervals: two numbers for programs.
     Intervals(Measure),
+    /// Drawings of signs, for people only.
+    Drawings,
 }
 
 /// What a number measures, and how people read it.
@@ -116,13 +118,24 @@ impl Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Intervals(measure) }
     }
 
+    /// A column of drawings that programs do not get.
+    pub fn drawings(name: &str, heading: &str) -> Column {
+        Column { name: name.to_owned(), heading: heading.to_owned(), holds: Holds::Drawings }
+    }
+
     /// What its numbers measure.
     fn measure(&self) -> Option<Measure> {
         match self.holds {
-            Holds::Words => None,
+            Holds::Words | Holds::Drawings => None,
             Holds::Numbers(measure) | Holds::Intervals(measure) => Some(measure),
         }
     }
+}
+
+/// Returns the name of a column for programs: the letters and digits of a text in lower case, with underscores between its words.
+pub fn column_name(text: &str) -> String {
+    let words = text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("_").to_lowercase()
 }
 
 impl Measure {

@@ -86,7 +86,7 @@ impl<'a> Sheet<'a> {
     fn narrowed(mut self, width: usize) -> Sheet<'a> {
         let least = |at: usize| match self.columns[at].holds {
             Holds::Words => self.widths[at].min(LEAST),
-            Holds::Numbers(_) | Holds::Intervals(_) => self.widths[at],
+            Holds::Numbers(_) | Holds::Intervals(_) | Holds::Drawings => self.widths[at],
         };
         let gaps = GAP * self.widths.len().saturating_sub(1);
         let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
@@ -200,7 +200,7 @@ impl<'a> Sheet<'a> {
                 let (own, width) = (cell.get(line).map_or("", String::as_str), self.widths[*at]);
                 let blank = " ".repeat(width.saturating_sub(own.width()));
                 whole += &match self.columns[*at].holds {
-                    Holds::Words => format!("{own}{blank}"),
+                    Holds::Words | Holds::Drawings => format!("{own}{blank}"),
                     Holds::Numbers(_) | Holds::Intervals(_) => format!("{blank}{own}"),
                 };
                 whole += &" ".repeat(GAP);

@@ -16,6 +16,10 @@ pub use engine::{Conduct, ExperimentError, ExperimentResults, Prepared};
 pub use result::{DayPoint, FigurePoint, RunResult, WeekPoint};
 pub use store::ResultStore;
 
+use std::collections::BTreeMap;
+
+use key::ArmKey;
+
 use super::policy::Policy;
 use super::runner::{RunSpec, new_run};
 use crate::session::{Configuration, RunError};
@@ -81,4 +85,22 @@ impl Experiment {
     pub fn of(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> Experiment {
         Experiment { arms, seeds: seeds.into_iter().collect(), wanted: Wanted::default() }
     }
+
+    /// Returns the arms that are played with the same policy, parameters, days and cash, in groups of two or more.
+    ///
+    /// # Errors
+    /// There is no such scenario, or a parameter is wrong.
+    pub fn equal_arms(&self, configuration: &Configuration) -> Result<Vec<Vec<usize>>, RunError> {
+        let key = |arm: &Arm| Ok(ArmKey::of(arm, &self.wanted, configuration)?.of_seed(0));
+        Ok(groups(self.arms.iter().map(key).collect::<Result<Vec<String>, RunError>>()?))
+    }
+}
+
+/// Returns the places of equal items, in groups of two or more, in their order.
+pub fn groups<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
+    let mut places: BTreeMap<T, Vec<usize>> = BTreeMap::new();
+    items.into_iter().enumerate().for_each(|(at, item)| places.entry(item).or_default().push(at));
+    let mut groups: Vec<Vec<usize>> = places.into_values().filter(|own| own.len() > 1).collect();
+    groups.sort_unstable();
+    groups
 }

@@ -15,5 +15,5 @@ mod tests;
 pub use definition::StudyPlan;
 pub use merge::{MergeError, Shards};
 pub use shard::{Shard, ShardHead, parse_shard};
-pub use summary::{size, summary};
+pub use summary::{equal_arms, played_alike, size, summary};
 pub use table::{head, rows};

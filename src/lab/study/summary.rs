@@ -4,12 +4,15 @@ use super::StudyPlan;
 use crate::lab::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::lab::experiment::{Experiment, RunResult};
+use crate::lab::experiment::{Experiment, RunResult, groups};
 use crate::report::count;
+use crate::session::{Configuration, RunError};
 use crate::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
 
 /// Most arms whose curves can be told apart.
 const MOST_CURVES: usize = 8;
+/// Most arms that are named in a warning.
+const MAX_NAMES: usize = 6;
 
 /// Ends of the runs of each arm; the results are those of all runs, in their order.
 pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
@@ -65,7 +68,39 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
                 .to_owned(),
         );
     }
+    exhibit.notes.extend(played_alike(plan, results));
     exhibit.with_note(luck).with_note(interval)
+}
+
+/// Returns a warning for each group of arms that have the same policy, parameters, days and cash.
+///
+/// # Errors
+/// There is no such scenario, or a parameter is wrong.
+pub fn equal_arms(plan: &StudyPlan, configuration: &Configuration) -> Result<Vec<String>, RunError> {
+    let warning = |arms: &Vec<usize>| format!("these arms are identical: {}", names(plan, arms));
+    Ok(plan.experiment.equal_arms(configuration)?.iter().map(warning).collect())
+}
+
+/// Returns a warning for each group of arms whose runs ended in the same state with every seed. The results are those of all
+/// runs, in their order.
+pub fn played_alike(plan: &StudyPlan, results: &[RunResult]) -> Vec<String> {
+    let states = |runs: &[RunResult]| runs.iter().map(|run| run.state_hash.clone()).collect::<Vec<_>>();
+    let by_arm = results.chunks(plan.experiment.seeds.len().max(1)).map(states).collect();
+    let warning = |arms: &Vec<usize>| {
+        format!(
+            "These arms ended in the same state with every seed, so what tells them apart had no effect: {}.",
+            names(plan, arms)
+        )
+    };
+    groups(by_arm).iter().map(warning).collect()
+}
+
+/// Names of arms: the first few, and how many more.
+fn names(plan: &StudyPlan, arms: &[usize]) -> String {
+    let names: Vec<String> = arms.iter().take(MAX_NAMES).map(|arm| plan.levels[*arm].join(" / ")).collect();
+    let more = arms.len() - names.len();
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    format!("{}{more}", names.join("; "))
 }
 
 /// How large a study is: `2 arms by 24 seeds`.

@@ -2,6 +2,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::*;
+use crate::lab::experiment::test_kit;
 use crate::session::Configuration;
 
 fn write(folder: &Path, text: &str) -> PathBuf {
@@ -253,4 +254,22 @@ fn the_study_of_the_guide_is_one() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/laboratory/examples/copying.toml");
     let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
     assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as its first line says");
+}
+
+#[test]
+fn arms_that_are_the_same_or_play_alike_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"1..2\"\ndays = 14\n\n[[overrides]]\nname = \"plain\"\n\n\
+                [[overrides]]\nname = \"usual\"\nset = { \"drift.drift_grace_period_days\" = 60 }\n\n\
+                [[overrides]]\nname = \"late\"\nset = { \"drift.drift_grace_period_days\" = 90 }\n";
+    let plan =
+        StudyPlan::read(&write(folder.path(), text), false, &Configuration::shipped()).expect("a study");
+    let same = equal_arms(&plan, &Configuration::shipped()).expect("parameters");
+    assert_eq!(same, ["these arms are identical: P0 / default / plain; P0 / default / usual"]);
+    let played = test_kit::played(plan.experiment.arms.clone(), 1..=2);
+    let results: Vec<_> = played.by_arm.into_iter().flatten().collect();
+    let alike = played_alike(&plan, &results);
+    assert_eq!(alike.len(), 1, "{alike:?}");
+    assert!(alike[0].ends_with("plain; P0 / default / usual; P0 / default / late."), "{alike:?}");
+    assert!(summary(&plan, &results).notes.contains(&alike[0]));
 }

@@ -1,95 +1,206 @@
 //! An evaluation log of Inspect, version 2: one sample, whose messages are the steps of the run.
 
 use serde_json::{Value, json};
+use time::OffsetDateTime;
+use time::format_description::well_known::Rfc3339;
 
 use super::atif::atif;
 use super::{Surroundings, Transcript};
+use crate::notation::dollars;
+use crate::session::{Ended, Manifest};
 
 const VERSION: u32 = 2;
+const TASK: &str = "novamind";
 const SCORER: &str = "cash";
+
+/// Returns the name of a run's log as Inspect names its own. Inspect does not list logs in JSON that are named otherwise.
+pub fn inspect_file_name(manifest: &Manifest) -> String {
+    // The moment in UTC, without the fraction of the second.
+    let created = manifest.created.get(..19).unwrap_or(&manifest.created).replace(':', "-");
+    format!("{created}-00-00_{TASK}_{}.json", manifest.id)
+}
 
 /// The run in this format.
 pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
     let steps = atif(run, told);
     let steps = steps["steps"].as_array().map(Vec::as_slice).unwrap_or_default();
-    let messages: Vec<Value> = steps.iter().flat_map(messages).collect();
+    let steps: Vec<Step> = steps.iter().map(|step| Step::of(step, &run.manifest)).collect();
+    let messages: Vec<&Value> = steps.iter().flat_map(Step::messages).collect();
     let (created, ended) =
         (&run.manifest.created, run.acts.last().map_or(&run.manifest.created, |act| &act.at));
-    let score = json!({ "value": run.last.1, "explanation": format!("cash on day {}", run.last.0) });
+    let score = score(run);
+    let model = format!("novamind/{}", run.player());
     let mut spec = json!({
         "created": created,
-        "task": "novamind",
+        "task": TASK,
         "task_version": 1,
         "task_id": run.manifest.id,
         "run_id": run.manifest.id,
         "eval_id": run.manifest.id,
         "task_args": { "seed": run.manifest.seed, "scenario": run.manifest.scenario, "days": run.manifest.days },
         "dataset": { "name": run.manifest.scenario, "samples": 1, "sample_ids": [run.manifest.id], "shuffled": false },
-        "model": format!("novamind/{}", run.player()),
+        "model": model,
         "config": { "epochs": 1 },
         "packages": { "novamind": run.manifest.version },
     });
     spec["metadata"] = run.facts().into();
     json!({
         "version": VERSION,
-        "status": if run.end.is_some() { "success" } else { "started" },
+        "status": status(run),
         "eval": spec,
         "plan": { "name": "plan", "steps": [], "config": {} },
         "results": {
             "total_samples": 1,
             "completed_samples": usize::from(run.end.is_some()),
-            "scores": [{
-                "name": SCORER,
-                "scorer": SCORER,
-                "scored_samples": 1,
-                "params": {},
-                "metrics": { "value": { "name": "value", "value": run.last.1, "params": {} } },
-            }],
+            "scores": score.iter().map(result).collect::<Vec<Value>>(),
         },
         "stats": { "started_at": created, "completed_at": ended, "model_usage": {} },
         "samples": [{
             "id": run.manifest.id,
+            "uuid": run.manifest.id,
             "epoch": 1,
             "input": told.page,
             "target": "",
             "messages": messages,
-            "output": { "model": format!("novamind/{}", run.player()), "choices": [] },
-            "scores": { SCORER: score },
+            "output": { "model": model, "choices": [] },
+            "scores": score.map_or_else(|| json!({}), |score| json!({ SCORER: score })),
             "metadata": { "asides": run.asides },
             "store": {},
-            "events": [],
+            "events": events(&steps, &run.manifest.created, &model),
             "model_usage": {},
             "attachments": {},
         }],
     })
 }
 
-/// A step as messages: what was said or called, and what came back.
-fn messages(step: &Value) -> Vec<Value> {
-    let role = match step["source"].as_str() {
-        Some("agent") => "assistant",
-        Some(other) => other,
-        None => "user",
-    };
-    let id = format!("step-{}", step["step_id"]);
-    let mut said = json!({ "id": id, "role": role, "content": step["message"] });
-    if let Some(extra) = step.get("extra") {
-        said["metadata"] = extra.clone();
+/// How far the run came, as Inspect says it.
+fn status(run: &Transcript) -> &'static str {
+    match run.end.as_ref().map(|end| end.reason) {
+        None => "started",
+        Some(Ended::Abandoned) => "cancelled",
+        Some(_) => "success",
     }
-    let Some(call) = step["tool_calls"].as_array().and_then(|calls| calls.first()) else { return vec![said] };
-    said["source"] = "generate".into();
-    said["tool_calls"] = json!([{
-        "id": call["tool_call_id"],
-        "function": call["function_name"],
-        "arguments": call["arguments"],
-        "type": "function",
-    }]);
-    let came_back = json!({
-        "id": format!("{id}-answer"),
-        "role": "tool",
-        "content": step["observation"]["results"][0]["content"],
-        "tool_call_id": call["tool_call_id"],
-        "function": call["function_name"],
-    });
-    vec![said, came_back]
+}
+
+/// The score of the sample. Returns `None` for a run that has none: it is unfinished, was given up, or is a lesson's.
+fn score(run: &Transcript) -> Option<Value> {
+    let end = run.end.as_ref()?;
+    let explanation = match end.reason {
+        Ended::Bankruptcy => format!("bankrupt on day {} with cash of {}", run.last.0, dollars(end.cash)),
+        _ => format!("cash on day {}", run.last.0),
+    };
+    Some(json!({ "value": end.score?, "explanation": explanation }))
+}
+
+/// A score of the only sample as the result of the evaluation.
+fn result(score: &Value) -> Value {
+    json!({
+        "name": SCORER,
+        "scorer": SCORER,
+        "scored_samples": 1,
+        "params": {},
+        "metrics": { "value": { "name": "value", "value": score["value"], "params": {} } },
+    })
+}
+
+/// A step as messages.
+struct Step {
+    at: Option<String>,
+    /// What was said or called.
+    message: Value,
+    /// The answer to a call.
+    answer: Option<Value>,
+}
+
+impl Step {
+    /// Reads a step of a trajectory. Identifiers are unique among all runs: Inspect's tables drop what occurs twice.
+    fn of(step: &Value, manifest: &Manifest) -> Step {
+        let role = match step["source"].as_str() {
+            Some("agent") => "assistant",
+            Some(other) => other,
+            None => "user",
+        };
+        let id = format!("{}-step-{}", manifest.id, step["step_id"]);
+        let mut message = json!({ "id": id, "role": role, "content": step["message"] });
+        if let Some(extra) = step.get("extra") {
+            message["metadata"] = extra.clone();
+        }
+        let at = step["timestamp"].as_str().map(str::to_owned);
+        let Some(call) = step["tool_calls"].as_array().and_then(|calls| calls.first()) else {
+            return Step { at, message, answer: None };
+        };
+        message["source"] = "generate".into();
+        message["tool_calls"] = json!([{
+            "id": call["tool_call_id"],
+            "function": call["function_name"],
+            "arguments": call["arguments"],
+            "type": "function",
+        }]);
+        let answer = json!({
+            "id": format!("{id}-answer"),
+            "role": "tool",
+            "content": step["observation"]["results"][0]["content"],
+            "tool_call_id": call["tool_call_id"],
+            "function": call["function_name"],
+        });
+        Step { at, message, answer: Some(answer) }
+    }
+
+    fn messages(&self) -> impl Iterator<Item = &Value> {
+        std::iter::once(&self.message).chain(&self.answer)
+    }
+}
+
+/// The steps as events, from which Inspect makes its tables of messages: one of the model for each step of the player, with the
+/// messages that are new to it, and one of the tool for each call. The last one of the model has no output: its input is what
+/// came back last.
+fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
+    let mut events = Vec::new();
+    let (mut input, mut at) = (Vec::new(), created);
+    let of_model = |input: &[&Value], at: &str, choices: Value| {
+        json!({
+            "event": "model",
+            "timestamp": at,
+            "working_start": seconds(created, at),
+            "model": model,
+            "input": input,
+            "tools": [],
+            "tool_choice": "auto",
+            "config": {},
+            "output": { "model": model, "choices": choices },
+        })
+    };
+    for step in steps {
+        at = step.at.as_deref().unwrap_or(at);
+        if step.message["role"] != "assistant" {
+            input.push(&step.message);
+            continue;
+        }
+        let stop_reason = if step.answer.is_some() { "tool_calls" } else { "stop" };
+        events.push(of_model(&input, at, json!([{ "message": step.message, "stop_reason": stop_reason }])));
+        input.clear();
+        if let Some(answer) = &step.answer {
+            let call = &step.message["tool_calls"][0];
+            events.push(json!({
+                "event": "tool",
+                "timestamp": at,
+                "working_start": seconds(created, at),
+                "id": call["id"],
+                "function": call["function"],
+                "arguments": call["arguments"],
+                "result": answer["content"],
+                "message_id": answer["id"],
+                "events": [],
+            }));
+            input.push(answer);
+        }
+    }
+    events.push(of_model(&input, at, json!([])));
+    events
+}
+
+/// Seconds between two moments; 0 if one of them cannot be read.
+fn seconds(from: &str, to: &str) -> f64 {
+    let moment = |text: &str| OffsetDateTime::parse(text, &Rfc3339).ok();
+    moment(to).zip(moment(from)).map_or(0.0, |(to, from)| (to - from).as_seconds_f64())
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 pub use atif::atif;
-pub use inspect::inspect;
+pub use inspect::{inspect, inspect_file_name};
 pub use plain_script::plain_script;
 pub use python_script::python_script;
 pub use told::Surroundings;

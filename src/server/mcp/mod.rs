@@ -1,7 +1,10 @@
 //! The door for clients of the Model Context Protocol, on standard input and output.
 
+mod refusal;
 mod resources;
 mod tools;
+
+pub use refusal::refuse_mcp;
 
 use std::io;
 use std::path::{Path, PathBuf};

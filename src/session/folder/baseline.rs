@@ -29,24 +29,44 @@ impl NewRun {
                     .to_owned(),
             ));
         }
-        let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
-        let other = [
-            (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
-            self.days.filter(|own| *own != days).map(|own| format!("{} days", grouped(f64::from(own), 0))),
-            self.cash.filter(|own| *own != cash).map(dollars),
-        ];
-        let other: Vec<String> = other.into_iter().flatten().collect();
+        let other = self.other_terms(configuration)?;
         if other.is_empty() {
             return Ok(());
         }
         Err(RunError::NotPossible(format!(
-            "a baseline run is played with scenario {DEFAULT_SCENARIO}, {} days and {}, so that it can be compared; {} needs \
-             a study, or another mode. Nothing was recorded",
-            grouped(f64::from(days), 0),
-            dollars(cash),
+            "a baseline run is played with {}, so that it can be compared; {} needs a study, or another mode. \
+             Nothing was recorded",
+            baseline_terms(configuration)?,
             other.join(", ")
         )))
     }
+
+    /// Returns scenario, days and cash of the run where they differ from those of every baseline run outside of a study.
+    ///
+    /// # Errors
+    /// The scenario cannot be read.
+    pub fn other_terms(&self, configuration: &Configuration) -> Result<Vec<String>, RunError> {
+        let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
+        let other = [
+            (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
+            self.days.filter(|own| *own != days).map(in_days),
+            self.cash.filter(|own| *own != cash).map(dollars),
+        ];
+        Ok(other.into_iter().flatten().collect())
+    }
+}
+
+/// Returns scenario, days and cash of every baseline run outside of a study, in words.
+///
+/// # Errors
+/// The scenario cannot be read.
+pub fn baseline_terms(configuration: &Configuration) -> Result<String, RunError> {
+    let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
+    Ok(format!("scenario {DEFAULT_SCENARIO}, {} and {}", in_days(days), dollars(cash)))
+}
+
+fn in_days(days: u32) -> String {
+    format!("{} days", grouped(f64::from(days), 0))
 }
 
 #[cfg(test)]

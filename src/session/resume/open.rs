@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
+use super::rebuild::{end_may_be_kept, rebuild_database};
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use super::unnamed::remove_leftovers;
@@ -59,6 +60,25 @@ impl Session {
         projection: bool,
         key: SealKey,
     ) -> Result<Session, RunError> {
+        Session::open_and_keep(folder, access, projection, key, false)
+    }
+
+    /// Opens a run to read it. If the run has ended and had to be simulated, snapshot and database are kept in its folder, if it
+    /// can be written: the next command opens it at once.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
+        Session::open_and_keep(folder, Access::Read, projection, SealKey::default(), true)
+    }
+
+    fn open_and_keep(
+        folder: &Path,
+        access: Access,
+        projection: bool,
+        key: SealKey,
+        keep_end: bool,
+    ) -> Result<Session, RunError> {
         let derived = Derived::of(folder)?;
         let manifest = derived.manifest.clone();
         let params = Arc::new(manifest.params()?);
@@ -81,6 +101,14 @@ impl Session {
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
+        let keep_end = keep_end && end_may_be_kept(folder, &manifest, &trajectory, &key);
+        if keep_end
+            && projection
+            && finished.is_none()
+            && rebuild_database(folder, &key, &mut |_, _| {}).is_ok()
+        {
+            return Session::open_sealed(folder, access, projection, key);
+        }
         let database = match projection && finished.is_none() {
             false => None,
             true => {
@@ -97,6 +125,9 @@ impl Session {
         session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
+        if keep_end && !projection && seen < trajectory.lines.len() {
+            session.keep_end(folder);
+        }
         if let Some(location) = finished {
             session.projection = Projection::finished(location);
         }

@@ -10,8 +10,10 @@ use super::snapshot::SnapshotPlace;
 use crate::session::error::RunError;
 use crate::session::folder::derived::Derived;
 use crate::session::folder::lock::lock_run;
+use crate::session::folder::manifest::Manifest;
 use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
+use crate::session::trajectory::{Record, Trajectory};
+use crate::session::xray::permission::may_look_inside;
 
 /// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
 /// and the last day of the run. The key is that of the run's snapshots.
@@ -40,11 +42,158 @@ pub fn rebuild_database(
     let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
     session.projection.wait()?;
-    // The file is another one now: what vouched for the old one would call it damaged.
-    if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
-        let place = SnapshotPlace::of(folder, key);
+    let place = SnapshotPlace::of(folder, key);
+    if end_may_be_kept(folder, &manifest, &trajectory, key) {
+        session.write_snapshot(place, true);
+    } else if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
+        // The file is another one now: what vouched for the old one would call it damaged.
         session.projection.then(true, move |digest| closed.vouch_for(&place, digest));
-        session.projection.wait()?;
     }
-    Ok(())
+    Ok(session.projection.wait()?)
+}
+
+/// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown, and the
+/// file is not one that only the secret of a study opens.
+pub(in crate::session) fn end_may_be_kept(
+    folder: &Path,
+    manifest: &Manifest,
+    trajectory: &Trajectory,
+    key: &SealKey,
+) -> bool {
+    let ended = trajectory.end().and_then(|line| match &line.record {
+        Record::End(end) => Some(end.reason),
+        _ => None,
+    });
+    ended.is_some() && may_look_inside(manifest, ended, Some(folder)) && SnapshotPlace::may_write(folder, key)
+}
+
+impl Session {
+    /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if another program uses the run, or if
+    /// its folder cannot be written.
+    pub(in crate::session) fn keep_end(&self, folder: &Path) {
+        if let Ok(_lock) = lock_run(folder, &self.manifest.id) {
+            self.write_snapshot(SnapshotPlace::of(folder, &self.seal_key), false);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::session::folder::configuration::Configuration;
+    use crate::session::folder::create::{NewRun, Storage};
+    use crate::session::folder::mode::Mode;
+    use crate::session::folder::runs::end_run;
+    use crate::session::trajectory::record::Via;
+
+    const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];
+
+    /// A run of two weeks whose files that can be made again are removed, as after an import.
+    fn imported(runs: &Path, mode: Mode, ends: bool) -> PathBuf {
+        let storage = Storage::Runs(runs.to_owned());
+        let participant = Some("P01".to_owned());
+        let days = (mode != Mode::Baseline).then_some(28);
+        let new = NewRun { seed: Some(5), days, mode, participant, storage, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        for _ in 0..2 {
+            let forecasts = session.naive_forecasts();
+            session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+        }
+        let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
+        drop(session);
+        if ends {
+            end_run(runs, &id).expect("it ends");
+        }
+        for file in ["world.db-wal", "world.db-shm"].into_iter().chain(DERIVED) {
+            let _ = std::fs::remove_file(folder.join(file));
+        }
+        folder
+    }
+
+    fn derived_files(folder: &Path) -> Vec<&'static str> {
+        DERIVED.into_iter().filter(|file| folder.join(file).exists()).collect()
+    }
+
+    /// How many lines the next command simulates again, and whether it asks the database in the folder.
+    fn next_opening(folder: &Path) -> (usize, bool) {
+        let manifest = Derived::of(folder).expect("a manifest").manifest;
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
+        let integrity = Integrity::of(folder, &manifest, &SealKey::default());
+        assert_eq!(integrity.remarks, Vec::<String>::new());
+        let params = Arc::new(manifest.params().expect("parameters"));
+        let snapshot = usable(&integrity, &manifest, &trajectory, None);
+        let (_, seen) = Session::before_replay(manifest, folder, params, &trajectory.lines, snapshot);
+        (trajectory.lines.len() - seen, integrity.finished_database(folder, &trajectory).is_some())
+    }
+
+    #[test]
+    fn ended_run_is_simulated_by_the_first_reader_and_by_no_other() {
+        for mode in [Mode::Sandbox, Mode::Baseline] {
+            let runs = tempfile::tempdir().expect("a folder");
+            let folder = imported(runs.path(), mode, true);
+            let whole = Session::open(&folder, Access::Read, true).expect("it opens");
+            assert_eq!(derived_files(&folder), [""; 0], "an ordinary opening writes nothing");
+            let first = Session::open_to_read(&folder, true).expect("it opens");
+            assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
+            let second = Session::open_to_read(&folder, true).expect("it opens");
+            for session in [&first, &second] {
+                assert_eq!(session.state_hash(), whole.state_hash());
+                assert_eq!((session.remarks(), session.dashboard()), (whole.remarks(), whole.dashboard()));
+                assert_eq!(session.weeks(), whole.weeks());
+            }
+            drop(Session::open(&folder, Access::Write, true).expect("it opens to be written"));
+        }
+    }
+
+    #[test]
+    fn reader_without_a_database_keeps_the_snapshot_alone() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let folder = imported(runs.path(), Mode::Sandbox, true);
+        Session::open_to_read(&folder, false).expect("it opens");
+        assert_eq!((derived_files(&folder), next_opening(&folder)), (vec!["snapshot.bin"], (0, false)));
+        // The database follows when it is needed.
+        Session::open_to_read(&folder, true).expect("it opens");
+        assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
+    }
+
+    #[test]
+    fn query_keeps_the_end_of_a_run() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let folder = imported(runs.path(), Mode::Sandbox, true);
+        rebuild_database(&folder, &SealKey::default(), &mut |_, _| {}).expect("a database");
+        assert_eq!(next_opening(&folder), (0, true));
+    }
+
+    #[test]
+    fn reader_writes_nothing_of_an_unfinished_run_or_of_one_in_use() {
+        let runs = tempfile::tempdir().expect("a folder");
+        for projection in [false, true] {
+            let unfinished = imported(runs.path(), Mode::Baseline, false);
+            Session::open_to_read(&unfinished, projection).expect("it opens");
+            assert_eq!(derived_files(&unfinished), [""; 0]);
+            let used = imported(runs.path(), Mode::Sandbox, true);
+            let id = used.file_name().expect("a name").to_string_lossy().into_owned();
+            let lock = lock_run(&used, &id).expect("a lock");
+            Session::open_to_read(&used, projection).expect("it opens");
+            assert_eq!(derived_files(&used), [""; 0]);
+            drop(lock);
+        }
+    }
+
+    #[test]
+    fn snapshot_that_only_a_study_opens_is_not_replaced() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let folder = imported(runs.path(), Mode::Sandbox, true);
+        let key = SealKey::of_study(&[7; 32]);
+        let mut session = Session::open_sealed(&folder, Access::Write, true, key).expect("it opens");
+        session.save().expect("it is saved");
+        drop(session);
+        let sealed = std::fs::read(folder.join("snapshot.bin")).expect("a snapshot");
+        for projection in [false, true] {
+            Session::open_to_read(&folder, projection).expect("it opens");
+            assert!(std::fs::read(folder.join("snapshot.bin")).expect("a snapshot") == sealed);
+        }
+    }
 }

@@ -241,10 +241,18 @@ impl Session {
         let Some(folder) = self.folder.as_ref().filter(|_| self.recorder.is_some()) else {
             return self.commit_projection();
         };
-        let place = SnapshotPlace::of(folder, &self.seal_key);
-        let (header, mut state) = (self.snapshot_header(state_hash()), self.state_bytes());
         // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
         self.commit_projection();
+        self.write_snapshot_of(state_hash(), SnapshotPlace::of(folder, &self.seal_key), closing);
+    }
+
+    /// Writes the present state as a snapshot. If `closing`, it vouches for the database's file.
+    pub(super) fn write_snapshot(&self, place: SnapshotPlace, closing: bool) {
+        self.write_snapshot_of(self.state_hash().0, place, closing);
+    }
+
+    fn write_snapshot_of(&self, state_hash: String, place: SnapshotPlace, closing: bool) {
+        let (header, mut state) = (self.snapshot_header(state_hash), self.state_bytes());
         self.projection.then(closing, move |database| {
             place.write(&Header { database, ..header }, &mut state);
         });
@@ -327,6 +335,14 @@ impl SnapshotPlace {
         let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
         let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
         SnapshotPlace { path: folder.join(FILE), of, keys }
+    }
+
+    /// Whether a program with a key may replace the snapshot of a folder: without the secret of a study it keeps one that only the
+    /// secret opens.
+    pub(in crate::session) fn may_write(folder: &Path, key: &SealKey) -> bool {
+        let mut begin = [0; TITLE.len() + 1];
+        let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut begin));
+        key.has_secret() || read.is_err() || begin[TITLE.len()] != OF_STUDY
     }
 
     /// Writes a snapshot in place of the old one; the state is sealed in its place. Not synced: after a power cut its tag

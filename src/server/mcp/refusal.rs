@@ -1,0 +1,41 @@
+//! The answer to a client whose run cannot be opened: without it the client sees only a closed connection.
+
+use std::io::{BufRead, IsTerminal, Write, stdin, stdout};
+
+use serde_json::{Value, json};
+
+/// Code of errors that a server defines itself.
+const SERVER_ERROR: i32 = -32000;
+
+/// Answers the first request on standard input, which is `initialize`, with an error. Returns at once at a terminal.
+pub fn refuse_mcp(problem: &str) {
+    if stdin().is_terminal() {
+        return;
+    }
+    if let Some(refusal) = refusal(stdin().lock(), problem) {
+        let mut out = stdout().lock();
+        // A client that has gone away needs no answer.
+        let _ = writeln!(out, "{refusal}").and_then(|()| out.flush());
+    }
+}
+
+/// Returns the error for the first request in messages. Returns `None` if they end before there is one.
+fn refusal(messages: impl BufRead, problem: &str) -> Option<Value> {
+    let messages = messages.lines().map_while(Result::ok);
+    let id =
+        messages.filter_map(|line| serde_json::from_str::<Value>(&line).ok()?.get("id").cloned()).next()?;
+    Some(json!({ "jsonrpc": "2.0", "id": id, "error": { "code": SERVER_ERROR, "message": problem } }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refusal_answers_the_first_request() {
+        let messages = "\nnonsense\n{\"method\":\"notifications/x\"}\n{\"id\":7,\"method\":\"initialize\"}\n{\"id\":8}\n";
+        let refusal = refusal(messages.as_bytes(), "no such run").expect("an answer");
+        assert_eq!((&refusal["id"], &refusal["error"]["message"]), (&json!(7), &json!("no such run")));
+        assert_eq!(super::refusal(&b"nonsense"[..], "no such run"), None);
+    }
+}

@@ -201,6 +201,21 @@ fn the_same_decisions_over_http_are_the_same_run() {
     assert_eq!(last_hash(&home), of_plain_mode());
 }
 
+#[test]
+fn a_week_answers_with_the_figures_of_plain_mode() {
+    let (home, plain) = (Home::new(), Home::new());
+    let server = Server::start(&home, &NEW);
+    let (_, week) = server.week();
+    let line = format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
+    let options = ["--seed", "7", "--days", "28", "--mode", "sandbox", "--json"];
+    let said = plain.play(&options, &line);
+    let answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let next = answers.filter(|answer| answer["command"] == "next").last().expect("an answer");
+    let figures = &next["data"]["figures"];
+    assert!(figures["new_individual_leads"].is_number(), "{next}");
+    assert_eq!(week["figures"], *figures);
+}
+
 #[cfg(unix)]
 #[test]
 fn hostile_requests_leave_the_run_as_it_is() {

@@ -27,6 +27,8 @@ mod planted;
 mod preparation;
 #[cfg(unix)]
 mod python_scripts;
+#[cfg(feature = "server")]
+mod retries;
 mod scenarios;
 mod studies;
 #[path = "../support/mod.rs"]

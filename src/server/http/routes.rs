@@ -122,13 +122,16 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Value::Null => json!({}),
         given => given,
     };
-    response(&door.handle.ask(Request::of_tool(&tool, args)).await.told_as_call())
+    let request = Request::of_tool(&tool, args, fields.take("request_id"));
+    response(&door.handle.ask(request).await.told_as_call())
 }
 
 async fn next_week(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::NextWeek {
         rationale: fields.take("rationale"),
         predictions: fields.take("predictions"),
+        expected_day: fields.take("expected_day"),
+        request_id: fields.take("request_id"),
     })
     .await
 }
@@ -141,12 +144,17 @@ async fn keep_script(State(door): State<Routed>, body: Body) -> Response {
     ask_with(&door, body, |mut fields| Request::KeepDailyScript {
         name: fields.take("name"),
         content: fields.take("content"),
+        request_id: fields.take("request_id"),
     })
     .await
 }
 
 async fn forget_script(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| Request::ForgetDailyScript { name: fields.take("name") }).await
+    ask_with(&door, body, |mut fields| Request::ForgetDailyScript {
+        name: fields.take("name"),
+        request_id: fields.take("request_id"),
+    })
+    .await
 }
 
 /// The fields of a body.

@@ -357,8 +357,10 @@ impl Interpreter {
             // A word that is followed by the arguments of a call is one of a tool that does not exist.
             if let Ok(args) = as_object(arguments, None)
                 && !arguments.is_empty()
+                && tools::find(word).is_none()
             {
-                self.session.refuse_unknown_tool(word, &args, Via::Plain);
+                // Refused and recorded; what is shown names the commands of plain mode too.
+                let _ = self.session.call(word, &args, Via::Plain);
             }
             return Err(unknown(word, column));
         };

@@ -336,11 +336,9 @@ impl Session {
         self.note_refused(Record::Call(call));
     }
 
-    /// Records a call of a tool that does not exist, and refuses it. Does nothing if the tool exists.
-    pub fn refuse_unknown_tool(&mut self, tool: &str, arguments: &Value, via: Via) {
-        if let Err(refusal) = self.tool(tool) {
-            self.record_refusal(tool, arguments, via, &refusal, None);
-        }
+    /// Records a call that was refused before it reached the session.
+    pub fn record_refused_call(&mut self, tool: &str, arguments: &Value, via: Via, refusal: &Refusal) {
+        self.record_refusal(tool, arguments, via, refusal, None);
     }
 
     /// Records a refused call. A refusal changes nothing, so a disk that refuses its line takes nothing away.

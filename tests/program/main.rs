@@ -25,6 +25,8 @@ mod own_runs;
 mod plain;
 mod planted;
 mod preparation;
+#[cfg(feature = "server")]
+mod python_client;
 #[cfg(unix)]
 mod python_scripts;
 #[cfg(feature = "server")]

@@ -23,6 +23,10 @@ pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
             next_week(session, &week, via)
         }
         Request::Query { sql } => query(session, &sql),
+        Request::Refused { tool, args, refusal } => {
+            session.record_refused_call(&tool, &args, via, &refusal);
+            Answer::refused(Status::Refused, refusal)
+        }
         Request::Vars => Answer::plain(json!({ "current_day": session.day() })),
         Request::Dashboard => {
             Answer::plain(json!({ "dashboard": session.dashboard(), "day": session.day() }))

@@ -18,6 +18,15 @@ pub enum Request {
         /// The id of the request; null without one.
         request_id: Value,
     },
+    /// Record a call that is refused before a tool receives it.
+    Refused {
+        /// Name of the tool.
+        tool: String,
+        /// Its arguments, as they were sent.
+        args: Value,
+        /// Why.
+        refusal: Refusal,
+    },
     /// File rationale and forecasts, and let a week pass.
     NextWeek {
         /// Why.

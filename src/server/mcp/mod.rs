@@ -1,6 +1,7 @@
 //! The door for clients of the Model Context Protocol, on standard input and output.
 
 mod resources;
+mod stdio;
 mod tools;
 
 use std::io;
@@ -13,7 +14,6 @@ use rmcp::model::{
     ServerConfig, Tool,
 };
 use rmcp::service::RequestContext;
-use rmcp::transport::stdio;
 use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
 use super::announcement::Announcement;
@@ -45,8 +45,12 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
     let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
     let served = runtime.block_on(async {
-        let running = McpDoor { handle, numbers, goal }.serve(stdio()).await.map_err(io::Error::other)?;
-        running.waiting().await.map_err(io::Error::other)
+        let (streams, writing) = stdio::open();
+        let running = McpDoor { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
+        let ended = running.waiting().await.map_err(io::Error::other);
+        // What was answered last may not be written yet.
+        writing.await.map_err(io::Error::other)?;
+        ended
     });
     // Reading standard input cannot be cancelled, and nothing is waited for any more.
     runtime.shutdown_background();

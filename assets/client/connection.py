@@ -1,17 +1,25 @@
-"""The connection to the run that is served on this machine.
+"""The connection to a run that is served on this machine.
 
-The port comes from the environment variable NOVAMIND_API_PORT, the token, if the server asks for one, from
-NOVAMIND_API_TOKEN.
+The default connection takes the port from the environment variable NOVAMIND_API_PORT and the token, if the server asks for
+one, from NOVAMIND_API_TOKEN.
 """
 from __future__ import annotations
 
 import json
 import os
-from http.client import HTTPConnection, HTTPException
+import select
+import threading
+import time
+import uuid
+from http.client import HTTPConnection, HTTPException, HTTPResponse
 from typing import Any, Dict, Optional, Tuple
 
 #: Seconds that an answer is waited for; a week of a large company takes a few.
 TIMEOUT = 1800.0
+#: Seconds to wait before each retry.
+RETRY_WAITS = (0.1, 0.2, 0.4, 0.8, 1.6)
+#: Longest wait that a server can ask for, seconds.
+MAX_WAIT = 10.0
 
 
 class NovamindError(Exception):
@@ -23,76 +31,135 @@ class NovamindError(Exception):
         self.field = field
 
 
-_connection: Optional[Tuple[int, HTTPConnection]] = None
+class Connection:
+    """The connection to one run. Threads can share it: it sends one request after the other.
 
+    A request that got no answer, or found the server full, is sent again. It carries the same ``request_id`` each time, so
+    the server runs it once.
 
-def _port() -> int:
-    text = os.environ.get("NOVAMIND_API_PORT", "")
-    if not text.isdigit():
-        raise NovamindError("NOVAMIND_API_PORT does not hold the port of a server; start one with: novamind serve", "no_port")
-    return int(text)
-
-
-def _connected(port: int) -> HTTPConnection:
-    global _connection
-    if _connection is None or _connection[0] != port:
-        _connection = (port, HTTPConnection("127.0.0.1", port, timeout=TIMEOUT))
-    return _connection[1]
-
-
-def _close() -> None:
-    global _connection
-    if _connection is not None:
-        _connection[1].close()
-        _connection = None
-
-
-def request(method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Dict[str, Any]:
-    """Sends one request and returns its JSON, whatever it says.
-
-    A connection that the server closed since the last request is opened again; a request that may have been received is
-    never sent twice.
-
-    Raises:
-        NovamindError: no server answers, or it wants a token that was not given (code ``token``).
+    Args:
+        port: the port of the server; without it NOVAMIND_API_PORT.
+        token: the token of the server; without a port NOVAMIND_API_TOKEN.
+        timeout: seconds that an answer is waited for; without it TIMEOUT.
     """
-    headers = {"Content-Type": "application/json"}
-    token = os.environ.get("NOVAMIND_API_TOKEN", "").strip()
-    if any(letter.isspace() or not letter.isascii() for letter in token):
-        raise NovamindError("NOVAMIND_API_TOKEN holds more than a token", "token")
-    if token:
-        headers["Authorization"] = "Bearer " + token
-    payload = None if body is None else json.dumps(body).encode()
-    port = _port()
-    connection = _connected(port)
-    try:
-        if connection.sock is not None and _closed_by_server(connection):
-            connection.close()
-        connection.request(method, path, payload, headers)
-        response = connection.getresponse()
-        text = response.read()
-    except (OSError, HTTPException) as error:
-        _close()
-        raise NovamindError(f"the server on port {port} does not answer: {error}", "no_server") from error
-    try:
-        answer = json.loads(text)
-    except ValueError as error:
-        raise NovamindError("the server answered something else than JSON", "no_json") from error
-    if response.status == 401:
-        said = answer.get("error") if isinstance(answer, dict) else None
-        raise NovamindError(
-            f"{said or 'the server wants a token'}; set NOVAMIND_API_TOKEN to the text of the file named by --token",
-            "token",
-        )
-    return answer
+
+    def __init__(self, port: Optional[int] = None, token: Optional[str] = None, timeout: Optional[float] = None) -> None:
+        self._given = (port, token)
+        self._timeout = timeout
+        self._lock = threading.Lock()
+        self._open: Optional[HTTPConnection] = None
+
+    def request(self, method: str, path: str, body: Optional[Dict[str, Any]] = None) -> Dict[str, Any]:
+        """Sends a request and returns its JSON, whatever it says.
+
+        Raises:
+            NovamindError: no server answers, or it wants a token that was not given (code ``token``).
+        """
+        port, token = self._address()
+        headers = {"Content-Type": "application/json"}
+        if token:
+            headers["Authorization"] = "Bearer " + token
+        payload = None if body is None else json.dumps(body).encode()
+        with self._lock:
+            status, text = self._send_until_answered(port, method, path, payload, headers)
+        try:
+            answer = json.loads(text)
+        except ValueError as error:
+            raise NovamindError(f"the server answered {status} and something else than JSON", "no_json") from error
+        if status == 401:
+            said = answer.get("error") if isinstance(answer, dict) else None
+            raise NovamindError(
+                f"{said or 'the server wants a token'}; set NOVAMIND_API_TOKEN to the text of the file named by --token",
+                "token",
+            )
+        if status == 503:
+            said = answer.get("error") if isinstance(answer, dict) else None
+            raise NovamindError(str(said or "the server is full"), "too_many_connections")
+        return answer
+
+    def call(self, tool: str, arguments: Dict[str, Any], request_id: Optional[str] = None) -> Any:
+        """Calls a tool with the arguments that are not None, and returns its data.
+
+        Args:
+            tool: the name of the tool.
+            arguments: its arguments.
+            request_id: the id of the request; without it a new one. A request with an id that was sent before is not run again.
+
+        Raises:
+            NovamindError: the refusal of the tool.
+        """
+        given = {name: value for name, value in arguments.items() if value is not None}
+        body = {"tool": tool, "args": given, "request_id": request_id or new_id()}
+        return checked(self.request("POST", "/call", body)).get("data")
+
+    def _address(self) -> Tuple[int, str]:
+        port, token = self._given
+        if port is None:
+            text = os.environ.get("NOVAMIND_API_PORT", "")
+            if not text.isdigit():
+                raise NovamindError(
+                    "NOVAMIND_API_PORT does not hold the port of a server; start one with: novamind serve", "no_port"
+                )
+            port = int(text)
+            token = token or os.environ.get("NOVAMIND_API_TOKEN", "")
+        token = (token or "").strip()
+        if any(letter.isspace() or not letter.isascii() for letter in token):
+            raise NovamindError("the token holds more than a token", "token")
+        return port, token
+
+    def _send_until_answered(
+        self, port: int, method: str, path: str, payload: Optional[bytes], headers: Dict[str, str]
+    ) -> Tuple[int, bytes]:
+        for wait in (*RETRY_WAITS, None):
+            try:
+                response, text = self._send(port, method, path, payload, headers)
+                if response.status != 503 or wait is None:
+                    return response.status, text
+                wait = max(wait, _seconds(response.getheader("Retry-After")))
+            except (OSError, HTTPException) as error:
+                if wait is None:
+                    raise NovamindError(f"the server on port {port} does not answer: {error}", "no_server") from error
+            time.sleep(wait)
+        raise AssertionError("the last attempt returns or raises")
+
+    def _send(
+        self, port: int, method: str, path: str, payload: Optional[bytes], headers: Dict[str, str]
+    ) -> Tuple[HTTPResponse, bytes]:
+        connection = self._open
+        if connection is None or connection.port != port or _is_closed_by_server(connection):
+            self._close()
+            timeout = TIMEOUT if self._timeout is None else self._timeout
+            connection = self._open = HTTPConnection("127.0.0.1", port, timeout=timeout)
+        try:
+            connection.request(method, path, payload, headers)
+            response = connection.getresponse()
+            return response, response.read()
+        except BaseException:
+            # An answer that comes later must not be taken for that of the next request.
+            self._close()
+            raise
+
+    def _close(self) -> None:
+        if self._open is not None:
+            self._open.close()
+            self._open = None
 
 
-def _closed_by_server(connection: HTTPConnection) -> bool:
+def _is_closed_by_server(connection: HTTPConnection) -> bool:
     """Whether the other end has closed: then there is something to read, which is the end."""
-    import select
-
+    if connection.sock is None:
+        return False
     readable, _, _ = select.select([connection.sock], [], [], 0)
     return bool(readable)
+
+
+def _seconds(header: Optional[str]) -> float:
+    return min(float(header), MAX_WAIT) if header and header.isdigit() else 0.0
+
+
+def new_id() -> str:
+    """A new id for a request."""
+    return uuid.uuid4().hex
 
 
 def checked(answer: Dict[str, Any]) -> Dict[str, Any]:
@@ -106,11 +173,7 @@ def checked(answer: Dict[str, Any]) -> Dict[str, Any]:
     return answer
 
 
-def call(tool: str, arguments: Dict[str, Any]) -> Any:
-    """Calls a tool with the arguments that are not None, and returns its data.
-
-    Raises:
-        NovamindError: the refusal of the tool.
-    """
-    given = {name: value for name, value in arguments.items() if value is not None}
-    return checked(request("POST", "/call", {"tool": tool, "args": given})).get("data")
+#: The connection of the functions of this package.
+default = Connection()
+request = default.request
+call = default.call

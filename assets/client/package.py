@@ -6,70 +6,114 @@
     pricing.set_prices(A=14, B=25, C=60)
     print(novamind.query("SELECT SUM(amount) AS cash FROM ledger")["rows"])
     print(novamind.next_week("a first price", novamind.naive_predictions())["dashboard"])
+
+The functions play the run of NOVAMIND_API_PORT and NOVAMIND_API_TOKEN. For several runs in one process, use a ``Client`` each:
+
+    first, second = novamind.Client(8001), novamind.Client(8002, token="...")
+    first.pricing.set_prices(A=14)
+    second.next_week("wait", second.naive_predictions())
 """
 from __future__ import annotations
 
 import sys
-from typing import Any, Dict
+from typing import Any, Dict, Optional
 
 from . import analytics, enterprise, infrastructure, market, marketing, pricing, research, scripts
-from .connection import NovamindError, call, checked, request
+from .connection import Connection, NovamindError, call, checked, default, new_id, request
 
 __all__ = [
-    "NovamindError", "analytics", "enterprise", "infrastructure", "market", "marketing", "pricing", "research", "scripts",
+    "Client", "Connection", "NovamindError",
+    "analytics", "enterprise", "infrastructure", "market", "marketing", "pricing", "research", "scripts",
     "current_day", "dashboard", "game_status", "get_vars", "naive_predictions", "next_week", "query",
 ]
 
 
-def get_vars() -> Dict[str, Any]:
-    """The current day: the last one that was simulated, 0 before the first week."""
-    return request("GET", "/vars")
-
-
-def current_day() -> int:
-    """The last day that was simulated."""
-    return int(get_vars()["current_day"])
-
-
-def dashboard() -> str:
-    """The dashboard of the last week."""
-    return str(request("GET", "/dashboard")["dashboard"])
-
-
-def game_status() -> Dict[str, Any]:
-    """day, cash (dollars), subscribers, total_days, and how the run ended, if it did."""
-    return request("GET", "/game-status")
-
-
-def query(sql: str) -> Dict[str, Any]:
-    """Asks the database one statement: columns, rows (as objects), row_count. Hints and warnings go to standard error.
-
-    Raises:
-        NovamindError: the statement is wrong, or reads what cannot be seen.
-    """
-    answer = checked(request("POST", "/query", {"sql": sql}))
-    for remark in ("warning", "hint"):
-        if answer.get(remark):
-            print(answer[remark], file=sys.stderr)
-    return answer
-
-
-def next_week(rationale: str, predictions: Dict[str, Any]) -> Dict[str, Any]:
-    """Files why and what is expected, and lets a week pass: day, dashboard, cash, ended.
+class Client:
+    """One run. Threads can share it.
 
     Args:
-        rationale: why these decisions.
-        predictions: cash in dollars after 1, 4, 12 and 26 weeks, each with point, lower and upper, under the keys cash_1wk,
-            cash_4wk, cash_12wk and cash_26wk.
-
-    Raises:
-        NovamindError: something is missing, or the run is over. No day has passed then.
+        port: the port of the server; without it NOVAMIND_API_PORT.
+        token: the token of the server; without a port NOVAMIND_API_TOKEN.
+        connection: a connection to use instead.
     """
-    return checked(request("POST", "/next-week", {"rationale": rationale, "predictions": predictions}))
+
+    def __init__(
+        self, port: Optional[int] = None, token: Optional[str] = None, connection: Optional[Connection] = None
+    ) -> None:
+        self.connection = connection or Connection(port, token)
+        self.pricing = pricing.Pricing(self.connection)
+        self.marketing = marketing.Marketing(self.connection)
+        self.analytics = analytics.Analytics(self.connection)
+        self.research = research.Research(self.connection)
+        self.market = market.Market(self.connection)
+        self.infrastructure = infrastructure.Infrastructure(self.connection)
+        self.enterprise = enterprise.Enterprise(self.connection)
+        self.scripts = scripts.Scripts(self.connection)
+
+    def get_vars(self) -> Dict[str, Any]:
+        """The current day: the last one that was simulated, 0 before the first week."""
+        return self.connection.request("GET", "/vars")
+
+    def current_day(self) -> int:
+        """The last day that was simulated."""
+        return int(self.get_vars()["current_day"])
+
+    def dashboard(self) -> str:
+        """The dashboard of the last week."""
+        return str(self.connection.request("GET", "/dashboard")["dashboard"])
+
+    def game_status(self) -> Dict[str, Any]:
+        """day, cash (dollars), subscribers, total_days, and how the run ended, if it did."""
+        return self.connection.request("GET", "/game-status")
+
+    def query(self, sql: str) -> Dict[str, Any]:
+        """Asks the database one statement: columns, rows (as objects), row_count. Hints and warnings go to standard error.
+
+        Raises:
+            NovamindError: the statement is wrong, or reads what cannot be seen.
+        """
+        answer = checked(self.connection.request("POST", "/query", {"sql": sql}))
+        for remark in ("warning", "hint"):
+            if answer.get(remark):
+                print(answer[remark], file=sys.stderr)
+        return answer
+
+    def next_week(
+        self,
+        rationale: str,
+        predictions: Dict[str, Any],
+        expected_day: Optional[int] = None,
+        request_id: Optional[str] = None,
+    ) -> Dict[str, Any]:
+        """Files why and what is expected, and lets a week pass: day, dashboard, cash, figures, ended.
+
+        Args:
+            rationale: why these decisions.
+            predictions: cash in dollars after 1, 4, 12 and 26 weeks, each with point, lower and upper, under the keys cash_1wk,
+                cash_4wk, cash_12wk and cash_26wk.
+            expected_day: the day on which the run must be; on another day the week is refused.
+            request_id: the id of the request; without it a new one. A request with an id that was sent before is not run again.
+
+        Raises:
+            NovamindError: something is missing, the run is over, or it is on another day. No day has passed then.
+        """
+        body = {"rationale": rationale, "predictions": predictions, "request_id": request_id or new_id()}
+        if expected_day is not None:
+            body["expected_day"] = expected_day
+        return checked(self.connection.request("POST", "/next-week", body))
+
+    def naive_predictions(self, spread: float = 0.1) -> Dict[str, Dict[str, float]]:
+        """Forecasts that expect the cash of today, with a spread of a share of it to both sides: a beginning, not a forecast."""
+        cash = float(self.game_status()["cash"])
+        around = {"point": cash, "lower": cash - abs(cash) * spread, "upper": cash + abs(cash) * spread}
+        return {f"cash_{weeks}wk": dict(around) for weeks in (1, 4, 12, 26)}
 
 
-def naive_predictions(spread: float = 0.1) -> Dict[str, Dict[str, float]]:
-    """Forecasts that expect the cash of today, with a spread of a share of it to both sides: a beginning, not a forecast."""
-    cash = float(game_status()["cash"])
-    around = {"point": cash, "lower": cash - abs(cash) * spread, "upper": cash + abs(cash) * spread}
-    return {f"cash_{weeks}wk": dict(around) for weeks in (1, 4, 12, 26)}
+_default = Client(connection=default)
+get_vars = _default.get_vars
+current_day = _default.current_day
+dashboard = _default.dashboard
+game_status = _default.game_status
+query = _default.query
+next_week = _default.next_week
+naive_predictions = _default.naive_predictions

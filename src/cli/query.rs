@@ -156,7 +156,10 @@ fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Fai
 
 fn moves_database(line: &Line) -> bool {
     match &line.record {
-        Record::Call(call) => matches!(call.outcome, Outcome::Accepted(_)) && call.tool.spec().kind.acts(),
+        Record::Call(call) => {
+            let acts = call.tool.known().is_some_and(|tool| tool.spec().kind.acts());
+            acts && matches!(call.outcome, Outcome::Accepted(_))
+        }
         Record::Start(_) | Record::Week(_) | Record::Step(_) | Record::End(_) => true,
         _ => false,
     }

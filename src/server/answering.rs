@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::request::{Answer, Request, Status};
-use crate::session::{QuerySource, Refusal, Session, Via, rows_as_json};
+use crate::session::{QuerySource, Refusal, Session, Via, WeekRequest, rows_as_json};
 use crate::tools::{Kept, ToolId};
 
 /// Tools whose arguments older programs send as null where they mean to leave them out.
@@ -16,17 +16,31 @@ const NOTHING_CLEARS: [ToolId; 3] =
 /// Answers a request. What is asked comes in through `via`.
 pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
     match request {
-        Request::Call { tool, args } => call(session, &tool, args, via),
-        Request::NextWeek { rationale, predictions } => next_week(session, &rationale, &predictions, via),
+        Request::Call { tool, args, request_id } => call(session, &tool, args, &request_id, via),
+        Request::NextWeek { rationale, predictions, expected_day, request_id } => {
+            let week = WeekRequest {
+                rationale: &rationale,
+                predictions: &predictions,
+                expected_day: &expected_day,
+                id: &request_id,
+            };
+            next_week(session, &week, via)
+        }
         Request::Query { sql } => query(session, &sql),
+        Request::Refused { tool, args, refusal } => {
+            session.record_refused_call(&tool, &args, via, &refusal);
+            Answer::refused(Status::Refused, refusal)
+        }
         Request::Vars => Answer::plain(json!({ "current_day": session.day() })),
         Request::Dashboard => {
             Answer::plain(json!({ "dashboard": session.dashboard(), "day": session.day() }))
         }
         Request::GameStatus => game_status(session),
         Request::DailyScripts => Answer::data(json!({ "scripts": daily_scripts(session) })),
-        Request::KeepDailyScript { name, content } => keep_script(session, name, content, via),
-        Request::ForgetDailyScript { name } => forget_script(session, name, via),
+        Request::KeepDailyScript { name, content, request_id } => {
+            keep_script(session, &json!({ "name": name, "code": content }), &request_id, via)
+        }
+        Request::ForgetDailyScript { name, request_id } => forget_script(session, name, &request_id, via),
         Request::Memo => match session.memo() {
             Ok(text) => Answer::data(json!({ "text": text })),
             Err(error) => Answer::wrong(Status::Failed, "not_read", error.to_string()),
@@ -34,7 +48,7 @@ pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
     }
 }
 
-fn call(session: &mut Session, tool: &str, mut args: Value, via: Via) -> Answer {
+fn call(session: &mut Session, tool: &str, mut args: Value, request_id: &Value, via: Via) -> Answer {
     if let Value::Object(fields) = &mut args
         && NULLS_ARE_LEFT_OUT.iter().any(|id| id.name() == tool)
     {
@@ -43,20 +57,21 @@ fn call(session: &mut Session, tool: &str, mut args: Value, via: Via) -> Answer 
     if args.as_object().is_some_and(Map::is_empty) && NOTHING_CLEARS.iter().any(|id| id.name() == tool) {
         args = json!({ "targeted_spend": {} });
     }
-    match session.call(tool, &args, via) {
-        Ok(answer) => Answer::data(answer.to_json()),
-        Err(refusal) => Answer::refused(Status::Done, &refusal),
+    match session.call_once(tool, &args, via, request_id) {
+        Ok(data) => Answer::data(data),
+        Err(refusal) => Answer::refused(Status::Done, refusal),
     }
 }
 
-fn next_week(session: &mut Session, rationale: &Value, predictions: &Value, via: Via) -> Answer {
-    match session.advance_given(rationale, predictions, [false; 4], via, &mut |_| {}) {
-        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+fn next_week(session: &mut Session, request: &WeekRequest<'_>, via: Via) -> Answer {
+    match session.advance_once(request, via) {
+        Err(refusal) => Answer::refused(Status::Refused, refusal),
         Ok(week) => {
             let mut fields = Map::from_iter([
                 ("day".to_owned(), week.figures.day.into()),
                 ("dashboard".to_owned(), week.dashboard.clone().into()),
                 ("cash".to_owned(), crate::notation::json_number(week.figures.cash)),
+                ("figures".to_owned(), Value::Object(week.figures.as_json())),
                 ("ended".to_owned(), json!(week.ended)),
             ]);
             if let Some(remark) = week.remark {
@@ -69,11 +84,11 @@ fn next_week(session: &mut Session, rationale: &Value, predictions: &Value, via:
 
 fn query(session: &mut Session, sql: &Value) -> Answer {
     let Some(sql) = sql.as_str() else {
-        return Answer::refused(Status::Refused, &Refusal::at("sql", "sql_empty", "sql must be a text"));
+        return Answer::refused(Status::Refused, Refusal::at("sql", "sql_empty", "sql must be a text"));
     };
     match session.query_of(sql, QuerySource::Program) {
         Ok(rows) => Answer::done(rows_as_json(&rows)),
-        Err(refusal) => Answer::refused(status_of_query(refusal.code), &refusal),
+        Err(refusal) => Answer::refused(status_of_query(refusal.code), refusal),
     }
 }
 
@@ -104,18 +119,17 @@ fn daily_scripts(session: &Session) -> Vec<Value> {
     kept.iter().map(|(name, code)| json!({ "name": name, "size": code.len() })).collect()
 }
 
-fn keep_script(session: &mut Session, name: Value, content: Value, via: Via) -> Answer {
-    let args = json!({ "name": name, "code": content });
-    match session.call(ToolId::RegisterScript, &args, via) {
-        Ok(answer) => Answer::data(json!({ "name": answer.to_json()["name"], "registered": true })),
-        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+fn keep_script(session: &mut Session, args: &Value, request_id: &Value, via: Via) -> Answer {
+    match session.call_once(ToolId::RegisterScript, args, via, request_id) {
+        Ok(answer) => Answer::data(json!({ "name": answer["name"], "registered": true })),
+        Err(refusal) => Answer::refused(Status::Refused, refusal),
     }
 }
 
-fn forget_script(session: &mut Session, name: Value, via: Via) -> Answer {
-    match session.call(ToolId::DeleteScript, &json!({ "name": name }), via) {
+fn forget_script(session: &mut Session, name: Value, request_id: &Value, via: Via) -> Answer {
+    match session.call_once(ToolId::DeleteScript, &json!({ "name": name }), via, request_id) {
         Ok(_) => Answer::data(json!({ "removed": name })),
-        Err(refusal) if refusal.code == "script_not_found" => Answer::refused(Status::Missing, &refusal),
-        Err(refusal) => Answer::refused(Status::Refused, &refusal),
+        Err(refusal) if refusal.code == "script_not_found" => Answer::refused(Status::Missing, refusal),
+        Err(refusal) => Answer::refused(Status::Refused, refusal),
     }
 }

@@ -20,9 +20,17 @@ pub fn document(numbers: &Numbers) -> Value {
 }
 
 fn paths(numbers: &Numbers) -> Value {
+    let retries = |tool: ToolId, mut body: Value| {
+        for (name, field) in schema::of_retries(tool) {
+            body["properties"][name] = field;
+        }
+        body
+    };
     let next_week = Value::Object(schema::arguments(ToolId::NextWeek.spec(), numbers));
+    let next_week = retries(ToolId::NextWeek, next_week);
     let script = json!({ "type": "object", "required": ["name"],
         "properties": { "name": { "type": "string" }, "content": { "type": "string" } } });
+    let script = retries(ToolId::RegisterScript, script);
     let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
     json!({
         "/health": { "get": read("Whether the server takes requests, and which run it plays") },
@@ -36,7 +44,7 @@ fn paths(numbers: &Numbers) -> Value {
         "/call": { "post": write("Call a tool", json!({ "oneOf": calls() }),
             "success and data, or success false with error, code and field") },
         "/next-week": { "post": write("File rationale and forecasts, and let a week pass", next_week,
-            "day, dashboard, cash, ended") },
+            "day, dashboard, cash, figures, ended") },
         "/query": { "post": write("Ask the database one statement", sql, "columns, rows, row_count") },
         "/daily-scripts": {
             "get": read("Names and sizes of the scripts that are kept"),
@@ -64,13 +72,18 @@ fn write(summary: &str, body: Value, answer: &str) -> Value {
 
 fn calls() -> Vec<Value> {
     let callable = schema::specs().filter(|spec| !matches!(spec.id, ToolId::NextWeek | ToolId::Query));
-    let call = |name: &str| {
-        json!({ "type": "object", "required": ["tool"], "properties": {
+    let call = |tool: ToolId| {
+        let name = tool.name();
+        let mut properties = json!({
             "tool": { "const": name },
             "args": { "$ref": format!("#/components/schemas/{name}") },
-        } })
+        });
+        if tool.takes_request_id() {
+            properties[schema::REQUEST_ID] = schema::of_retries(tool)[schema::REQUEST_ID].clone();
+        }
+        json!({ "type": "object", "required": ["tool"], "properties": properties })
     };
-    callable.map(|spec| call(spec.name())).collect()
+    callable.map(|spec| call(spec.id)).collect()
 }
 
 fn schemas(numbers: &Numbers) -> Map<String, Value> {

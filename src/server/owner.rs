@@ -2,11 +2,12 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use serde_json::Value;
 use tokio::sync::oneshot;
 
 use super::answering::answer;
@@ -50,7 +51,7 @@ impl Owner {
     /// Gives a session to a thread of its own; the handle asks it.
     pub fn start(session: Session, door: Door) -> (Owner, Handle) {
         let (sender, receiver) = channel();
-        let advancing = Arc::new(AtomicBool::new(false));
+        let advancing = Advancing::default();
         let running = Running::default();
         let handle =
             Handle { sender, advancing: advancing.clone(), asked: Arc::default(), running: running.clone() };
@@ -81,7 +82,7 @@ impl Owner {
 #[derive(Clone)]
 pub struct Handle {
     sender: Sender<Asked>,
-    advancing: Arc<AtomicBool>,
+    advancing: Advancing,
     /// Requests so far.
     asked: Arc<AtomicU64>,
     running: Running,
@@ -91,8 +92,9 @@ impl Handle {
     /// Asks, and waits for the answer. A week is simulated to its end even if nobody waits any more; a script or a statement
     /// is stopped then.
     pub async fn ask(&self, request: Request) -> Answer {
-        let is_week = matches!(request, Request::NextWeek { .. });
-        if is_week && self.advancing.swap(true, Ordering::AcqRel) {
+        if let Request::NextWeek { request_id, .. } = &request
+            && !self.advancing.begin(request_id)
+        {
             return Answer::wrong(
                 Status::Busy,
                 "week_running",
@@ -115,6 +117,30 @@ fn gone() -> Answer {
     Answer::wrong(Status::Failed, "closing", "the server is closing the run; what was confirmed is kept")
 }
 
+/// The weeks that were asked for and not yet answered: one, and retries of it.
+#[derive(Clone, Default)]
+struct Advancing(Arc<Mutex<(usize, Value)>>);
+
+impl Advancing {
+    /// Takes a request for a week; whether it may wait for its answer. While a week is simulated, only a retry with the same
+    /// id may: it returns the first answer.
+    fn begin(&self, request_id: &Value) -> bool {
+        let mut weeks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (open, id) = &mut *weeks;
+        if *open > 0 && (request_id.is_null() || *id != *request_id) {
+            return false;
+        }
+        *open += 1;
+        *id = request_id.clone();
+        true
+    }
+
+    /// A request for a week was answered.
+    fn end(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).0 -= 1;
+    }
+}
+
 /// The session and what is needed to open it again.
 struct Owned {
     /// None between a defect of ours and opening the run again.
@@ -127,7 +153,7 @@ struct Owned {
 }
 
 impl Owned {
-    fn work(mut self, asked: &Receiver<Asked>, advancing: &AtomicBool) -> Result<(), RunError> {
+    fn work(mut self, asked: &Receiver<Asked>, advancing: &Advancing) -> Result<(), RunError> {
         let interface = Interface { name: self.door.interface, window: None };
         if let Some(session) = &mut self.session {
             session.take_up(interface);
@@ -145,7 +171,7 @@ impl Owned {
             let answer = self.answer(request);
             self.running.end();
             if is_week {
-                advancing.store(false, Ordering::Release);
+                advancing.end();
             }
             // Whoever asked may have gone.
             let _ = reply.send(answer);
@@ -196,13 +222,15 @@ fn internal_error(on_defect: OnDefect) -> Answer {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =
         format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
-    on_defect(&format!("request {id} met a defect of the program; the run is opened again from its record"));
+    on_defect(&format!(
+        "defect {id}: a request met a defect of the program; the run is opened again from its record"
+    ));
     let mut answer = Answer::wrong(
         Status::Failed,
         "internal_error",
         "the program has a defect; what was confirmed before is kept, and the run goes on",
     );
-    answer.body["request_id"] = id.into();
+    answer.body["defect_id"] = id.into();
     answer
 }
 

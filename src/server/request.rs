@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::session::Refusal;
+use crate::session::record::RefusalRecord;
 use crate::tools::{ToolId, find};
 
 /// What a program asks of a run.
@@ -14,6 +15,17 @@ pub enum Request {
         tool: String,
         /// Its arguments, as they were sent.
         args: Value,
+        /// The id of the request; null without one.
+        request_id: Value,
+    },
+    /// Record a call that is refused before a tool receives it.
+    Refused {
+        /// Name of the tool.
+        tool: String,
+        /// Its arguments, as they were sent.
+        args: Value,
+        /// Why.
+        refusal: Refusal,
     },
     /// File rationale and forecasts, and let a week pass.
     NextWeek {
@@ -21,6 +33,10 @@ pub enum Request {
         rationale: Value,
         /// Forecasts of four horizons.
         predictions: Value,
+        /// The day on which the run must be; null if any will do.
+        expected_day: Value,
+        /// The id of the request; null without one.
+        request_id: Value,
     },
     /// Ask the database.
     Query {
@@ -41,11 +57,15 @@ pub enum Request {
         name: Value,
         /// Its text.
         content: Value,
+        /// The id of the request; null without one.
+        request_id: Value,
     },
     /// Forget a script.
     ForgetDailyScript {
         /// Its name.
         name: Value,
+        /// The id of the request; null without one.
+        request_id: Value,
     },
     /// The notes of the run.
     Memo,
@@ -53,19 +73,24 @@ pub enum Request {
 
 impl Request {
     /// What a call of a tool asks: a statement and a week have requests of their own, whichever door they come through.
-    pub fn of_tool(name: &str, args: Value) -> Request {
+    pub fn of_tool(name: &str, args: Value, request_id: Value) -> Request {
         let mut fields = match args {
             Value::Object(fields) => fields,
-            given => return Request::Call { tool: name.to_owned(), args: given },
+            given => return Request::Call { tool: name.to_owned(), args: given, request_id },
         };
         let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
         if name == ToolId::NextWeek.name() {
-            return Request::NextWeek { rationale: take("rationale"), predictions: take("predictions") };
+            return Request::NextWeek {
+                rationale: take("rationale"),
+                predictions: take("predictions"),
+                expected_day: take("expected_day"),
+                request_id,
+            };
         }
         if name == ToolId::Query.name() {
             return Request::Query { sql: take("sql") };
         }
-        Request::Call { tool: name.to_owned(), args: fields.into() }
+        Request::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
 
     /// Whether it runs a script or a statement, which changes nothing and may be stopped.
@@ -104,7 +129,7 @@ pub enum Status {
     Forbidden,
     /// There is nothing of that name.
     Missing,
-    /// Another request of its kind is being worked on.
+    /// Another week is being simulated.
     Busy,
     /// It failed.
     Failed,
@@ -144,7 +169,8 @@ impl Answer {
     }
 
     /// A refusal; programs written for the released simulator read `error` and `data`.
-    pub fn refused(status: Status, refusal: &Refusal) -> Answer {
+    pub fn refused(status: Status, refusal: impl Into<RefusalRecord>) -> Answer {
+        let refusal = refusal.into();
         let error = error_text(&refusal.message, &json!(refusal.results));
         let mut body = json!({ "success": false, "error": error, "code": refusal.code });
         body["field"] = json!(refusal.field);
@@ -170,7 +196,7 @@ impl Answer {
 
     /// Something wrong with a request that no tool looked at.
     pub fn wrong(status: Status, code: &'static str, message: impl Into<String>) -> Answer {
-        Answer::refused(status, &Refusal::new(code, message))
+        Answer::refused(status, Refusal::new(code, message))
     }
 
     /// Whether it is what was asked for.

@@ -4,6 +4,29 @@ use serde_json::{Map, Value, json};
 
 use crate::tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
 
+/// Field of a request that holds its id.
+pub const REQUEST_ID: &str = "request_id";
+
+/// Returns the fields with which a request that calls a tool is retried safely.
+pub fn of_retries(tool: ToolId) -> Map<String, Value> {
+    let mut fields = Map::new();
+    if tool == ToolId::NextWeek {
+        let description = "Refuses the week unless the run is on this day";
+        fields.insert(
+            "expected_day".to_owned(),
+            json!({ "type": "integer", "minimum": 0, "description": description }),
+        );
+    }
+    if tool.takes_request_id() {
+        let description = "A new text for each request. Send it again to retry: the request runs once";
+        fields.insert(
+            REQUEST_ID.to_owned(),
+            json!({ "type": "string", "minLength": 1, "maxLength": 128, "description": description }),
+        );
+    }
+    fields
+}
+
 /// Every tool, in the order of the catalogue.
 pub fn specs() -> impl Iterator<Item = &'static Spec> {
     CATALOGUE.iter().map(|tool| tool.spec())

@@ -83,8 +83,11 @@ impl ForeignTranscript {
         let mut played = PlayedTranscript::default();
         session.keep_python_out();
         for call in &self.calls {
-            let said =
-                answer(session, Request::of_tool(&call.tool, call.arguments.clone().into()), Via::Script);
+            let said = answer(
+                session,
+                Request::of_tool(&call.tool, call.arguments.clone().into(), Value::Null),
+                Via::Script,
+            );
             let accepted = said.succeeded();
             let is_not_run = || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_NOT_RUN));
             if is_not_run() {

@@ -112,6 +112,7 @@ pub use play::afterwards::lines_afterwards;
 pub use play::clock::TIME_LIMIT;
 pub use play::drafts::UnsentTexts;
 pub use play::machine::Machine;
+pub use play::once::WeekRequest;
 pub use play::parameters::{ChangedParameter, ChangedParameters};
 pub use play::personal_clock::TimeLeft;
 pub use play::presence::{IDLE_AFTER, Interface};

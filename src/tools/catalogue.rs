@@ -17,7 +17,7 @@ use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
-use super::{AnyTool, Arguments, Planned, Refusal, Spec, Tool, View};
+use super::{AnyTool, Arguments, Kind, Planned, Refusal, Spec, Tool, View};
 use crate::world::settings::Settings;
 
 /// One list makes the identifiers, the tools and their answers, in the order in which they are shown.
@@ -121,6 +121,12 @@ impl ToolId {
     /// Whether a call of it runs code at once, which may take its time.
     pub fn runs_code(self) -> bool {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
+    }
+
+    /// Returns whether a request that calls it can carry an id: a retry must not run it twice. Reading again and running a
+    /// script again change nothing.
+    pub fn takes_request_id(self) -> bool {
+        self.spec().kind != Kind::Read && !self.runs_code()
     }
 
     /// All of them, in the order in which they are shown.

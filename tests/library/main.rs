@@ -17,6 +17,7 @@ mod overrides;
 #[cfg(unix)]
 mod python_scripts;
 mod queries;
+mod request_ids;
 mod session;
 #[path = "../support/mod.rs"]
 mod support;

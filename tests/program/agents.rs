@@ -109,6 +109,24 @@ fn the_same_decisions_from_a_shell_are_the_same_run() {
 }
 
 #[test]
+fn a_command_that_is_repeated_with_its_id_runs_once() {
+    let shell = Shell::new();
+    shell.begin();
+    let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
+    let week = ["--request-id", "w", "next-week", "--expected-day", "0", &filed];
+    let price = ["--request-id", "p", "call", "set_prices", "--A", "12"];
+    let first = [shell.does(&price), shell.does(&week)];
+    shell.kill();
+    assert_eq!([shell.does(&price), shell.does(&week)], first);
+    shell
+        .agent(&["--request-id", "p", "call", "set_prices", "--A", "13"])
+        .fails(5, &["request_id_payload_mismatch"]);
+    shell.agent(&["next-week", "--expected-day", "0", &filed]).fails(5, &["unexpected_day", "day 7"]);
+    assert_eq!(shell.does(&["status"])["day"], 7);
+    shell.does(&["stop"]);
+}
+
+#[test]
 fn a_server_that_was_killed_is_followed_by_another_one() {
     let shell = Shell::new();
     let first = shell.begin();

@@ -201,6 +201,21 @@ fn the_same_decisions_over_http_are_the_same_run() {
     assert_eq!(last_hash(&home), of_plain_mode());
 }
 
+#[test]
+fn a_week_answers_with_the_figures_of_plain_mode() {
+    let (home, plain) = (Home::new(), Home::new());
+    let server = Server::start(&home, &NEW);
+    let (_, week) = server.week();
+    let line = format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
+    let options = ["--seed", "7", "--days", "28", "--mode", "sandbox", "--json"];
+    let said = plain.play(&options, &line);
+    let answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let next = answers.filter(|answer| answer["command"] == "next").last().expect("an answer");
+    let figures = &next["data"]["figures"];
+    assert!(figures["new_individual_leads"].is_number(), "{next}");
+    assert_eq!(week["figures"], *figures);
+}
+
 #[cfg(unix)]
 #[test]
 fn hostile_requests_leave_the_run_as_it_is() {
@@ -215,6 +230,8 @@ fn hostile_requests_leave_the_run_as_it_is() {
         ("host: 127.0.0.1\r\nauthorization: Bearer x\r\n".to_owned(), 401),
         (known.replace("127.0.0.1", "example.org"), 403),
         (format!("{known}origin: https://example.org\r\n"), 403),
+        (format!("{known}host: 127.0.0.1\r\n"), 403),
+        (known.replace("Bearer", "bearer"), 200),
         (known.clone(), 200),
     ] {
         assert_eq!(server.with_head("POST", "/call", &head, &call).0, status, "{head}");
@@ -253,6 +270,97 @@ fn hostile_requests_leave_the_run_as_it_is() {
     assert_eq!(server.stop(), 0);
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     assert_eq!(home.run(&["replay", &id, "--verify"]).code, 0);
+}
+
+#[test]
+fn a_number_that_json_cannot_hold_is_refused_as_a_tool_refuses() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let ask = |path: &str, body: &str| server.with_head("POST", path, "host: localhost\r\n", body);
+    let (status, refused) = ask("/call", r#"{"tool": "set_prices", "args": {"A": 10, "B": NaN}}"#);
+    assert_eq!((status, &refused["success"], &refused["code"]), (200, &json!(false), &json!("wrong_type")));
+    assert_eq!((&refused["field"], refused["data"].is_null()), (&json!("B"), true));
+    assert!(refused["error"].as_str().is_some_and(|text| text.contains("B is NaN")), "{refused}");
+    let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
+    let (status, refused) = ask("/next-week", &filed.replacen("2000000.0", "Infinity", 1));
+    assert_eq!((status, &refused["success"]), (400, &json!(false)), "{refused}");
+    assert_eq!(refused["field"], "predictions.cash_1wk.upper");
+    assert_eq!(server.get("/vars")["current_day"], 0);
+    let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
+    let calls: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let sent = calls.iter().find(|line| line["tool"] == "set_prices").expect("it is recorded");
+    assert_eq!(sent["args"], json!({ "A": 10, "B": "NaN" }));
+}
+
+#[test]
+fn the_connection_after_the_last_is_told_to_come_back() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let held: Vec<TcpStream> = (0..64)
+        .map(|_| {
+            let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
+            // An answered request: the server has taken the connection and keeps it.
+            stream.write_all(b"GET /health HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\n").expect("sent");
+            assert!(stream.read(&mut [0; 1024]).expect("an answer") > 0);
+            stream
+        })
+        .collect();
+    let body = json!({ "tool": "get_vars", "args": { "long": "x".repeat(100_000) } }).to_string();
+    let request =
+        format!("POST /call HTTP/1.1\r\nhost: 127.0.0.1\r\ncontent-length: {}\r\n\r\n{body}", body.len());
+    let answer = server.raw(request.as_bytes());
+    let (head, body) = answer.split_once("\r\n\r\n").unwrap_or_else(|| panic!("{answer}"));
+    assert!(head.starts_with("HTTP/1.1 503 ") && head.contains("retry-after: 1"), "{head}");
+    let body: Value = serde_json::from_str(body).expect("JSON");
+    assert_eq!((&body["success"], &body["code"]), (&json!(false), &json!("too_many_connections")));
+    drop(held);
+}
+
+#[test]
+fn input_that_is_not_json_is_answered_over_the_protocol() {
+    let home = Home::new();
+    let mut child = home.program().arg("mcp").args(NEW).spawn().expect("the program starts");
+    let mut to = child.stdin.take().expect("a pipe");
+    let mut from = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let mut ask = |line: &str| -> Value {
+        writeln!(to, "{line}").expect("sent");
+        serde_json::from_str(&from.next().expect("an answer").expect("a line")).expect("JSON")
+    };
+    let client = json!({ "protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": { "name": "t", "version": "1" } });
+    let first = json!({ "jsonrpc": "2.0", "id": 1, "method": "initialize", "params": client });
+    assert_eq!(ask(&first.to_string())["id"], 1);
+    let deep = "[".repeat(100_000);
+    for line in
+        ["{", "\u{1}", r#"{"jsonrpc": "2.0", "id": 3, "#, &deep, &format!("{deep}{}", "]".repeat(100_000))]
+    {
+        let answer = ask(line);
+        assert_eq!(
+            (&answer["error"]["code"], answer.get("id")),
+            (&json!(-32700), Some(&Value::Null)),
+            "{answer}"
+        );
+    }
+    let call = json!({ "jsonrpc": "2.0", "id": 4, "method": "tools/call", "params": { "name": "get_vars", "arguments": {} } });
+    assert_eq!(ask(&call.to_string())["id"], 4);
+    let tools = ask(&json!({ "jsonrpc": "2.0", "id": 5, "method": "tools/list", "params": {} }).to_string());
+    let declares = |name: &str, field: &str| {
+        let tools = tools["result"]["tools"].as_array().expect("tools").iter();
+        let mut own = tools.filter(|tool| tool["name"] == name);
+        own.next().expect(name)["inputSchema"]["properties"].get(field).is_some()
+    };
+    assert!(declares("set_prices", "request_id") && declares("next_week", "expected_day"));
+    assert!(!declares("get_vars", "request_id") && !declares("set_prices", "expected_day"));
+    let prices = |id: u32, a: u32| {
+        let arguments = json!({ "A": a, "request_id": "p" });
+        json!({ "jsonrpc": "2.0", "id": id, "method": "tools/call", "params": { "name": "set_prices", "arguments": arguments } })
+    };
+    let first = ask(&prices(6, 12).to_string());
+    assert_eq!(first["result"]["structuredContent"]["success"], true, "{first}");
+    assert_eq!(ask(&prices(7, 12).to_string())["result"], first["result"]);
+    let other = ask(&prices(8, 13).to_string());
+    assert_eq!(other["result"]["structuredContent"]["code"], "request_id_payload_mismatch", "{other}");
+    drop(to);
+    assert!(child.wait().expect("it ends").success());
 }
 
 #[test]

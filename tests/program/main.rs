@@ -27,8 +27,12 @@ mod own_runs;
 mod plain;
 mod planted;
 mod preparation;
+#[cfg(feature = "server")]
+mod python_client;
 #[cfg(unix)]
 mod python_scripts;
+#[cfg(feature = "server")]
+mod retries;
 mod scenarios;
 mod studies;
 #[path = "../support/mod.rs"]

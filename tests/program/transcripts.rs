@@ -132,6 +132,45 @@ fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told
 }
 
 #[test]
+fn every_export_has_the_calls_of_unknown_tools() {
+    let home = Home::new();
+    let lines = "set_wages {\"sales\": 3}\nhlep\nhlep me\nset_prices A=12\nnext naive\n";
+    home.play(&["--seed", "11", "--days", "28"], lines);
+    let folder = home.only_run();
+    let run = id(&folder);
+    let text = fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
+    let refused = |line: &Value| line["kind"] == "call" && line["ok"] == false;
+    let calls: Vec<Value> =
+        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).filter(refused).collect();
+    // A word without arguments of a call is a typing error.
+    assert_eq!(calls.len(), 1, "{calls:?}");
+    assert_eq!((&calls[0]["tool"], &calls[0]["args"]), (&json!("set_wages"), &json!({ "sales": 3 })));
+    assert_eq!(calls[0]["refusal"]["code"], "unknown_tool");
+    for format in ["atif", "inspect"] {
+        let told = export(&home, &run, format).to_string();
+        assert!(told.contains("set_wages") && told.contains("unknown_tool"), "{format}");
+    }
+    let out = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
+    let done = |words: &[&str]| {
+        let said = home.run(words);
+        assert_eq!(said.code, 0, "{words:?}: {}{}", said.out, said.err);
+        said.out
+    };
+    done(&["runs", "export", &run, "--format", "script", "--out", &out("script")]);
+    for file in ["play.txt", "play.py"] {
+        let script = fs::read_to_string(Path::new(&out("script")).join(file)).expect("a script");
+        assert!(script.contains("# refused (unknown_tool): \"set_wages\" {\"sales\":3}\n"), "{script}");
+    }
+    done(&["runs", "export", "--all", "--out", &out("tables")]);
+    let events = fs::read_to_string(Path::new(&out("tables")).join("events.csv")).expect("a table");
+    assert!(events.lines().any(|row| row.contains("set_wages") && row.contains("unknown_tool")), "{events}");
+    done(&["replay", &run, "--verify"]);
+    done(&["report", &run]);
+    done(&["lab", "behaviour", &run, "--json"]);
+    done(&["runs", "show", &run, "--json"]);
+}
+
+#[test]
 fn evaluation_log_has_a_sample_with_every_message() {
     let home = Home::new();
     let (run, _) = played(&home);

@@ -9,7 +9,7 @@ use crate::server::Reply;
 const REFUSED: u8 = 5;
 /// Refused, because the run is over.
 const OVER: u8 = 6;
-/// A week is being simulated.
+/// A week is being simulated, or the server has no room for another connection.
 const BUSY: u8 = 7;
 /// The server does not answer.
 const UNREACHABLE: u8 = 8;
@@ -39,7 +39,7 @@ pub fn check(reply: &Reply) -> Result<(), Failure> {
     let field = word("field").map(|field| format!(" ({field})")).unwrap_or_default();
     let exit = match (reply.status, code) {
         (_, "run_over") => OVER,
-        (409, _) => BUSY,
+        (409 | 503, _) => BUSY,
         _ => REFUSED,
     };
     Err(Failure::with_code(exit, format!("{code}{field}: {message}")))

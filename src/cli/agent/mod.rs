@@ -26,6 +26,9 @@ pub struct Options {
     /// Run [default: the one that `agent new` began last].
     #[arg(id = "agent_run", long = "run", global = true, env = "NOVAMIND_RUN", value_name = "ID")]
     run: Option<String>,
+    /// Id of the request, for `call` and `next-week`: the command can be repeated with it, and the request runs once.
+    #[arg(long, global = true, value_name = "ID")]
+    request_id: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -42,6 +45,9 @@ enum AgentCommand {
         /// One JSON object, - for one on standard input, or: RATIONALE and POINT LOWER UPPER of 1, 4, 12 and 26 weeks.
         #[arg(required = true, value_name = "WORD")]
         words: Vec<String>,
+        /// Refuse the week unless the run is on this day.
+        #[arg(long, value_name = "DAY")]
+        expected_day: Option<u32>,
     },
     /// Ask the database one statement.
     Query {
@@ -81,6 +87,14 @@ impl Options {
             arguments.splice(0..0, ["--code".to_owned(), code]);
         }
     }
+
+    /// Adds the id of the request to its body.
+    fn with_id(&self, mut body: Value) -> Value {
+        if let Some(id) = &self.request_id {
+            body["request_id"] = json!(id);
+        }
+        body
+    }
 }
 
 /// Runs the command.
@@ -90,8 +104,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         AgentCommand::New(new) => begin(new, context),
         AgentCommand::Status => answer(&connect(named, context)?.1, "/game-status", None),
         AgentCommand::Dashboard => answer(&connect(named, context)?.1, "/dashboard", None),
-        AgentCommand::NextWeek { words } => {
-            let filed = next_week_of(words)?;
+        AgentCommand::NextWeek { words, expected_day } => {
+            let mut filed = options.with_id(next_week_of(words)?);
+            if let Some(day) = expected_day {
+                filed["expected_day"] = json!(day);
+            }
             answer(&connect(named, context)?.1, "/next-week", Some(&filed))
         }
         AgentCommand::Query { sql } => {
@@ -99,7 +116,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             answer(&connect(named, context)?.1, "/query", Some(&asked))
         }
         AgentCommand::Call { tool, arguments } => {
-            let asked = json!({ "tool": tool, "args": called_with(tool, arguments)? });
+            let asked = options.with_id(json!({ "tool": tool, "args": called_with(tool, arguments)? }));
             answer(&connect(named, context)?.1, "/call", Some(&asked))
         }
         AgentCommand::Python { words } => {

@@ -72,7 +72,8 @@ fn voice_in_brief(said: &VoiceAnswer) -> String {
 
 fn call_in_brief(call: &Call, names: &CompanyNames) -> Vec<(String, Role)> {
     let Call { tool, args, .. } = call;
-    let words = deals_in_words(*tool, args, names).unwrap_or_else(|| in_words(args));
+    let deals = tool.known().and_then(|tool| deals_in_words(tool, args, names));
+    let words = deals.unwrap_or_else(|| in_words(args));
     let named = format!("{tool} {words}").trim_end().to_owned();
     match &call.outcome {
         Outcome::Accepted(_) => {
@@ -229,15 +230,15 @@ mod tests {
     #[test]
     fn lines_are_told_in_few_words() {
         let call = |args, outcome, reversal| {
-            let tool = crate::tools::ToolId::SetPrices;
-            Record::Call(Call { tool, args, outcome, via: Via::Form, took_ms: 0.1, reversal })
+            let tool = crate::tools::ToolId::SetPrices.into();
+            Record::Call(Call { tool, args, outcome, via: Via::Form, took_ms: 0.1, reversal, request: None })
         };
         let accepted = |reversal| call(json!({"A": 12}), Outcome::Accepted(json!({})), reversal);
         assert_eq!(said(accepted(None)), ["set_prices A 12"]);
         assert_eq!(said(accepted(Some(Reversal::Undoes(3)))), ["undo: set_prices A 12"]);
         assert_eq!(said(accepted(Some(Reversal::Redoes(4)))), ["redo: set_prices A 12"]);
         let (code, message) = ("price_not_positive".to_owned(), "too low".to_owned());
-        let refused = Outcome::Refused(RefusalRecord { code, message, field: None });
+        let refused = Outcome::Refused(RefusalRecord { code, message, ..RefusalRecord::default() });
         assert_eq!(said(call(json!({"A": -1}), refused, None)), ["set_prices A -1", "refused: too low"]);
         let query = |rows, error: Option<&str>| {
             let (sql, error) = ("SELECT 1\n FROM x".to_owned(), error.map(str::to_owned));

@@ -199,8 +199,15 @@ mod tests {
 
     fn call() -> Record {
         let outcome = Outcome::Accepted(json!({}));
-        let tool = crate::session::ToolId::SetPrices;
-        Record::Call(Call { tool, args: json!({}), outcome, via: Via::Form, took_ms: 0.0, reversal: None })
+        Record::Call(Call {
+            tool: crate::session::ToolId::SetPrices.into(),
+            args: json!({}),
+            outcome,
+            via: Via::Form,
+            took_ms: 0.0,
+            reversal: None,
+            request: None,
+        })
     }
 
     fn memo() -> Record {
@@ -209,7 +216,7 @@ mod tests {
 
     fn advance() -> Record {
         let (rationale, forecasts, calculations) = ("wait".to_owned(), Vec::new(), Vec::new());
-        Record::Advance(Advance { rationale, forecasts, via: Via::Form, calculations })
+        Record::Advance(Advance { rationale, forecasts, via: Via::Form, calculations, request: None })
     }
 
     fn week() -> Record {

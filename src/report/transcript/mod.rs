@@ -20,9 +20,9 @@ pub use plain_script::plain_script;
 pub use python_script::python_script;
 pub use told::Surroundings;
 
-use crate::session::record::{End, FiledForecast, Outcome, RefusalRecord};
+use crate::session::record::{CalledTool, End, FiledForecast, Outcome, RefusalRecord};
 use crate::session::{
-    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, QuerySource, Record, RunError, Session, ToolId,
+    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, QuerySource, Record, RunError, Session,
     rows_as_json,
 };
 
@@ -65,8 +65,8 @@ pub struct TranscriptAct {
 pub enum Deed {
     /// A tool was called.
     Call {
-        /// Tool.
-        tool: ToolId,
+        /// Tool, known or not.
+        tool: CalledTool,
         /// Its arguments.
         args: Value,
         /// What it said.
@@ -148,7 +148,7 @@ impl Transcript {
                     Outcome::Accepted(answer) => Ok(answer.clone()),
                     Outcome::Refused(refusal) => Err(refusal.clone()),
                 };
-                Deed::Call { tool: call.tool, args: call.args.clone(), answer, extra }
+                Deed::Call { tool: call.tool.clone(), args: call.args.clone(), answer, extra }
             }
             // What a script asked is part of its call.
             Record::Query(query) if query.via == Some(QuerySource::Script) => {

@@ -1,9 +1,10 @@
 //! A run as a script of plain mode: the same decisions, played by `novamind play --plain --strict`.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Deed, Transcript, TranscriptAct, predictions};
 use crate::session::Mode;
+use crate::session::record::CalledTool;
 
 /// The script, with the command that plays it in its first lines.
 pub fn plain_script(run: &Transcript) -> String {
@@ -31,6 +32,12 @@ pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
     is_judged.then_some(
         "A language model judged its posts. The built-in judge reads them here, so the last state can be another.",
     )
+}
+
+/// A refused call as a comment in one line. The name of an unknown tool can hold any characters, so it is escaped.
+pub(super) fn refused_in_words(tool: &CalledTool, args: &Value, code: &str) -> String {
+    let name = tool.known().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
+    format!("# refused ({code}): {name} {args}")
 }
 
 /// The options of the new run that this one is to be played on.
@@ -73,6 +80,9 @@ fn line(act: &TranscriptAct) -> Option<String> {
             Some(format!("next {filed}"))
         }
         Deed::Debugging(command) => Some(command.clone()),
-        Deed::Call { answer: Err(_), .. } | Deed::Query { .. } | Deed::Note(_) => None,
+        Deed::Call { tool, args, answer: Err(refusal), .. } => {
+            Some(refused_in_words(tool, args, &refusal.code))
+        }
+        Deed::Query { .. } | Deed::Note(_) => None,
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::plain_script::{judge_in_words, new_run};
+use super::plain_script::{judge_in_words, new_run, refused_in_words};
 use super::{Deed, Transcript, predictions};
 use crate::session::RunError;
 
@@ -42,7 +42,10 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
                     act.day
                 )));
             }
-            Deed::Call { answer: Err(_), .. } | Deed::Query { .. } | Deed::Note(_) => {}
+            Deed::Call { tool, args, answer: Err(refusal), .. } => {
+                text += &format!("{}\n", refused_in_words(tool, args, &refusal.code));
+            }
+            Deed::Query { .. } | Deed::Note(_) => {}
         }
     }
     Ok(text)

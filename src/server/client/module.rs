@@ -1,4 +1,4 @@
-//! One module of the Python client: a function for each tool, with hints and docstring of the catalogue.
+//! One module of the Python client: a method and a function for each tool, with hints and docstring of the catalogue.
 
 use std::fmt::Write;
 
@@ -14,56 +14,68 @@ pub fn name(module: Module) -> &'static str {
     if module == Module::Time { "scripts" } else { module.id() }
 }
 
-/// The source of a module.
+/// Name of the class in Python that holds the tools of a module.
+fn class(module: Module) -> String {
+    let name = name(module);
+    name[..1].to_uppercase() + &name[1..]
+}
+
+/// The source of a module: a class whose methods are the tools, and functions that call those of the default connection.
 pub fn text(module: Module, numbers: &Numbers) -> String {
+    let (name, class) = (name(module), class(module));
     let mut text = format!(
-        "\"\"\"The tools of {}.\n\nEach function calls the tool of its name; arguments left out are not sent. A refusal \
+        "\"\"\"The tools of {name}.\n\nEach function calls the tool of its name; arguments left out are not sent. A refusal \
          raises NovamindError.\n\"\"\"\nfrom __future__ import annotations\n\nfrom typing import Any, Dict, List, Optional\n\n\
-         from .connection import call\n",
-        name(module)
+         from .connection import Connection, default\n\n\nclass {class}:\n    \"\"\"The tools of {name}, of one run.\"\"\"\n\n    \
+         def __init__(self, connection: Connection) -> None:\n        self._connection = connection\n"
     );
     // These have functions of the package.
     let elsewhere = [ToolId::NextWeek, ToolId::Query, ToolId::GetVars];
-    for spec in schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id)) {
-        text += &function(spec, numbers);
-    }
+    let own = || schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id));
+    own().for_each(|spec| text += &method(spec, numbers));
+    let _ = writeln!(text, "\n\n_default = {class}(default)");
+    own().for_each(|spec| {
+        let _ = writeln!(text, "{0} = _default.{0}", spec.name());
+    });
     text
 }
 
-fn function(spec: &Spec, numbers: &Numbers) -> String {
+fn method(spec: &Spec, numbers: &Numbers) -> String {
     let mut sorted: Vec<&Argument> = spec.arguments.iter().collect();
     sorted.sort_by_key(|argument| !argument.required);
-    let parameters: Vec<String> = sorted.iter().map(|argument| parameter(argument)).collect();
-    let mut text = format!("\n\ndef {}({}) -> Dict[str, Any]:\n", spec.name(), parameters.join(", "));
+    let arguments = sorted.iter().map(|argument| parameter(argument));
+    let parameters: Vec<String> = std::iter::once("self".to_owned()).chain(arguments).collect();
+    let mut text = format!("\n    def {}({}) -> Dict[str, Any]:\n", spec.name(), parameters.join(", "));
     let summary = numbers.fill(spec.summary);
     let effect = numbers.fill(spec.effect);
     let cost = numbers.fill(spec.cost);
-    text += &wrapped(&format!("\"\"\"{summary}."), 4, 4);
+    text += &wrapped(&format!("\"\"\"{summary}."), 8, 8);
     if !effect.is_empty() {
-        text += &format!("\n{}", wrapped(&format!("Effect ({}): {effect}", spec.when.id()), 4, 4));
+        text += &format!("\n{}", wrapped(&format!("Effect ({}): {effect}", spec.when.id()), 8, 8));
     }
-    text += &format!("\n{}", wrapped(&format!("Cost: {cost}."), 4, 4));
+    text += &format!("\n{}", wrapped(&format!("Cost: {cost}."), 8, 8));
     if !sorted.is_empty() {
-        text += "\n    Args:\n";
+        text += "\n        Args:\n";
         for argument in &sorted {
             let words = format!("{}: {} ({})", argument.name, argument.doc, argument.kind.words());
-            text += &wrapped(&numbers.fill(&words), 8, 12);
+            text += &wrapped(&numbers.fill(&words), 12, 16);
         }
     }
     if !spec.returns.is_empty() {
-        text += "\n    Returns:\n";
+        text += "\n        Returns:\n";
         for output in spec.returns {
             let words = format!("{}: {} ({})", output.name, output.doc, output.kind);
-            text += &wrapped(&numbers.fill(&words), 8, 12);
+            text += &wrapped(&numbers.fill(&words), 12, 16);
         }
     }
     if !spec.refusals.is_empty() {
-        text += "\n    Raises:\n";
-        text += &wrapped(&format!("NovamindError: code {}", spec.refusals.join(", ")), 8, 12);
+        text += "\n        Raises:\n";
+        text += &wrapped(&format!("NovamindError: code {}", spec.refusals.join(", ")), 12, 16);
     }
-    text += "    \"\"\"\n";
+    text += "        \"\"\"\n";
     let sent: Vec<String> = spec.arguments.iter().map(|it| format!("\"{0}\": {0}", it.name)).collect();
-    let _ = writeln!(text, "    return call(\"{}\", {{{}}})", spec.name(), sent.join(", "));
+    let _ =
+        writeln!(text, "        return self._connection.call(\"{}\", {{{}}})", spec.name(), sent.join(", "));
     text
 }
 

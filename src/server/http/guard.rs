@@ -22,8 +22,8 @@ impl Guard {
     /// Looks at the head of a request: none if it may be asked, else the answer.
     pub fn bar(&self, head: &HeaderMap) -> Option<Answer> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
-        if !text(HOST).is_some_and(is_loopback) {
-            let message = "the Host header must name this machine: 127.0.0.1, localhost or [::1]";
+        if head.get_all(HOST).iter().count() != 1 || !text(HOST).is_some_and(is_loopback) {
+            let message = "a request needs one Host header, and it must name this machine: 127.0.0.1, localhost or [::1]";
             return Some(Answer::wrong(Status::Forbidden, "host", message));
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
@@ -32,13 +32,18 @@ impl Guard {
             return Some(Answer::wrong(Status::Forbidden, "origin", message));
         }
         let expected = self.token.as_deref()?;
-        let given = text(AUTHORIZATION).and_then(|value| value.strip_prefix("Bearer ")).unwrap_or_default();
-        if same(given, expected) {
+        if same(text(AUTHORIZATION).and_then(token_in).unwrap_or_default(), expected) {
             return None;
         }
         let message = "requests must carry the token: Authorization: Bearer TOKEN";
         Some(Answer::wrong(Status::Unauthorized, "token", message))
     }
+}
+
+/// Returns the token of an `Authorization` header. The name of the scheme is read in any letter case.
+fn token_in(header: &str) -> Option<&str> {
+    let (scheme, token) = header.split_once(' ')?;
+    scheme.eq_ignore_ascii_case("bearer").then(|| token.trim_start_matches(' '))
 }
 
 /// Whether `HOST` or `HOST:PORT` names this machine.
@@ -115,6 +120,9 @@ mod tests {
             assert_eq!(barred, Some(Status::Forbidden), "{host}");
         }
         assert!(open.bar(&HeaderMap::new()).is_some());
+        let mut twice = head(&[(HOST, "127.0.0.1")]);
+        twice.append(HOST, "127.0.0.1".parse().expect("a value"));
+        assert!(open.bar(&twice).is_some());
         let page = |origin| head(&[(HOST, "127.0.0.1"), (ORIGIN, origin)]);
         assert!(open.bar(&page("http://localhost:3000")).is_none());
         for origin in ["null", "https://example.org", "http://127.0.0.1.evil.net"] {
@@ -122,8 +130,10 @@ mod tests {
         }
         let closed = Guard { token: Some("secret".to_owned()) };
         let carrying = |value| head(&[(HOST, "127.0.0.1"), (AUTHORIZATION, value)]);
-        assert!(closed.bar(&carrying("Bearer secret")).is_none());
-        for value in ["Bearer secre", "Bearer ", "secret", "bearer secret"] {
+        for value in ["Bearer secret", "bearer secret", "BEARER  secret"] {
+            assert!(closed.bar(&carrying(value)).is_none(), "{value}");
+        }
+        for value in ["Bearer secre", "Bearer ", "Bearer", "secret", "basic secret", "bearer Secret"] {
             let barred = closed.bar(&carrying(value)).map(|answer| answer.status);
             assert_eq!(barred, Some(Status::Unauthorized), "{value}");
         }

@@ -2,6 +2,7 @@
 
 mod body;
 mod guard;
+mod not_numbers;
 mod routes;
 mod shutdown;
 
@@ -14,18 +15,22 @@ use std::time::Duration;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use hyper_util::service::TowerToHyperService;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
 use super::announcement::Announcement;
 use super::owner::{Door, OnDefect, Owner};
+use super::request::{Answer, Status};
 use crate::session::{RunError, Session, Via};
 use guard::Guard;
 use routes::Served;
 use shutdown::Shutdown;
 
-/// Connections that are open at once; further ones are told to come back.
-const MOST_CONNECTIONS: usize = 64;
+/// Connections that are open at once. Further ones are refused with status 503.
+const MAX_CONNECTIONS: usize = 64;
+/// A refused connection is closed after this time at the latest.
+const REFUSAL_DEADLINE: Duration = Duration::from_secs(2);
 /// A head of a request that takes longer closes its connection.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
 /// Requests in hand when the server is asked to stop have this long to arrive and be answered.
@@ -131,7 +136,8 @@ async fn take_connections(
     mut shutdown: Shutdown,
     owner: &Owner,
 ) {
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let (places, refusals) =
+        (Arc::new(Semaphore::new(MAX_CONNECTIONS)), Arc::new(Semaphore::new(MAX_CONNECTIONS)));
     let open = GracefulShutdown::new();
     let mut http = hyper::server::conn::http1::Builder::new();
     http.timer(TokioTimer::new()).header_read_timeout(HEAD_DEADLINE);
@@ -148,7 +154,12 @@ async fn take_connections(
             () = shutdown.asked() => break,
         };
         let Ok(place) = places.clone().try_acquire_owned() else {
-            turn_away(&stream);
+            if let Ok(place) = refusals.clone().try_acquire_owned() {
+                tokio::spawn(async move {
+                    let _ = tokio::time::timeout(REFUSAL_DEADLINE, refuse(stream)).await;
+                    drop(place);
+                });
+            }
             continue;
         };
         let connection =
@@ -175,8 +186,20 @@ async fn take_connections(
     }
 }
 
-fn turn_away(stream: &TcpStream) {
-    let _ = stream.try_write(
-        b"HTTP/1.1 503 Service Unavailable\r\ncontent-length: 0\r\nretry-after: 1\r\nconnection: close\r\n\r\n",
+/// Answers a connection for which there is no room, and reads what it sends until it closes: a connection that is closed with
+/// unread data can lose the answer.
+async fn refuse(mut stream: TcpStream) {
+    let message =
+        format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");
+    let body = Answer::wrong(Status::Failed, "too_many_connections", message).body.to_string();
+    let head = format!(
+        "HTTP/1.1 503 Service Unavailable\r\ncontent-type: application/json\r\ncontent-length: {}\r\nretry-after: 1\r\n\
+         connection: close\r\n\r\n",
+        body.len()
     );
+    let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;
+    if answered.is_ok() && stream.shutdown().await.is_ok() {
+        let mut unread = [0; 4096];
+        while matches!(stream.read(&mut unread).await, Ok(1..)) {}
+    }
 }

@@ -9,17 +9,17 @@ use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use tokio::sync::Notify;
 
-use super::body::read_object;
+use super::body::{Fields, read_object};
 use super::guard::Guard;
 use crate::database::tables;
 use crate::server::openapi;
 use crate::server::owner::Handle;
 use crate::server::request::{Answer, Request, Status};
 use crate::tools::describe::{ToolDocument, document};
-use crate::tools::{CATALOGUE, Numbers};
+use crate::tools::{CATALOGUE, Numbers, ToolId};
 
 /// What the routes need.
 #[derive(Clone)]
@@ -100,16 +100,29 @@ async fn ask(State(door): State<Routed>, request: Request) -> Response {
     response(&door.handle.ask(request).await)
 }
 
-async fn ask_with(door: &Routed, body: Body, request: impl FnOnce(Fields) -> Request) -> Response {
+async fn ask_with(
+    door: &Routed,
+    tool: ToolId,
+    body: Body,
+    request: impl FnOnce(Fields) -> Request,
+) -> Response {
     match read_object(body).await {
-        Ok(fields) => response(&door.handle.ask(request(Fields(fields))).await),
+        Ok(mut fields) => {
+            let request = match fields.refusal.take() {
+                Some(refusal) => {
+                    Request::Refused { tool: tool.name().to_owned(), args: fields.rest(), refusal }
+                }
+                None => request(fields),
+            };
+            response(&door.handle.ask(request).await)
+        }
         Err(wrong) => closing(response(&wrong)),
     }
 }
 
 async fn call(State(door): State<Routed>, body: Body) -> Response {
     let mut fields = match read_object(body).await {
-        Ok(fields) => Fields(fields),
+        Ok(fields) => fields,
         Err(wrong) => return closing(response(&wrong)),
     };
     // Where the name of the tool is no text, it names no tool.
@@ -122,41 +135,42 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Value::Null => json!({}),
         given => given,
     };
-    response(&door.handle.ask(Request::of_tool(&tool, args)).await.told_as_call())
+    let request = match fields.refusal.take() {
+        Some(refusal) => Request::Refused { tool, args, refusal },
+        None => Request::of_tool(&tool, args, fields.take("request_id")),
+    };
+    response(&door.handle.ask(request).await.told_as_call())
 }
 
 async fn next_week(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| Request::NextWeek {
+    ask_with(&door, ToolId::NextWeek, body, |mut fields| Request::NextWeek {
         rationale: fields.take("rationale"),
         predictions: fields.take("predictions"),
+        expected_day: fields.take("expected_day"),
+        request_id: fields.take("request_id"),
     })
     .await
 }
 
 async fn query(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| Request::Query { sql: fields.take("sql") }).await
+    ask_with(&door, ToolId::Query, body, |mut fields| Request::Query { sql: fields.take("sql") }).await
 }
 
 async fn keep_script(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| Request::KeepDailyScript {
+    ask_with(&door, ToolId::RegisterScript, body, |mut fields| Request::KeepDailyScript {
         name: fields.take("name"),
         content: fields.take("content"),
+        request_id: fields.take("request_id"),
     })
     .await
 }
 
 async fn forget_script(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, body, |mut fields| Request::ForgetDailyScript { name: fields.take("name") }).await
-}
-
-/// The fields of a body.
-struct Fields(Map<String, Value>);
-
-impl Fields {
-    /// A field; null if it is not there.
-    fn take(&mut self, name: &str) -> Value {
-        self.0.remove(name).unwrap_or(Value::Null)
-    }
+    ask_with(&door, ToolId::DeleteScript, body, |mut fields| Request::ForgetDailyScript {
+        name: fields.take("name"),
+        request_id: fields.take("request_id"),
+    })
+    .await
 }
 
 fn status_code(status: Status) -> StatusCode {
@@ -175,7 +189,11 @@ fn status_code(status: Status) -> StatusCode {
 }
 
 fn response(answer: &Answer) -> Response {
-    json_response(status_code(answer.status), &answer.body)
+    let mut response = json_response(status_code(answer.status), &answer.body);
+    if answer.status == Status::Busy {
+        response.headers_mut().insert(header::RETRY_AFTER, header::HeaderValue::from_static("1"));
+    }
+    response
 }
 
 /// A response after which the connection ends: what is left of a body that was not read would be taken for the next request.

@@ -2,6 +2,7 @@
 
 mod refusal;
 mod resources;
+mod stdio;
 mod tools;
 
 pub use refusal::refuse_mcp;
@@ -16,13 +17,13 @@ use rmcp::model::{
     ServerConfig, Tool,
 };
 use rmcp::service::RequestContext;
-use rmcp::transport::stdio;
 use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
 use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use super::page::{PageOf, goal_and_rules};
 use super::request::Request;
+use super::schema::REQUEST_ID;
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
 
@@ -47,8 +48,12 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
     let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
     let served = runtime.block_on(async {
-        let running = McpDoor { handle, numbers, goal }.serve(stdio()).await.map_err(io::Error::other)?;
-        running.waiting().await.map_err(io::Error::other)
+        let (streams, writing) = stdio::open();
+        let running = McpDoor { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
+        let ended = running.waiting().await.map_err(io::Error::other);
+        // What was answered last may not be written yet.
+        writing.await.map_err(io::Error::other)?;
+        ended
     });
     // Reading standard input cannot be cancelled, and nothing is waited for any more.
     runtime.shutdown_background();
@@ -93,7 +98,9 @@ impl ServerHandler for McpDoor {
         request: CallToolRequestParams,
         _: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
-        let request = Request::of_tool(&request.name, request.arguments.unwrap_or_default().into());
+        let mut arguments = request.arguments.unwrap_or_default();
+        let request_id = arguments.remove(REQUEST_ID).unwrap_or_default();
+        let request = Request::of_tool(&request.name, arguments.into(), request_id);
         Ok(tools::result(self.handle.ask(request).await).into())
     }
 

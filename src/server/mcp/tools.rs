@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use rmcp::model::{CallToolResult, Tool, ToolAnnotations};
+use serde_json::Value;
 
 use crate::server::request::Answer;
 use crate::server::schema;
@@ -20,7 +21,11 @@ pub fn named(name: &str, numbers: &Numbers) -> Option<Tool> {
 }
 
 fn tool(spec: &'static Spec, numbers: &Numbers) -> Tool {
-    let arguments = Arc::new(schema::arguments(spec, numbers));
+    let mut arguments = schema::arguments(spec, numbers);
+    if let Some(Value::Object(properties)) = arguments.get_mut("properties") {
+        properties.extend(schema::of_retries(spec.id));
+    }
+    let arguments = Arc::new(arguments);
     Tool::new(spec.name(), manual(spec, numbers), arguments).with_annotations(hints(spec))
 }
 

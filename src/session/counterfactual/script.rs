@@ -161,10 +161,11 @@ fn move_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<Move> {
         return Some(Move::Parameter(PastSetting { day: line.day, change }));
     }
     let Record::Call(Call { tool, args, outcome, reversal, .. }) = &line.record else { return None };
-    let kind = tool.tool().spec().kind;
+    let tool = tool.known()?;
+    let kind = tool.spec().kind;
     (kind.acts() && kind != Kind::Time).then(|| {
         let accepted = matches!(outcome, Outcome::Accepted(_));
-        let (tool, args, reversal) = (*tool, args.clone(), *reversal);
+        let (args, reversal) = (args.clone(), *reversal);
         Move::Call(PastCall { seq: line.seq, day: line.day, tool, args, accepted, reversal })
     })
 }

@@ -12,7 +12,7 @@ use crate::session::figures::changes::{Change, changes, daily_cost};
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::research_outlook::ResearchOutlook;
 use crate::session::state::Session;
-use crate::session::trajectory::record::{Call, Outcome, RefusalRecord, Reversal, Via};
+use crate::session::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
 use crate::session::trajectory::{Durability, Record};
 use crate::tools::{
     Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, Tool, ToolId, View,
@@ -37,6 +37,15 @@ pub struct Preview {
     pub changes: Vec<Change>,
     /// Of an R&D project: what it can be expected to take and to gain.
     pub research: Option<ResearchOutlook>,
+}
+
+/// What the line of a call says besides the call and its outcome.
+#[derive(Debug, Default)]
+pub(in crate::session) struct Marks {
+    /// What it does to an earlier call.
+    pub(in crate::session) reversal: Option<Reversal>,
+    /// The id that the program gave it.
+    pub(in crate::session) request: Option<RequestId>,
 }
 
 /// An accepted call whose draws are known.
@@ -115,7 +124,7 @@ impl Session {
     /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
     /// changed then.
     pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Answer, Refusal> {
-        self.call_recorded(tool.as_ref(), arguments, via, None)
+        self.call_recorded(tool.as_ref(), arguments, via, Marks::default())
     }
 
     pub(in crate::session) fn call_recorded(
@@ -123,10 +132,16 @@ impl Session {
         name: &str,
         arguments: &Value,
         via: Via,
-        reversal: Option<Reversal>,
+        Marks { reversal, request }: Marks,
     ) -> Result<Answer, Refusal> {
         let started = Instant::now();
-        let tool = self.tool(name)?;
+        let tool = match self.tool(name) {
+            Ok(tool) => tool,
+            Err(refusal) => {
+                self.record_refusal(name, arguments, via, &refusal, request);
+                return Err(refusal);
+            }
+        };
         let allowed = self.refuse_if_over(tool.spec().kind);
         let allowed = allowed.and_then(|()| self.refuse_outside_lesson(tool.spec().id, via));
         let planned = allowed.and_then(|()| self.plan(tool, arguments)).and_then(|(given, planned)| {
@@ -141,19 +156,19 @@ impl Session {
         let took_ms = started.elapsed().as_secs_f64() * 1e3;
         let called = |args: Value, outcome| {
             Record::Call(Call {
-                tool: tool.spec().id,
+                tool: tool.spec().id.into(),
                 args,
                 outcome,
                 via,
                 took_ms: rounded(took_ms),
                 reversal,
+                request: request.clone(),
             })
         };
         match planned {
             Err(refusal) => {
-                // A refusal changes nothing, so a disk that refuses its line takes nothing away.
-                let record = called(arguments.clone(), refusal.outcome());
-                self.note(record);
+                let record = called(arguments.clone(), Outcome::Refused(refusal.clone().into()));
+                self.note_refused(record);
                 Err(refusal)
             }
             Ok((given, accepted, answer)) => {
@@ -161,6 +176,7 @@ impl Session {
                 let record =
                     called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.to_json()));
                 self.append(&record, durability).map_err(not_saved)?;
+                self.note_answer(&record);
                 self.apply(tool.spec(), &given, reversal, accepted);
                 Ok(answer)
             }
@@ -227,13 +243,18 @@ impl Session {
 
     pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
         find(name).ok_or_else(|| {
-            let near = crate::tools::catalogue::nearest(name);
-            let help = if near.is_empty() {
-                String::new()
-            } else {
-                format!("; did you mean {}?", near.join(" or "))
+            let message = match name {
+                "" => "the call names no tool; novamind tools lists them".to_owned(),
+                name => {
+                    let near = crate::tools::catalogue::nearest(name);
+                    let help = match near.is_empty() {
+                        true => String::new(),
+                        false => format!("; did you mean {}?", near.join(" or ")),
+                    };
+                    format!("tool {} does not exist{help}", CalledTool::unknown(name))
+                }
             };
-            Refusal::at("tool", "unknown_tool", format!("tool {name} does not exist{help}"))
+            Refusal::at("tool", "unknown_tool", message)
         })
     }
 
@@ -301,17 +322,36 @@ impl Session {
         }
     }
 
-    /// Records a refused call that has no other place, for instance a refused week.
+    /// Records a refused call that no tool received, for instance a refused week.
     pub(in crate::session) fn record_refusal(
         &mut self,
-        tool: ToolId,
+        tool: &str,
         arguments: &Value,
         via: Via,
         refusal: &Refusal,
+        request: Option<RequestId>,
     ) {
-        let (args, outcome) = (arguments.clone(), refusal.outcome());
-        let record = Record::Call(Call { tool, args, outcome, via, took_ms: 0.0, reversal: None });
+        let tool = find(tool).map_or_else(|| CalledTool::unknown(tool), |tool| tool.spec().id.into());
+        let (args, outcome) = (arguments.clone(), Outcome::Refused(refusal.clone().into()));
+        let call = Call { tool, args, outcome, via, took_ms: 0.0, reversal: None, request };
+        self.note_refused(Record::Call(call));
+    }
+
+    /// Records a call that was refused before it reached the session.
+    pub fn record_refused_call(&mut self, tool: &str, arguments: &Value, via: Via, refusal: &Refusal) {
+        self.record_refusal(tool, arguments, via, refusal, None);
+    }
+
+    /// Records a refused call. A refusal changes nothing, so a disk that refuses its line takes nothing away.
+    fn note_refused(&mut self, record: Record) {
+        self.note_answer(&record);
         self.note(record);
+    }
+
+    fn note_answer(&mut self, record: &Record) {
+        if let Record::Call(call) = record {
+            self.history.first_answers.note_call(call);
+        }
     }
 }
 
@@ -344,21 +384,13 @@ fn rounded(took_ms: f64) -> f64 {
     (took_ms * 1e3).round() / 1e3
 }
 
-impl Refusal {
-    /// As a line of the trajectory has it.
-    fn outcome(&self) -> Outcome {
-        let Refusal { code, message, field, results: _ } = self.clone();
-        Outcome::Refused(RefusalRecord { code: code.to_owned(), message, field })
-    }
-}
-
 impl Session {
     /// Applies an accepted call of a trajectory again.
     ///
     /// # Errors
     /// What speaks against it now: the line was changed, or the program is another.
     pub(in crate::session) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
-        let tool = call.tool.tool();
+        let tool = call.tool.known().ok_or("the call names an unknown tool")?.tool();
         let (given, planned) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let Planned { command, change, row, reply } = planned;
         let resolved = self.simulation.resolve(command);

@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::act::not_saved;
 use super::facts_chain::StateHash;
+use super::once::arguments_of_week;
 use super::recorder::Recorder;
 use super::simulation::Simulation;
 use crate::database::{Entry, ForecastRow, ProjectionError};
@@ -14,7 +16,7 @@ use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::{Forecasts, WeekFigures};
 use crate::session::resume::snapshot::WEEKS_BETWEEN;
 use crate::session::state::Session;
-use crate::session::trajectory::record::{Advance, Closing, End, Ended, Via};
+use crate::session::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
 use crate::session::trajectory::{Durability, Record, seconds};
 use crate::session::xray::last_day::Xray;
 use crate::tools::{self, Kind, Refusal, ToolId};
@@ -35,8 +37,22 @@ pub struct DayReport<'a> {
     pub xray: Option<Xray<'a>>,
 }
 
+/// What is filed before a week, not yet checked.
+pub(in crate::session) struct Filing<'a> {
+    /// Why.
+    pub(in crate::session) rationale: &'a Value,
+    /// Forecasts of four horizons.
+    pub(in crate::session) predictions: &'a Value,
+    /// Which of them the naive projection filled in.
+    pub(in crate::session) filled_naively: [bool; 4],
+    /// The day on which the run must be; null if any will do.
+    pub(in crate::session) expected_day: &'a Value,
+    /// The id that the program gave the request.
+    pub(in crate::session) request: Option<RequestId>,
+}
+
 /// A week, or the rest of one, that was simulated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Week {
     /// Its figures.
     pub figures: WeekFigures,
@@ -101,7 +117,20 @@ impl Session {
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Week, Refusal> {
+        let filing =
+            Filing { rationale, predictions, filled_naively, expected_day: &Value::Null, request: None };
+        self.file_week(filing, via, progress)
+    }
+
+    pub(in crate::session) fn file_week(
+        &mut self,
+        filing: Filing<'_>,
+        via: Via,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let Filing { rationale, predictions, filled_naively, expected_day, request } = filing;
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
+        let allowed = allowed.and_then(|()| self.refuse_unexpected_day(expected_day));
         let possible = allowed.and_then(|()| self.simulation.refuse_crowded_day());
         let unasked = Value::from(UNASKED);
         let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
@@ -113,8 +142,8 @@ impl Session {
         let (text, forecasts) = match checked {
             Ok(checked) => checked,
             Err(refusal) => {
-                let arguments = json!({ "rationale": rationale, "predictions": predictions });
-                self.record_refusal(ToolId::NextWeek, &arguments, via, &refusal);
+                let arguments = arguments_of_week(rationale, predictions, expected_day);
+                self.record_refusal(ToolId::NextWeek.name(), &arguments, via, &refusal, request);
                 return Err(refusal);
             }
         };
@@ -125,11 +154,31 @@ impl Session {
             forecasts: forecasts.filed(),
             via,
             calculations: calculated.clone(),
+            request: request.clone(),
         };
         let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
+        self.history.first_answers.begin_week(request);
         self.history.calculated = calculated;
         self.file(text, &forecasts, &at);
         Ok(self.run_week(progress))
+    }
+
+    /// Refuses a week if the run is not on the day that the program expects.
+    fn refuse_unexpected_day(&self, expected: &Value) -> Result<(), Refusal> {
+        let day = self.simulation.world.day;
+        if expected.is_null() || expected.as_u64() == Some(day.into()) {
+            return Ok(());
+        }
+        let (code, message) = match expected.is_i64() || expected.is_u64() {
+            true => (
+                "unexpected_day",
+                format!("the run is on day {day}, not on day {expected}; no day has passed"),
+            ),
+            false => {
+                ("wrong_type", "expected_day must be a whole number: the day on which the run is".to_owned())
+            }
+        };
+        Err(Refusal::at("expected_day", code, message))
     }
 
     /// Simulates single days of a debug run, at most to the end of the week.
@@ -298,6 +347,7 @@ impl Session {
         let remarks = remark.into_iter().chain(self.database_remark()).chain(self.voice.take_notice());
         let remarks: Vec<String> = remarks.collect();
         let week = self.report((!remarks.is_empty()).then(|| remarks.join(". ")));
+        self.history.first_answers.note_week(|| week.clone());
         // The database is written once everything is told: until then the processors are needed here.
         if snapshot {
             self.keep_snapshot(|| state.0, false);
@@ -343,10 +393,25 @@ impl Session {
 
     pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.history.ended = Some(ended);
+        self.note_end(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
         let problem = self.append_done(&Record::End(end));
         self.closing_line.clone_from(&self.position.line_hash);
         problem
+    }
+
+    /// Keeps the answer to a week that a replay simulated, if its request carried an id.
+    pub(in crate::session) fn note_answered_week(&mut self) {
+        let mut answers = std::mem::take(&mut self.history.first_answers);
+        answers.note_week(|| self.report(None));
+        self.history.first_answers = answers;
+    }
+
+    /// Adds the end of the run to the answer to its last week; a run that was given up did not end with it.
+    pub(in crate::session) fn note_end(&mut self, ended: Ended) {
+        if ended != Ended::Abandoned {
+            self.history.first_answers.note_end(self.simulation.world.day, ended);
+        }
     }
 
     /// What a line says that closes days: what a replay has to arrive at.

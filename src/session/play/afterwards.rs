@@ -8,6 +8,7 @@ use std::path::Path;
 use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::study::answer_book::AnswerBook;
+use crate::session::trajectory::record::Outcome;
 use crate::session::trajectory::{Line, Record, Trajectory, read_regular_file};
 
 /// Name of the file in the folder of the run.
@@ -45,15 +46,17 @@ impl Session {
         }
     }
 
-    /// Statements that were kept, and nothing else: the company is as it ended.
+    /// Statements that were kept and answers to requests, and nothing else: the company is as it ended.
     fn keep_again(&mut self, line: &Line) {
         match &line.record {
             Record::Query(query) => self.remember_query(query),
-            record => {
-                if let Some((call, answer)) = record.accepted_call() {
+            Record::Call(call) => {
+                self.history.first_answers.note_call(call);
+                if let Outcome::Accepted(answer) = &call.outcome {
                     let _ = self.replay_call(call, answer);
                 }
             }
+            _ => {}
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
 
 use super::irrevocable::Irrevocable;
+use super::once::FirstAnswers;
 use super::simulation::Simulation;
 use super::surroundings::Calculated;
 use super::this_week::ThisWeek;
@@ -43,6 +44,8 @@ pub(in crate::session) struct History {
     pub(in crate::session) called: Vec<LedgerEntry>,
     /// How the run ended, if it did.
     pub(in crate::session) ended: Option<Ended>,
+    /// First answers to requests that carried an id.
+    pub(in crate::session) first_answers: FirstAnswers,
 }
 
 impl History {
@@ -64,6 +67,7 @@ impl History {
             last_dashboard: None,
             called: Vec::new(),
             ended: None,
+            first_answers: FirstAnswers::default(),
         }
     }
 

@@ -13,6 +13,7 @@ pub(in crate::session) mod irrevocable;
 pub(in crate::session) mod judging;
 pub(in crate::session) mod machine;
 pub(in crate::session) mod memo;
+pub(in crate::session) mod once;
 pub(in crate::session) mod overrides;
 pub(in crate::session) mod parameters;
 pub(in crate::session) mod personal_clock;

@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value};
 
+use super::act::Marks;
 use super::this_week::Step;
 use crate::session::figures::changes::{Change, changes};
 use crate::session::figures::journal::JournalEntry;
@@ -55,7 +56,8 @@ impl Session {
     fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
         let before = self.simulation.world.settings.clone();
         let arguments = restoring_arguments(step.tool, &before, &step.restores)?;
-        self.call_recorded(step.tool.name(), &Value::Object(arguments), via, Some(reversal))?;
+        let marks = Marks { reversal: Some(reversal), request: None };
+        self.call_recorded(step.tool.name(), &Value::Object(arguments), via, marks)?;
         Ok(changes(&before, &self.simulation.world.settings))
     }
 }

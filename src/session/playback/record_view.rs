@@ -66,6 +66,7 @@ mod tests {
             forecasts: vec![one(7), one(28)],
             via: Via::Form,
             calculations: Vec::new(),
+            request: None,
         };
         let line = Line::alone(5, 14, "", Record::Advance(advance));
         let view = RecordView::of(&line, 21, &|due| (due == 21).then_some(90.0));

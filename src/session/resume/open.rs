@@ -228,18 +228,24 @@ impl Session {
         match &line.record {
             Record::Start(_) => self.project_opening(),
             Record::Call(call) => {
+                self.history.first_answers.note_call(call);
                 if let Outcome::Accepted(answer) = &call.outcome {
                     self.replay_call(call, answer)?;
                 }
             }
-            Record::Advance(filed) => self.replay_forecasts(filed, &line.at)?,
+            Record::Advance(filed) => {
+                self.history.first_answers.begin_week(filed.request.clone());
+                self.replay_forecasts(filed, &line.at)?;
+            }
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
                 let state = self.run_days(from.saturating_add(closing.days_run), tell);
                 self.compare(from, &state, closing)?;
+                self.note_answered_week();
                 self.commit_projection();
             }
             Record::End(end) => {
+                self.note_end(end.reason);
                 self.history.ended = Some(end.reason);
                 self.commit_projection();
             }

@@ -24,17 +24,19 @@ use crate::session::figures::changes::Decisions;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
+use crate::session::play::advance::Week;
 use crate::session::play::facts_chain::FactsChain;
 use crate::session::play::feed::Feed;
 use crate::session::play::history::History;
 use crate::session::play::irrevocable::Irrevocable;
+use crate::session::play::once::FirstAnswers;
 use crate::session::play::overrides::Overrides;
 use crate::session::play::simulation::Simulation;
 use crate::session::play::surroundings::Calculated;
 use crate::session::play::this_week::{Step, ThisWeek};
 use crate::session::state::Session;
-use crate::session::trajectory::record::Ended;
-use crate::session::trajectory::{Line, hash_of_first_line};
+use crate::session::trajectory::record::{Ended, RequestId};
+use crate::session::trajectory::{Line, Record, hash_of_first_line};
 use crate::tools::Notebook;
 use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use crate::world::params::Params;
@@ -86,6 +88,9 @@ struct Notes<'a> {
     last_dashboard: Option<Cow<'a, str>>,
     facts_chain: (String, bool),
     ended: Option<Ended>,
+    /// Answers to weeks whose requests carried an id.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    answered_weeks: Vec<(RequestId, Week)>,
 }
 
 impl Notes<'_> {
@@ -192,6 +197,12 @@ impl Snapshot {
         simulation.trace = reader.read()?;
         simulation.facts_chain = FactsChain::resume(chain, notes.facts_chain.1);
         simulation.feed = notes.feed.into_owned();
+        let mut first_answers = FirstAnswers::of_weeks(notes.answered_weeks);
+        for line in seen {
+            if let Record::Call(call) = &line.record {
+                first_answers.note_call(call);
+            }
+        }
         let history = History {
             cash_by_day: reader.read()?,
             group_weeks: reader.read()?,
@@ -212,6 +223,7 @@ impl Snapshot {
             calculated: notes.calculated.into_owned(),
             last_dashboard: notes.last_dashboard.map(Cow::into_owned),
             ended: notes.ended,
+            first_answers,
         };
         let same = reader.left() == 0 && simulation.state_hash().0 == self.header.state_hash;
         same.then(|| Recalled { simulation, history, notebook: notes.notebook.into_owned() })
@@ -287,6 +299,7 @@ impl Session {
             last_dashboard: history.last_dashboard.as_deref().map(Cow::Borrowed),
             facts_chain: (chain.hash().to_hex().to_string(), chain.is_closed()),
             ended: history.ended,
+            answered_weeks: history.first_answers.weeks(),
         };
         let rows: u32 = simulation.world.customers.active().iter().sum();
         let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);

@@ -91,7 +91,7 @@ fn decision(line: &Line) -> Option<(&str, Value)> {
         return Some((&setting.key, setting.new.clone()));
     }
     let (call, _) = line.record.accepted_call()?;
-    call.tool.spec().kind.acts().then(|| (call.tool.name(), call.args.clone()))
+    call.tool.known()?.spec().kind.acts().then(|| (call.tool.name(), call.args.clone()))
 }
 
 /// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use novamind::session::{Configuration, Mode, NewRun, Session, Storage, Via};
+use novamind::session::{Configuration, Mode, NewRun, Session, Storage, Via, WeekRequest};
 use serde_json::{Map, Value, json};
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
@@ -197,6 +197,15 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     let calculation = json!({"name": "cash now", "code": "SELECT sum(amount) FROM ledger"});
     run.call("register_daily_calculation", &calculation, Via::Script).expect("a calculation");
     run.advance_given(&json!(""), &json!({}), [false; 4], Via::Form, &mut |_| {}).expect_err("no rationale");
+    run.call("set_wages", &json!({"A": 1}), Via::Mcp).expect_err("no tool");
+    run.call_once("set_prices", &json!({"A": 15}), Via::Http, &json!("a")).expect("a price");
+    let week = WeekRequest {
+        rationale: &json!("wait"),
+        predictions: &run.naive_forecasts().as_predictions(),
+        expected_day: &json!(0),
+        id: &json!("b"),
+    };
+    run.advance_once(&week, Via::Http).expect("a week");
     let forecasts = run.naive_forecasts();
     run.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     run.step(2, &mut |_| {}).expect("two days");
@@ -235,6 +244,12 @@ fn every_line_that_runs_write_is_as_the_schema_says() {
     );
     assert!(lines.iter().any(|line| line.get("calculations").is_some() && line["kind"] == "advance"));
     assert!(lines.iter().any(|line| line.get("undoes").is_some()));
+    for kind in ["call", "advance"] {
+        assert!(lines.iter().any(|line| line["kind"] == kind && line.get("request_id").is_some()), "{kind}");
+    }
+    assert!(
+        lines.iter().any(|line| line["tool"] == "set_wages" && line["refusal"]["code"] == "unknown_tool")
+    );
 }
 
 #[test]

@@ -3,14 +3,16 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use crate::tools::ToolId;
+use super::called_tool::CalledTool;
+use super::request_id::RequestId;
+use crate::tools::Refusal;
 
 /// A call of a tool.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "CallFields", into = "CallFields")]
+#[serde(try_from = "CallFields", into = "CallFields")]
 pub struct Call {
-    /// Tool.
-    pub tool: ToolId,
+    /// Tool; a name that no tool has if the call was refused for it.
+    pub tool: CalledTool,
     /// Arguments: as they were understood if it was accepted, as they were sent if it was refused.
     pub args: Value,
     /// What came of it.
@@ -21,6 +23,8 @@ pub struct Call {
     pub took_ms: f64,
     /// What it did to an earlier call.
     pub reversal: Option<Reversal>,
+    /// The id that the program gave it.
+    pub request: Option<RequestId>,
 }
 
 /// What came of a call.
@@ -67,7 +71,7 @@ pub enum Reversal {
 }
 
 /// A refusal as a line has it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RefusalRecord {
     /// Code.
     pub code: String,
@@ -76,12 +80,23 @@ pub struct RefusalRecord {
     /// Argument at fault.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
+    /// For several deals that were all refused: what is wrong with each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<Value>,
+}
+
+impl From<Refusal> for RefusalRecord {
+    fn from(refusal: Refusal) -> RefusalRecord {
+        let Refusal { code, message, field, results } = refusal;
+        let results = results.iter().filter_map(|result| serde_json::to_value(result).ok()).collect();
+        RefusalRecord { code: code.to_owned(), message, field, results }
+    }
 }
 
 /// The fields of a call, in their order.
 #[derive(Serialize, Deserialize)]
 struct CallFields {
-    tool: ToolId,
+    tool: CalledTool,
     args: Value,
     ok: bool,
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
@@ -94,19 +109,30 @@ struct CallFields {
     undoes: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     redoes: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    request_id: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    request_digest: Option<String>,
 }
 
-impl From<CallFields> for Call {
-    fn from(fields: CallFields) -> Call {
-        let unnamed = || RefusalRecord { code: String::new(), message: "refused".to_owned(), field: None };
+impl TryFrom<CallFields> for Call {
+    type Error = String;
+
+    fn try_from(fields: CallFields) -> Result<Call, String> {
+        if let (true, CalledTool::Unknown(name)) = (fields.ok, &fields.tool) {
+            return Err(format!("unknown tool `{name}` in an accepted call"));
+        }
+        let unnamed = || RefusalRecord { message: "refused".to_owned(), ..RefusalRecord::default() };
         let outcome = match fields.ok {
             true => Outcome::Accepted(fields.result.unwrap_or_default()),
             false => Outcome::Refused(fields.refusal.unwrap_or_else(unnamed)),
         };
         let redoes = fields.redoes.map(Reversal::Redoes);
         let reversal = fields.undoes.map(Reversal::Undoes).or(redoes);
+        let request =
+            fields.request_id.zip(fields.request_digest).map(|(id, digest)| RequestId { id, digest });
         let CallFields { tool, args, via, took_ms, .. } = fields;
-        Call { tool, args, outcome, via, took_ms, reversal }
+        Ok(Call { tool, args, outcome, via, took_ms, reversal, request })
     }
 }
 
@@ -121,8 +147,21 @@ impl From<Call> for CallFields {
             Some(Reversal::Redoes(seq)) => (None, Some(seq)),
             None => (None, None),
         };
+        let (request_id, request_digest) = call.request.map(|request| (request.id, request.digest)).unzip();
         let Call { tool, args, via, took_ms, .. } = call;
-        CallFields { tool, args, ok, result, refusal, via, took_ms, undoes, redoes }
+        CallFields {
+            tool,
+            args,
+            ok,
+            result,
+            refusal,
+            via,
+            took_ms,
+            undoes,
+            redoes,
+            request_id,
+            request_digest,
+        }
     }
 }
 

@@ -6,9 +6,11 @@
 mod activity;
 mod answers;
 mod call;
+mod called_tool;
 mod lesson;
 mod notes;
 mod presence;
+mod request_id;
 mod start;
 mod voice;
 mod week;
@@ -23,11 +25,13 @@ pub use activity::{
 };
 pub use answers::{Answered, Asked};
 pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
+pub use called_tool::CalledTool;
 pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
 pub use presence::{
     Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,
 };
+pub use request_id::RequestId;
 pub use start::{Parent, Start};
 pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
 pub use week::{Advance, Branch, Closing, End, Ended, FiledForecast, Override};

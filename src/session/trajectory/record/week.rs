@@ -6,6 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
 use super::call::Via;
+use super::request_id::RequestId;
 use super::start::Parent;
 use super::{shortest, shortest_if_any};
 use crate::session::play::surroundings::Calculated;
@@ -23,6 +24,9 @@ pub struct Advance {
     /// What the registered calculations said.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calculations: Vec<Calculated>,
+    /// The id that the program gave the request.
+    #[serde(flatten)]
+    pub request: Option<RequestId>,
 }
 
 impl Advance {

@@ -1,0 +1,91 @@
+//! Bodies with `NaN` or `Infinity`, which are not JSON, but which Python's `json.dumps` writes. The request is refused as a
+//! tool refuses a wrong argument, so that every client shows which one it is.
+
+use serde_json::Value;
+
+use crate::session::Refusal;
+
+/// The literals, the longest first.
+const LITERALS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
+/// Stands before a literal that was read as a text.
+const MARK: &str = "\u{1}not a number: ";
+
+/// Reads such a body: the literals become texts, and the refusal names the first. Returns `None` if the body holds no literal,
+/// or is not JSON for another reason.
+pub fn read(bytes: &[u8]) -> Option<(Value, Refusal)> {
+    let mut value = serde_json::from_str(&marked(std::str::from_utf8(bytes).ok()?)).ok()?;
+    let (path, literal) = unmark(&mut value)?;
+    let argument = path.strip_prefix("args.").unwrap_or(&path).to_owned();
+    let message = format!("{argument} is {literal}, and must be a finite number");
+    Some((value, Refusal::at(argument, "wrong_type", message)))
+}
+
+/// The body with each literal outside of texts as a marked text.
+fn marked(body: &str) -> String {
+    let (mut text, mut rest, mut in_text) = (String::new(), body, false);
+    while let Some(letter) = rest.chars().next() {
+        let literal = LITERALS.iter().find(|literal| !in_text && rest.starts_with(**literal));
+        let taken = match (literal, letter) {
+            (Some(literal), _) => {
+                text += &Value::from(format!("{MARK}{literal}")).to_string();
+                rest = &rest[literal.len()..];
+                continue;
+            }
+            (None, '\\') if in_text => 1 + rest[1..].chars().next().map_or(0, char::len_utf8),
+            (None, _) => letter.len_utf8(),
+        };
+        in_text ^= letter == '"';
+        text += &rest[..taken];
+        rest = &rest[taken..];
+    }
+    text
+}
+
+/// Turns marked texts into the literals, and returns the path of the first and the literal.
+fn unmark(value: &mut Value) -> Option<(String, String)> {
+    let join = |name: String, (path, literal): (String, String)| match path.is_empty() {
+        true => (name, literal),
+        false => (format!("{name}.{path}"), literal),
+    };
+    let mut first = None;
+    match value {
+        Value::String(text) => {
+            if let Some(literal) = text.strip_prefix(MARK) {
+                *text = literal.to_owned();
+                first = Some((String::new(), text.clone()));
+            }
+        }
+        Value::Array(all) => {
+            for (at, inner) in all.iter_mut().enumerate() {
+                let found = unmark(inner).map(|found| join(at.to_string(), found));
+                first = first.or(found);
+            }
+        }
+        Value::Object(fields) => {
+            for (name, inner) in fields.iter_mut() {
+                let found = unmark(inner).map(|found| join(name.clone(), found));
+                first = first.or(found);
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_first_literal_is_named_and_texts_are_left_alone() {
+        let (value, refusal) =
+            read(br#"{"tool":"t \" NaN","args":{"m":{"a":[1,-Infinity]},"n":NaN}}"#).expect("it reads");
+        assert_eq!(value, json!({"tool": "t \" NaN", "args": {"m": {"a": [1, "-Infinity"]}, "n": "NaN"}}));
+        assert_eq!((refusal.code, refusal.field.as_deref()), ("wrong_type", Some("m.a.1")));
+        assert_eq!(refusal.message, "m.a.1 is -Infinity, and must be a finite number");
+        for other in ["{\"a\": \"NaN\"", "{\"a\": nan}", "{\"a\": NaNa}", "{\"a\": \"NaN\"}", "\\", "\"\\"] {
+            assert!(read(other.as_bytes()).is_none(), "{other}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Standard input and output, line by line: a line that is not JSON is answered with a parse error.
+//!
+//! The library that speaks the protocol drops such lines, and a client that sent one would wait forever.
+
+use serde_json::{Value, json};
+use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, duplex};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::task::JoinHandle;
+
+/// Bytes between the streams and the protocol.
+const BUFFER_BYTES: usize = 64 * 1024;
+/// Longest message, in bytes.
+const MAX_MESSAGE_BYTES: usize = 16 * 1024 * 1024;
+
+/// Opens standard input and output for the protocol. The task ends when everything is written.
+pub fn open() -> ((DuplexStream, DuplexStream), JoinHandle<()>) {
+    let (input, forward) = duplex(BUFFER_BYTES);
+    let (output, answers) = duplex(BUFFER_BYTES);
+    let (problems, answered) = unbounded_channel();
+    tokio::spawn(read(forward, problems));
+    let writing = tokio::spawn(write(answers, answered));
+    ((input, output), writing)
+}
+
+/// Forwards each line that is JSON, until the input ends.
+async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
+    let mut input = BufReader::new(tokio::io::stdin());
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let mut bounded = (&mut input).take(MAX_MESSAGE_BYTES as u64 + 1);
+        if !matches!(bounded.read_until(b'\n', &mut line).await, Ok(1..)) {
+            return;
+        }
+        if line.len() > MAX_MESSAGE_BYTES {
+            let message = format!("the message is longer than {MAX_MESSAGE_BYTES} bytes");
+            let _ = problems.send(parse_error(&message));
+            skip_line(&mut input).await;
+            continue;
+        }
+        if line.trim_ascii().is_empty() {
+            continue;
+        }
+        // Into a value: that way the depth is checked as the protocol checks it.
+        match serde_json::from_slice::<Value>(&line) {
+            Ok(_) => {
+                if forward.write_all(&line).await.is_err() {
+                    return;
+                }
+            }
+            Err(error) => {
+                let _ = problems.send(parse_error(&format!("the message is not valid JSON: {error}")));
+            }
+        }
+    }
+}
+
+/// Reads the rest of a line in bounded pieces.
+async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
+    let mut piece = Vec::new();
+    loop {
+        piece.clear();
+        match input.take(BUFFER_BYTES as u64).read_until(b'\n', &mut piece).await {
+            Ok(1..) if piece.last() != Some(&b'\n') => {}
+            _ => return,
+        }
+    }
+}
+
+/// Writes the lines of the protocol and those about lines that did not reach it, each whole.
+async fn write(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
+    let mut output = tokio::io::stdout();
+    let mut answers = BufReader::new(answers).lines();
+    loop {
+        let line = tokio::select! {
+            line = answers.next_line() => match line {
+                Ok(Some(line)) => line,
+                _ => return,
+            },
+            Some(problem) = problems.recv() => problem,
+        };
+        let written = output.write_all(format!("{line}\n").as_bytes()).await;
+        if written.is_err() || output.flush().await.is_err() {
+            return;
+        }
+    }
+}
+
+fn parse_error(message: &str) -> String {
+    json!({ "jsonrpc": "2.0", "id": null, "error": { "code": -32700, "message": message } }).to_string()
+}

@@ -1,0 +1,91 @@
+//! The tool that a call names, which need not exist.
+
+use std::fmt;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::tools::ToolId;
+
+/// Longest unknown name that is recorded, in characters. A longer one is cut and ends with an ellipsis.
+const MAX_NAME_CHARACTERS: usize = 128;
+
+/// The tool that a call names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CalledTool {
+    /// A tool of the catalogue.
+    Known(ToolId),
+    /// A name that no tool has.
+    Unknown(String),
+}
+
+impl CalledTool {
+    /// Returns an unknown name as it is recorded.
+    pub fn unknown(name: &str) -> CalledTool {
+        let is_long = name.chars().nth(MAX_NAME_CHARACTERS).is_some();
+        CalledTool::Unknown(match is_long {
+            true => name.chars().take(MAX_NAME_CHARACTERS - 1).chain(['…']).collect(),
+            false => name.to_owned(),
+        })
+    }
+
+    /// Returns the name.
+    pub fn name(&self) -> &str {
+        match self {
+            CalledTool::Known(tool) => tool.name(),
+            CalledTool::Unknown(name) => name,
+        }
+    }
+
+    /// Returns the tool, or `None` if no tool has the name.
+    pub fn known(&self) -> Option<ToolId> {
+        match self {
+            CalledTool::Known(tool) => Some(*tool),
+            CalledTool::Unknown(_) => None,
+        }
+    }
+}
+
+impl From<ToolId> for CalledTool {
+    fn from(tool: ToolId) -> CalledTool {
+        CalledTool::Known(tool)
+    }
+}
+
+impl PartialEq<ToolId> for CalledTool {
+    fn eq(&self, other: &ToolId) -> bool {
+        self.known() == Some(*other)
+    }
+}
+
+impl fmt::Display for CalledTool {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl Serialize for CalledTool {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for CalledTool {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<CalledTool, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Ok(name.parse().map_or(CalledTool::Unknown(name), CalledTool::Known))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_names_are_cut_at_their_bound() {
+        let name = "ä".repeat(MAX_NAME_CHARACTERS);
+        assert_eq!(CalledTool::unknown(&name).name(), name);
+        let cut = CalledTool::unknown(&format!("{name}b"));
+        assert_eq!(cut.name().chars().count(), MAX_NAME_CHARACTERS);
+        assert!(cut.name().ends_with("ä…") && cut.known().is_none());
+    }
+}

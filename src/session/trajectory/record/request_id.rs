@@ -1,0 +1,44 @@
+//! The id that a program gives a request, so that a retry does not run it twice.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Hexadecimal digits of a digest.
+const DIGEST_DIGITS: usize = 16;
+
+/// The id of a request, and a digest of what it asks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RequestId {
+    /// The id.
+    #[serde(rename = "request_id")]
+    pub id: String,
+    /// First digits of the BLAKE3 hash of the name of the tool, a line feed, and the arguments as they were sent, as JSON
+    /// without spaces and with sorted keys.
+    #[serde(rename = "request_digest")]
+    pub digest: String,
+}
+
+impl RequestId {
+    /// Returns the id together with the digest of a call.
+    pub fn of(id: &str, tool: &str, args: &Value) -> RequestId {
+        let mut sorted = args.clone();
+        sorted.sort_all_objects();
+        let hash = blake3::hash(format!("{tool}\n{sorted}").as_bytes()).to_hex();
+        RequestId { id: id.to_owned(), digest: hash[..DIGEST_DIGITS].to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn digests_ignore_the_order_of_keys_only() {
+        let digest = |tool: &str, args: &Value| RequestId::of("x", tool, args).digest;
+        let first = digest("set_prices", &json!({ "A": 1, "B": { "c": [1, 2], "d": null } }));
+        assert_eq!(first, digest("set_prices", &json!({ "B": { "d": null, "c": [1, 2] }, "A": 1 })));
+        assert_ne!(first, digest("set_prices", &json!({ "A": 1, "B": { "c": [2, 1], "d": null } })));
+        assert_ne!(first, digest("set_usage_quotas", &json!({ "A": 1, "B": { "c": [1, 2], "d": null } })));
+    }
+}

@@ -1,0 +1,217 @@
+//! Requests with an id run once, in one session, after it was reopened, and after a kill in the middle of a week.
+
+use std::fs;
+use std::path::Path;
+
+use novamind::session::{Mode, Session, Via, WeekRequest, lines_afterwards, verify};
+use novamind::session::{Record, Trajectory};
+use serde_json::{Value, json};
+
+use crate::durability::run::{create, open, runs};
+
+/// Lets a week pass over HTTP.
+fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -> Result<Value, String> {
+    let predictions = session.naive_forecasts().as_predictions();
+    // The same forecasts each time: they are part of what is asked.
+    let predictions = if rationale == "naive" { predictions } else { fixed() };
+    let request = WeekRequest {
+        rationale: &json!(rationale),
+        predictions: &predictions,
+        expected_day: &expected_day,
+        id: &json!(id),
+    };
+    session
+        .advance_once(&request, Via::Http)
+        .map(|week| {
+            let mut told = week.as_json();
+            told.as_object_mut().expect("an object").remove("notifications");
+            told
+        })
+        .map_err(|refusal| refusal.code)
+}
+
+fn fixed() -> Value {
+    let forecast = json!({ "point": 1e6, "lower": 0, "upper": 2e6 });
+    json!({ "cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast })
+}
+
+fn call(session: &mut Session, tool: &str, args: Value, id: &str) -> Result<Value, String> {
+    session.call_once(tool, &args, Via::Http, &json!(id)).map_err(|refusal| refusal.code)
+}
+
+/// Lines of a kind in the record.
+fn count(folder: &Path, kind: &str) -> usize {
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+    trajectory.lines.iter().filter(|line| line.record.kind() == kind).count()
+}
+
+#[test]
+fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    let folder = session.folder().expect("a folder").to_owned();
+    let prices = json!({ "A": 12, "B": 25 });
+    let first = call(&mut session, "set_prices", prices.clone(), "p").expect("prices");
+    let refused = call(&mut session, "set_prices", json!({ "A": -1 }), "r");
+    assert_eq!(refused, Err("price_not_positive".to_owned()));
+    let unknown = call(&mut session, "set_wages", json!({ "A": 1 }), "u");
+    assert_eq!(unknown, Err("unknown_tool".to_owned()));
+    let weeks: Vec<Value> =
+        (0..4).map(|n| week(&mut session, "on", json!(7 * n), &format!("w{n}")).expect("a week")).collect();
+    assert_eq!((&weeks[3]["ended"], &weeks[0]["ended"]), (&json!("horizon"), &Value::Null));
+    call(&mut session, "delete_script", json!({ "name": "none" }), "after").expect_err("none of that name");
+    let written = fs::read(folder.join("trajectory.jsonl")).expect("a file");
+    let retry = |session: &mut Session| {
+        assert_eq!(call(session, "set_prices", prices.clone(), "p").as_ref(), Ok(&first));
+        assert_eq!(call(session, "set_prices", json!({ "A": -1 }), "r"), refused);
+        assert_eq!(call(session, "set_wages", json!({ "A": 1 }), "u"), unknown);
+        for (n, first) in weeks.iter().enumerate() {
+            assert_eq!(week(session, "on", json!(7 * n), &format!("w{n}")).as_ref(), Ok(first), "week {n}");
+        }
+        call(session, "delete_script", json!({ "name": "none" }), "after").expect_err("none of that name");
+    };
+    retry(&mut session);
+    session.save().expect("it is saved");
+    drop(session);
+    // From the snapshot, and from the lines alone.
+    let mut session = open(&folder);
+    retry(&mut session);
+    drop(session);
+    fs::remove_file(folder.join("snapshot.bin")).expect("a snapshot");
+    let mut session = open(&folder);
+    retry(&mut session);
+    drop(session);
+    assert_eq!(fs::read(folder.join("trajectory.jsonl")).expect("a file"), written, "nothing ran again");
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+    let after = lines_afterwards(&folder, &trajectory).expect("it reads").lines;
+    assert_eq!(after.iter().filter(|line| line.record.kind() == "call").count(), 1);
+    verify(&folder).expect("it verifies");
+}
+
+#[test]
+fn another_payload_another_day_and_strange_ids_are_refused() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    let code = |refused: Result<Value, String>| refused.expect_err("a refusal");
+    call(&mut session, "set_prices", json!({ "A": 12, "B": 25 }), "x").expect("prices");
+    // The order of keys is no difference.
+    call(&mut session, "set_prices", json!({ "B": 25, "A": 12 }), "x").expect("the first answer");
+    assert_eq!(
+        code(call(&mut session, "set_prices", json!({ "A": 13 }), "x")),
+        "request_id_payload_mismatch"
+    );
+    assert_eq!(
+        code(call(&mut session, "set_usage_quotas", json!({ "A": 12, "B": 25 }), "x")),
+        "request_id_payload_mismatch"
+    );
+    assert_eq!(code(week(&mut session, "on", Value::Null, "x")), "request_id_payload_mismatch");
+    assert_eq!(session.current("set_prices")["A"], 12.0);
+    for id in ["".to_owned(), "ä".repeat(129)] {
+        assert_eq!(code(call(&mut session, "set_prices", json!({ "A": 13 }), &id)), "request_id_invalid");
+    }
+    let seven = session.call_once("set_prices", &json!({ "A": 13 }), Via::Http, &json!(7));
+    assert_eq!(seven.expect_err("no text").code, "request_id_invalid");
+    call(&mut session, "set_prices", json!({ "A": 13 }), &"ä".repeat(128)).expect("prices");
+    // Tools that only read ignore the id.
+    call(&mut session, "get_vars", json!({}), "x").expect("the day");
+    call(&mut session, "get_vars", json!({}), "").expect("the day");
+    assert_eq!(code(week(&mut session, "on", json!(7), "w")), "unexpected_day");
+    assert_eq!(code(week(&mut session, "on", json!("0"), "v")), "wrong_type");
+    assert_eq!(session.day(), 0);
+    week(&mut session, "on", json!(0), "w0").expect("a week");
+    // The refusal stays what it was, though the run is on that day now.
+    assert_eq!(code(week(&mut session, "on", json!(7), "w")), "unexpected_day");
+    assert_eq!(session.day(), 7);
+}
+
+#[test]
+fn a_week_that_a_kill_interrupted_answers_the_retry() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    let folder = session.folder().expect("a folder").to_owned();
+    week(&mut session, "on", Value::Null, "w0").expect("a week");
+    let first = week(&mut session, "on", Value::Null, "w1").expect("a week");
+    session.save().expect("it is saved");
+    drop(session);
+    // What a kill leaves behind after the line of the request: nothing that follows it.
+    let path = folder.join("trajectory.jsonl");
+    let text = fs::read_to_string(&path).expect("a trajectory");
+    let at = text.match_indices("\"kind\":\"advance\"").nth(1).expect("a second week").0;
+    let end = at + text[at..].find('\n').expect("its end") + 1;
+    fs::write(&path, &text[..end]).expect("a file");
+    for derived in ["snapshot.bin", "world.db"] {
+        fs::remove_file(folder.join(derived)).expect("it was there");
+    }
+    let mut session = open(&folder);
+    assert_eq!(session.day(), 14);
+    assert_eq!(week(&mut session, "on", Value::Null, "w1"), Ok(first));
+    assert_eq!((session.day(), count(&folder, "advance"), count(&folder, "week")), (14, 2, 2));
+    drop(session);
+    verify(&folder).expect("it verifies");
+}
+
+#[test]
+fn a_branch_keeps_the_ids_of_the_lines_that_it_shares() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    let first = call(&mut session, "set_prices", json!({ "A": 12 }), "p").expect("a price");
+    let passed = week(&mut session, "on", Value::Null, "w0").expect("a week");
+    call(&mut session, "set_prices", json!({ "A": 14 }), "q").expect("a price");
+    let mut branch = session.branch(2, Mode::Sandbox).expect("a branch");
+    assert_eq!(call(&mut branch, "set_prices", json!({ "A": 12 }), "p"), Ok(first));
+    assert_eq!(week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
+    // What was decided after the branch is not in its record.
+    assert_eq!(branch.current("set_prices")["A"], 12.0);
+    call(&mut branch, "set_prices", json!({ "A": 15 }), "q").expect("a new request");
+    assert_eq!(branch.current("set_prices")["A"], 15.0);
+}
+
+#[test]
+fn undo_does_not_free_an_id() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    call(&mut session, "set_prices", json!({ "A": 12 }), "o").expect("a price");
+    let first = call(&mut session, "set_prices", json!({ "A": 14 }), "p").expect("a price");
+    session.undo(Via::Plain).expect("it is taken back");
+    assert_eq!(call(&mut session, "set_prices", json!({ "A": 14 }), "p"), Ok(first));
+    assert_eq!(session.current("set_prices")["A"], 12.0);
+}
+
+#[test]
+fn records_without_ids_keep_their_bytes() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    session.call_once("set_prices", &json!({ "A": 12 }), Via::Http, &Value::Null).expect("a price");
+    week(&mut session, "naive", Value::Null, "w").expect("a week");
+    let path = session.folder().expect("a folder").join("trajectory.jsonl");
+    let text = fs::read_to_string(path).expect("a trajectory");
+    let with: Vec<&str> = text.lines().filter(|line| line.contains("request_")).collect();
+    assert!(with.len() == 1 && with[0].contains("\"kind\":\"advance\""), "{with:?}");
+}
+
+#[test]
+fn calls_of_unknown_tools_are_recorded_with_names_of_bounded_length() {
+    let place = runs();
+    let mut session = create(place.path(), 7, 28);
+    let folder = session.folder().expect("a folder").to_owned();
+    let long = "x".repeat(10_000_000);
+    for name in ["", "get_customer_feedback", long.as_str()] {
+        let args = json!({ "group": "S1", "sent": [1, null] });
+        let refusal = session.call(name, &args, Via::Mcp).expect_err("no tool");
+        assert_eq!((refusal.code, refusal.field.as_deref()), ("unknown_tool", Some("tool")));
+        assert!(refusal.message.len() < 1000 && !refusal.message.contains("tool  "), "{}", refusal.message);
+    }
+    drop(session);
+    let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads").lines;
+    let calls: Vec<_> = lines
+        .iter()
+        .filter_map(|line| match &line.record {
+            Record::Call(call) => Some(call),
+            _ => None,
+        })
+        .collect();
+    let names: Vec<usize> = calls.iter().map(|call| call.tool.name().chars().count()).collect();
+    assert_eq!(names, [0, 21, 128]);
+    assert!(calls.iter().all(|call| call.tool.known().is_none() && call.args["sent"] == json!([1, null])));
+    verify(&folder).expect("it verifies");
+}

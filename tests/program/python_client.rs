@@ -1,0 +1,161 @@
+//! The Python client: threads, several runs in one process, and retries of requests that got no answer.
+
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use crate::doors::{NEW, Server};
+use crate::support::home::Home;
+
+/// The client, written into the folder of a home; `None` without Python.
+fn client(home: &Home) -> Option<PathBuf> {
+    if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
+        println!("SKIPPED: python3 is not installed");
+        return None;
+    }
+    let folder = home.0.path().join("client");
+    assert_eq!(home.run(&["serve", "--client", &folder.to_string_lossy()]).code, 0);
+    Some(folder)
+}
+
+#[track_caller]
+fn python(home: &Home, client: &PathBuf, port: u16, program: &str) {
+    let mut python = home.command("python3");
+    python.env("PYTHONPATH", client).env("NOVAMIND_API_PORT", port.to_string());
+    let said = python.args(["-c", program]).output().expect("python");
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+}
+
+fn lines(home: &Home) -> Vec<Value> {
+    let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
+    text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+#[test]
+fn four_threads_share_a_connection() {
+    let home = Home::new();
+    let Some(client) = client(&home) else { return };
+    let server = Server::start(&home, &NEW);
+    python(
+        &home,
+        &client,
+        server.port,
+        "
+import threading, novamind
+from novamind import infrastructure, pricing
+errors = []
+def work(number):
+    try:
+        for n in range(25):
+            price = 10.0 + number + n / 100
+            assert pricing.set_prices(A=price)['updated']['A'] == price
+            infrastructure.get_cost_info()
+            assert novamind.query(f'SELECT {number} AS x')['rows'] == [{'x': number}]
+            assert novamind.current_day() == 0
+    except Exception as error:
+        errors.append(repr(error))
+threads = [threading.Thread(target=work, args=(number,)) for number in range(4)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+assert not errors, errors
+",
+    );
+    let prices = lines(&home).iter().filter(|line| line["tool"] == "set_prices").count();
+    assert_eq!(prices, 100);
+}
+
+#[test]
+fn one_process_plays_two_runs() {
+    let (home, other) = (Home::new(), Home::new());
+    let Some(client) = client(&home) else { return };
+    let token = home.0.path().join("token.txt");
+    let first = Server::start(&home, &NEW);
+    let second = Server::start(&other, &[&NEW[..], &["--token", &token.to_string_lossy()]].concat());
+    let program = format!(
+        "
+import novamind
+first = novamind.Client({}, '')
+second = novamind.Client({}, open({:?}).read())
+second.pricing.set_prices(A=14)
+second.next_week('on', second.naive_predictions(), expected_day=0)
+first.pricing.set_prices(A=15)
+assert (first.current_day(), second.current_day(), novamind.current_day()) == (0, 7, 0)
+try:
+    second.next_week('on', second.naive_predictions(), expected_day=0)
+except novamind.NovamindError as error:
+    assert error.code == 'unexpected_day' and 'day 7' in str(error), error
+else:
+    raise SystemExit('not refused')
+",
+        first.port, second.port, token
+    );
+    python(&home, &client, first.port, &program);
+    let price = |home: &Home| {
+        lines(home).iter().find(|line| line["tool"] == "set_prices").map(|line| line["args"]["A"].clone())
+    };
+    assert_eq!((price(&home), price(&other)), (Some(15.into()), Some(14.into())));
+}
+
+/// Reads one message of HTTP, head and body.
+fn message(stream: &mut TcpStream) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut piece = [0; 4096];
+    loop {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        if let Some((head, body)) = text.split_once("\r\n\r\n") {
+            let length = head
+                .lines()
+                .find_map(|line| line.to_lowercase().strip_prefix("content-length: ")?.parse().ok());
+            if body.len() >= length.unwrap_or(0) {
+                return bytes;
+            }
+        }
+        let read = stream.read(&mut piece).expect("bytes");
+        assert!(read > 0, "{text}");
+        bytes.extend_from_slice(&piece[..read]);
+    }
+}
+
+#[test]
+fn a_request_whose_answer_was_lost_is_sent_again_and_runs_once() {
+    let home = Home::new();
+    let Some(client) = client(&home) else { return };
+    let server = Server::start(&home, &NEW);
+    let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+    let (port, served) = (listener.local_addr().expect("an address").port(), server.port);
+    let between = std::thread::spawn(move || {
+        for attempt in 0..3 {
+            let (mut from, _) = listener.accept().expect("a connection");
+            let asked = message(&mut from);
+            if attempt == 1 {
+                let full = "HTTP/1.1 503 Service Unavailable\r\nretry-after: 1\r\ncontent-length: 2\r\nconnection: close\r\n\r\n{}";
+                from.write_all(full.as_bytes()).expect("sent");
+                continue;
+            }
+            let mut to = TcpStream::connect(("127.0.0.1", served)).expect("a connection");
+            to.write_all(&asked).expect("sent");
+            let answer = message(&mut to);
+            // The answer to the first attempt is lost.
+            if attempt == 2 {
+                from.write_all(&answer).expect("sent");
+            }
+        }
+    });
+    python(
+        &home,
+        &client,
+        port,
+        "
+import novamind
+around = {'point': 1e6, 'lower': 0, 'upper': 2e6}
+forecasts = {f'cash_{weeks}wk': around for weeks in (1, 4, 12, 26)}
+assert novamind.next_week('on', forecasts)['day'] == 7
+",
+    );
+    between.join().expect("three attempts");
+    let weeks = lines(&home).iter().filter(|line| line["kind"] == "week").count();
+    assert_eq!(weeks, 1);
+}

@@ -1,0 +1,60 @@
+//! Retries of requests over HTTP, from several threads, with a server that is killed and started again.
+
+use serde_json::{Value, json};
+
+use crate::doors::{NEW, Server, predictions};
+use crate::support::home::Home;
+
+fn week(id: &str, expected_day: u32) -> Value {
+    json!({ "rationale": "on", "predictions": predictions(), "expected_day": expected_day, "request_id": id })
+}
+
+fn lines(home: &Home, kind: &str) -> Vec<Value> {
+    let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
+    let lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    lines.filter(|line| line["kind"] == kind).collect()
+}
+
+#[test]
+fn a_retry_after_a_kill_returns_the_first_answer() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let prices = json!({ "tool": "set_prices", "args": { "A": 10, "B": 20 }, "request_id": "p" });
+    let script = json!({ "name": "s", "content": "SELECT 1", "request_id": "s" });
+    let first = [server.post("/call", &prices), server.post("/daily-scripts", &script)];
+    assert!(first.iter().all(|(status, body)| *status == 200 && body["success"] == true), "{first:?}");
+    let refused =
+        server.post("/call", &json!({ "tool": "set_prices", "args": { "A": 11 }, "request_id": "p" }));
+    assert_eq!((refused.0, &refused.1["code"]), (200, &json!("request_id_payload_mismatch")), "{refused:?}");
+    let passed = server.post("/next-week", &week("w", 0));
+    assert_eq!((passed.0, &passed.1["day"]), (200, &json!(7)), "{passed:?}");
+    let late = server.post("/next-week", &week("v", 0));
+    assert_eq!(
+        (late.0, &late.1["code"], &late.1["field"]),
+        (400, &json!("unexpected_day"), &json!("expected_day"))
+    );
+    assert!(late.1["error"].as_str().is_some_and(|text| text.contains("day 7")), "{late:?}");
+    // Dropping it kills it.
+    drop(server);
+    let server = Server::start(&home, &["--run", "latest"]);
+    assert_eq!([server.post("/call", &prices), server.post("/daily-scripts", &script)], first);
+    assert_eq!(server.post("/next-week", &week("w", 0)), passed);
+    assert_eq!(server.post("/next-week", &week("v", 0)), late);
+    let other = server.post("/next-week", &week("w", 7));
+    assert_eq!((other.0, &other.1["code"]), (400, &json!("request_id_payload_mismatch")), "{other:?}");
+    assert_eq!(server.get("/vars")["current_day"], 7);
+    assert_eq!((lines(&home, "advance").len(), lines(&home, "week").len()), (1, 1));
+}
+
+#[test]
+fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let answers: Vec<(u16, Value)> = std::thread::scope(|scope| {
+        let ask = || server.post("/next-week", &week("w", 0));
+        let all: Vec<_> = (0..8).map(|_| scope.spawn(ask)).collect();
+        all.into_iter().map(|one| one.join().expect("an answer")).collect()
+    });
+    assert!(answers.iter().all(|answer| *answer == answers[0] && answer.0 == 200), "{answers:?}");
+    assert_eq!(lines(&home, "advance").len(), 1);
+}

@@ -29,7 +29,11 @@ struct CachedBytes {
 impl PageCache {
     /// A file that holds synced bytes.
     pub fn holding(bytes: Vec<u8>) -> PageCache {
-        PageCache(Arc::new(Mutex::new(CachedBytes { disk: bytes.clone(), cache: bytes, ..CachedBytes::default() })))
+        PageCache(Arc::new(Mutex::new(CachedBytes {
+            disk: bytes.clone(),
+            cache: bytes,
+            ..CachedBytes::default()
+        })))
     }
 
     /// Lets the next syncs fail.

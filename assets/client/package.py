@@ -37,7 +37,7 @@ def dashboard() -> str:
 
 
 def game_status() -> Dict[str, Any]:
-    """day, cash (dollars), subscribers, total_days, and how the run ended, if it did."""
+    """day, cash (dollars), subscribers (active subscriptions), total_days, and how the run ended, if it did."""
     return request("GET", "/game-status")
 
 

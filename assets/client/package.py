@@ -63,7 +63,7 @@ class Client:
         return str(self.connection.request("GET", "/dashboard")["dashboard"])
 
     def game_status(self) -> Dict[str, Any]:
-        """day, cash (dollars), subscribers, total_days, and how the run ended, if it did."""
+        """day, cash (dollars), subscribers (active subscriptions), total_days, and how the run ended, if it did."""
         return self.connection.request("GET", "/game-status")
 
     def query(self, sql: str) -> Dict[str, Any]:

@@ -38,7 +38,7 @@ fn paths(numbers: &Numbers) -> Value {
             "responses": { "200": { "description": "success, run" } } } },
         "/vars": { "get": read("The current day") },
         "/dashboard": { "get": read("The dashboard of the last week, and the day") },
-        "/game-status": { "get": read("Day, cash, subscribers, last day, and how the run ended") },
+        "/game-status": { "get": read("Day, cash, active subscriptions, last day, and how the run ended") },
         "/tools": { "get": read("Every tool: arguments, effect, cost, refusals, result") },
         "/tables": { "get": read("Every table that can be queried, and its columns") },
         "/call": { "post": write("Call a tool", json!({ "oneOf": calls() }),

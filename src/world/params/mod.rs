@@ -20,6 +20,7 @@ mod social;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
 
 pub use change::Difference;
 pub use customers::*;
@@ -184,26 +185,27 @@ impl Params {
     }
 
     /// Digest of the effective parameters: 16 hexadecimal digits of blake3 over their canonical JSON, and the number of the
-    /// fault if there is one. An [added key](ADDED_KEYS) at its earlier behaviour is left out.
+    /// fault if there is one. A key of `ADDED_KEYS` at its earlier behaviour is left out.
     ///
     /// A run records it, and is never silently continued under other parameters.
     pub fn digest(&self) -> String {
-        self.digest_without(|value, earlier| value.to_string() == earlier)
+        self.digest_without(|value, earlier| value == earlier)
     }
 
-    /// The digest that versions without the [added keys](ADDED_KEYS) gave these parameters.
+    /// The digest that versions without the keys of `ADDED_KEYS` gave these parameters.
     pub fn earlier_digest(&self) -> String {
         self.digest_without(|_, _| true)
     }
 
-    /// The digest without those added keys for which `is_left_out` returns true, given their value and the JSON of their
+    /// The digest without the keys of `ADDED_KEYS` for which `is_left_out` returns true, given their value and that of their
     /// earlier behaviour.
-    fn digest_without(&self, is_left_out: impl Fn(&serde_json::Value, &str) -> bool) -> String {
+    fn digest_without(&self, is_left_out: impl Fn(&Json, &Json) -> bool) -> String {
         let mut tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
         for (table, key, earlier) in ADDED_KEYS {
-            let table = tables.get_mut(table).and_then(serde_json::Value::as_object_mut);
+            let earlier = serde_json::from_str(earlier).expect("the list holds JSON");
+            let table = tables.get_mut(table).and_then(Json::as_object_mut);
             if let Some(table) = table
-                && table.get(key).is_some_and(|value| is_left_out(value, earlier))
+                && table.get(key).is_some_and(|value| is_left_out(value, &earlier))
             {
                 table.shift_remove(key);
             }

@@ -88,7 +88,7 @@ fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
                 *line["result"].pointer_mut(field).expect("a field") = json!(26);
             }
         });
-        let error = verify(&folder).err().expect("it is refused").to_string();
+        let error = verify(&folder).expect_err("it is refused").to_string();
         assert!(error.contains("answers differently"), "{error}");
     }
 }

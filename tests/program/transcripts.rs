@@ -201,9 +201,11 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert!(ids.len() == messages.len() && ids.iter().all(|id| id.starts_with(&run)), "{ids:?}");
 }
 
-/// Logs of an unfinished, a finished and a bankrupt run, in a folder for Inspect; each with what `runs show` prints.
+/// What `runs show` prints of an unfinished, an abandoned, a finished and a bankrupt run, and their logs in a folder for Inspect.
 fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
     played(home);
+    assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").code, 0);
+    assert_eq!(home.run(&["runs", "end", "latest"]).code, 0);
     for options in [&["--days", "14"][..], &["--days", "14", "--cash", "500"]] {
         let said = home.run(&[&["run", "--policy", "P0", "--seed", "3", "--save"], options].concat());
         assert_eq!(said.code, 0, "{}", said.err);
@@ -234,6 +236,7 @@ fn score_of_a_run_is_that_of_the_rules_wherever_it_is_shown() {
             None => ("started", None),
             Some("horizon") => ("success", Some(cash)),
             Some("bankruptcy") => ("success", Some(json!(0.0))),
+            Some("abandoned") => ("cancelled", None),
             Some(other) => panic!("{other}"),
         };
         seen.push(shown["ended"].clone());
@@ -244,7 +247,7 @@ fn score_of_a_run_is_that_of_the_rules_wherever_it_is_shown() {
         assert_eq!((&log["status"], &sample, &result), (&json!(status), &json!(score), &json!(score)));
     }
     seen.sort_by_key(Value::to_string);
-    assert_eq!(seen, [json!("bankruptcy"), json!("horizon"), Value::Null]);
+    assert_eq!(seen, [json!("abandoned"), json!("bankruptcy"), json!("horizon"), Value::Null]);
 }
 
 #[test]

@@ -160,7 +160,7 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
             whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day solve about {}: the {} that open a day once nobody waits, and the backlog in {}",
+            "{} a day solve about {}: the {} that open a day once no one waits, and the backlog in {}",
             money(dollars),
             whole(solved),
             whole(inflow),

@@ -283,7 +283,7 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
     let need = is_first(
         &session,
         Problem::Backlog,
-        &["waiting for support", "once nobody waits, and the backlog in "],
+        &["waiting for support", "once no one waits, and the backlog in "],
     );
     // The days follow from the numbers of the two sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())

@@ -47,6 +47,7 @@ use crate::session::{
 };
 use crate::tools::ToolId;
 use crate::world::identifiers::Group;
+use answering::words_of;
 use desk::Desk;
 use queries::QueryThreads;
 use run::OpenRun;
@@ -421,10 +422,4 @@ impl SessionThread {
         news.into_iter().for_each(|news| self.say(news));
         self.look_after_database();
     }
-}
-
-/// What a panic said.
-pub fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
 }

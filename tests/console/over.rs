@@ -56,11 +56,13 @@ fn a_what_if_of_the_final_page_begins_twelve_weeks_before_the_end() {
 #[test]
 fn a_defect_in_background_work_is_reported_in_its_dialog() {
     let runs = tempfile::tempdir().expect("a folder");
-    drop(over(runs.path(), Mode::Baseline, (120, 40)));
+    let console = over(runs.path(), Mode::Baseline, (120, 40));
+    let id = console.app.run().expect("a run").company.seen.run.clone();
+    drop(console);
     let mut settings = Console::settings(Configuration::shipped(), runs.path());
     settings.opponents = |_, _, _| panic!("seat 3 is missing");
     let mut console = Console::of(settings, (120, 40));
-    console.open("latest").expect("it opens");
+    console.open(&id).expect("it opens");
     console.press("o");
     console.shows("the program has a defect (seat 3 is missing); nothing was changed");
     console.press("esc");

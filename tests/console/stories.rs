@@ -220,7 +220,7 @@ fn quitting_keeps_drafts_of_forms_and_posts() {
     console.press("esc 5 p 'Unsent' esc q");
     console.shows("It is kept with this run");
     console.press("y");
-    assert_eq!(console.left, Some((0, None)), "the program ends");
+    assert!(matches!(console.left, Some((0, _))), "the program ends: {:?}", console.left);
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.shows("Unsent text");

@@ -4,7 +4,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
 use std::sync::{Mutex, MutexGuard};
 
-use super::words_of;
 use crate::console::message::{Message, News};
 use crate::session::Refusal;
 
@@ -35,6 +34,12 @@ pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
         );
         Refusal::new("internal_error", message)
     })
+}
+
+/// The message of a panic.
+pub(super) fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
 }
 
 /// Locks what an earlier question has kept. A panic during that question may have left it half done: then it is dropped.

@@ -136,7 +136,8 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
     // Whoever waits opens no other issue: more are opened once nobody does.
     let free = (people - f64::from(week.open_issues)).max(1.0);
-    let needed = opened * people / free + f64::from(week.open_issues) / DAYS_TO_CLEAR;
+    let inflow = opened * people / free;
+    let needed = inflow + f64::from(week.open_issues) / DAYS_TO_CLEAR;
     let dollars = rounded_up((needed - base) / per_dollar);
     if dollars <= operations {
         return None;
@@ -148,7 +149,7 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
     }
     let solved = (base + per_dollar * dollars).round();
     // Follows from the numbers of the sentence, as they are written.
-    let days = (f64::from(week.open_issues) / (solved - opened.round())).ceil();
+    let days = (f64::from(week.open_issues) / (solved - inflow.round()).max(1.0)).ceil();
     Some(Need {
         problem: Problem::Backlog,
         text: format!(
@@ -159,9 +160,10 @@ pub(super) fn backlog(situation: &Situation<'_>) -> Option<Need> {
             whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day solve about {}: the daily inflow, and the backlog in {}",
+            "{} a day solve about {}: the {} that open a day once no one waits, and the backlog in {}",
             money(dollars),
             whole(solved),
+            whole(inflow),
             count(days as u32, "day")
         )),
         place: Place::Call(ToolId::SetDailySpend, json!({ "operations": json_number(general) })),

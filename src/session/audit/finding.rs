@@ -27,14 +27,8 @@ pub enum AuditKind {
     Missing,
     /// The record is damaged.
     Damaged,
-    /// Lines are not those that a witness was told of.
-    Changed,
-    /// A witness was told of lines that are gone.
+    /// The database or the snapshot holds lines that the trajectory lacks.
     Cut,
-    /// The run went on twice from the same line.
-    TwoHistories,
-    /// No witness was told of decisions.
-    Unseen,
     /// The states that are recorded are not reached again.
     NotReached,
     /// Lines could not be written while the run was played.
@@ -45,14 +39,8 @@ pub enum AuditKind {
     Assignment,
     /// The list of earlier runs is not what the machine knows.
     EarlierRuns,
-    /// The same world was played, or looked at, outside the session.
-    Rehearsal,
-    /// The machine's list of opened worlds was edited, cut or removed.
-    WorldList,
     /// The clock of the machine was set.
     Clock,
-    /// The run went on on another machine.
-    OtherMachine,
     /// A participant has two sessions.
     SecondSession,
     /// An archive does not carry the signature of the lab.
@@ -61,22 +49,16 @@ pub enum AuditKind {
 
 impl AuditKind {
     /// Every kind, the gravest first.
-    pub const ALL: [AuditKind; 17] = [
+    pub const ALL: [AuditKind; 11] = [
         AuditKind::Missing,
         AuditKind::Damaged,
-        AuditKind::Changed,
         AuditKind::Cut,
-        AuditKind::TwoHistories,
-        AuditKind::Unseen,
         AuditKind::NotReached,
         AuditKind::Unsaved,
         AuditKind::Manifest,
         AuditKind::Assignment,
         AuditKind::EarlierRuns,
-        AuditKind::Rehearsal,
-        AuditKind::WorldList,
         AuditKind::Clock,
-        AuditKind::OtherMachine,
         AuditKind::SecondSession,
         AuditKind::NotSigned,
     ];
@@ -86,19 +68,13 @@ impl AuditKind {
         match self {
             AuditKind::Missing => "record missing",
             AuditKind::Damaged => "record damaged",
-            AuditKind::Changed => "lines changed",
             AuditKind::Cut => "lines cut",
-            AuditKind::TwoHistories => "two histories",
-            AuditKind::Unseen => "lines no witness saw",
             AuditKind::NotReached => "states not reached again",
             AuditKind::Unsaved => "lines not saved",
             AuditKind::Manifest => "run.toml edited",
             AuditKind::Assignment => "not as assigned",
             AuditKind::EarlierRuns => "earlier runs edited",
-            AuditKind::Rehearsal => "rehearsal",
-            AuditKind::WorldList => "list of worlds edited",
             AuditKind::Clock => "clock set",
-            AuditKind::OtherMachine => "other machine",
             AuditKind::SecondSession => "second session",
             AuditKind::NotSigned => "archive not signed",
         }

@@ -269,7 +269,6 @@ impl Session {
         let is_week = matches!(record, Record::Week(_));
         let mut problem = self.append_done(&record);
         self.simulation.facts_chain.close();
-        self.closing_line.clone_from(&self.position.line_hash);
         self.settle_lesson();
         if problem.is_none() {
             self.word_days_after(from);
@@ -313,9 +312,7 @@ impl Session {
     pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.history.ended = Some(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
-        let problem = self.append_done(&Record::End(end));
-        self.closing_line.clone_from(&self.position.line_hash);
-        problem
+        self.append_done(&Record::End(end))
     }
 
     /// What a line says that closes days: what a replay has to arrive at.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::session::archive::{LabPublicKey, is_archive_name, place_run};
+use crate::session::archive::{LabPublicKey, import_run, is_archive_name};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
@@ -268,7 +268,7 @@ pub fn missing_places(
 
 fn unpacked(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<LabPublicKey>), RunError> {
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let (seal, signer, _) = place_run(folder, archive)?;
+    let (seal, signer, _) = import_run(folder, archive, None)?;
     Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 

@@ -25,9 +25,7 @@ pub use answers::{Answered, Asked};
 pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
 pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
-pub use presence::{
-    Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,
-};
+pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
 pub use start::{Parent, Start};
 pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
 pub use week::{Advance, Branch, Closing, End, Ended, FiledForecast, Override};

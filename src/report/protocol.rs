@@ -291,11 +291,12 @@ fn measures() -> String {
 }
 
 fn exclusion() -> String {
-    let grave: Vec<&str> = AuditKind::ALL.iter().map(|kind| kind.title()).collect();
+    let of_sessions = AuditKind::ALL.iter().filter(|kind| **kind != AuditKind::NothingExamined);
+    let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
     format!(
         "## Exclusion\n\nBefore any result is looked at, `novamind study audit` is run. It reads the records alone: a run \
          whose lines were rewritten with correct hashes, or that was continued in a copy of its folder, stays unnoticed. A \
-         session with one of these findings is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
+         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
          attention checks, of naive weeks and of weeks decided in less than ten active seconds from which a session is excluded.\n",
         grave.join(", ")
     )

@@ -107,8 +107,14 @@ fn hash(text: &str) -> String {
 
 /// Writes lines with a correct chain and correct sums.
 fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
+    forge_with_afterwards(run, lines, Vec::new());
+}
+
+/// The same, with lines after the end.
+fn forge_with_afterwards(run: &Path, lines: Vec<Map<String, Value>>, afterwards: Vec<Map<String, Value>>) {
     let (mut text, mut prev) = (String::new(), hash(""));
-    for (seq, mut line) in lines.into_iter().enumerate() {
+    let (mut after, count) = (String::new(), lines.len());
+    for (seq, mut line) in lines.into_iter().chain(afterwards).enumerate() {
         line.insert("seq".to_owned(), json!(seq));
         line.insert("prev".to_owned(), json!(prev));
         line.shift_remove("sum");
@@ -116,9 +122,12 @@ fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
         line.insert("sum".to_owned(), json!(&hash(&bare)[..16]));
         let whole = Value::Object(line).to_string();
         prev = hash(&whole);
-        text += &(whole + "\n");
+        *(if seq < count { &mut text } else { &mut after }) += &(whole + "\n");
     }
     fs::write(run.join("trajectory.jsonl"), text).expect("written");
+    if !after.is_empty() {
+        fs::write(run.join("afterwards.jsonl"), after).expect("written");
+    }
     for derived in ["world.db", "world.db-wal", "world.db-shm", "snapshot.bin"] {
         let _ = fs::remove_file(run.join(derived));
     }
@@ -250,6 +259,109 @@ fn edited_manifests_and_clocks_are_found() {
     assert!(found.iter().any(|(kind, line, _)| kind == "clock" && *line == Some(at as u64 + 1)), "{found:?}");
 }
 
+#[test]
+fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
+    let study = Study::new();
+    fs::create_dir(study.machine("empty")).expect("a folder");
+    let found = study.audit(&["empty"]);
+    assert_eq!((found.len(), found[0].0.as_str()), (1, "nothing_examined"), "{found:?}");
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[0]));
+    assert_eq!(study.audit(&["one"]), []);
+    // The protocol is changed: the run belongs to the old digest.
+    let path = study.home.0.path().join("pilot/study.toml");
+    let text = fs::read_to_string(&path).expect("a protocol");
+    fs::write(&path, format!("{text}\n# changed\n")).expect("written");
+    let kinds: Vec<String> = study.kinds(&["one"]);
+    assert_eq!(kinds.len(), 2, "{kinds:?}");
+    for kind in ["nothing_examined", "other_protocol"] {
+        assert!(kinds.contains(&kind.to_owned()), "{kinds:?}");
+    }
+    let said = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(said.code == 1 && !said.out.contains("Nothing was found"), "{}", said.out);
+    // The label has a run, and the collection says so.
+    let (one, out) =
+        (study.machine("one").display().to_string(), study.machine("data").display().to_string());
+    let collected = study.home.run(&["study", "collect", &one, "--out", &out, "--protocol", &study.folder()]);
+    assert!(
+        collected.out.contains("label P01 has no session under this protocol; its run "),
+        "{}",
+        collected.out
+    );
+    assert!(!collected.out.contains("label P01 has no session;"), "{}", collected.out);
+    assert!(collected.out.contains("label P02 has no session\n"), "{}", collected.out);
+    // Under another name it is another study: counted, and no finding of its own.
+    fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
+    let said = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(said.out.contains("Runs of other studies, not examined: 1."), "{}", said.out);
+    assert_eq!(study.kinds(&["one"]), ["nothing_examined"]);
+}
+
+#[test]
+fn audit_finds_a_clock_that_was_set_within_the_last_sitting() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
+    assert_eq!(study.audit(&["one"]), []);
+    let run = study.only_run("one", "P01");
+    let shift = |text: &str, from: usize, seconds: i64| -> String {
+        let mut all: Vec<Map<String, Value>> =
+            text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        for line in all.iter_mut().skip(from) {
+            let at = nanoseconds_of(line["at"].as_str().expect("a moment")) + seconds * 1_000_000_000;
+            line.insert("at".to_owned(), json!(written_moment(at)));
+        }
+        all.into_iter().map(|line| Value::Object(line).to_string() + "\n").collect()
+    };
+    let read = |name: &str| fs::read_to_string(run.join(name)).expect("lines");
+    let (text, after) = (read("trajectory.jsonl"), read("afterwards.jsonl"));
+    let at = text.lines().count() - 4;
+    for (seconds, is_found) in [(1, false), (600, true)] {
+        // The wall clock moved forward; the monotonic clock of the `session` lines did not.
+        let moved = |text: &str, from| shift(text, from, seconds);
+        let lines = moved(&text, at) + &moved(&after, 0);
+        let (text, after): (Vec<_>, Vec<_>) = lines
+            .lines()
+            .map(|line| serde_json::from_str::<Map<String, Value>>(line).expect("JSON"))
+            .partition(|line| line["seq"].as_u64().expect("a number") < text.lines().count() as u64);
+        forge_with_afterwards(&run, text, after);
+        let found = study.audit(&["one"]);
+        let is_clock = |(kind, _, words): &(String, Option<u64>, String)| {
+            kind == "clock" && words.contains("600 seconds ahead of the monotonic clock")
+        };
+        assert_eq!(found.iter().any(is_clock), is_found, "{found:?}");
+    }
+}
+
+#[test]
+fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
+    study.visit("two", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
+    assert_eq!(study.audit(&["one", "two"]), []);
+    // P01 is over and is viewed while P02 still plays the seed.
+    let id = study.only_run("one", "P01").file_name().expect("a name").to_string_lossy().into_owned();
+    let viewed = said(
+        study.program("one").args(["--as", "P01", "play", "--plain", "--run", &id]),
+        "xray leads S1\nquit\n",
+    );
+    assert!(viewed.code == 0 && viewed.out.contains("S1"), "{}{}", viewed.out, viewed.err);
+    let found = study.audit(&["one", "two"]);
+    assert!(
+        found.iter().any(|(kind, line, words)| {
+            kind == "hidden_state" && line.is_some() && words.ends_with("that were not over: P02")
+        }),
+        "{found:?}"
+    );
+    assert_eq!(study.audit(&["one"]), [], "nobody else plays the seed there");
+    // A debug run of the seed.
+    let debug = ["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"];
+    assert_eq!(said(study.program("two").args(debug), "quit\n").code, 0);
+    let found = study.audit(&["two"]);
+    assert!(
+        found.iter().any(|(kind, _, words)| kind == "hidden_state" && words.contains("debug run")),
+        "{found:?}"
+    );
+}
+
 /// The rows of a table, by the names of its columns.
 fn rows_of(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut table = csv::Reader::from_path(path).expect("a table");
@@ -350,6 +462,6 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
         let _ = fs::remove_file(&pipe);
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("it runs").success());
     }
-    assert_eq!(study.kinds(&["one"]), [] as [&str; 0]);
+    assert_eq!(study.kinds(&["one"]), ["damaged"], "the study of that run is unknown");
     assert_eq!(study.run("one", &["study", "watch", &study.folder(), "--once"]).code, 0);
 }

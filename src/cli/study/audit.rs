@@ -46,6 +46,9 @@ fn in_words(study: &Study, audit: &Audit) -> String {
     let mut text = format!("{} · protocol {}\n\n", study.protocol.name, &study.digest[..16]);
     text += &aligned(&facts(&audit.runs));
     text += &format!("\n\n{}\n\n", audit.visits);
+    if audit.runs_of_other_studies > 0 {
+        text += &format!("Runs of other studies, not examined: {}.\n\n", audit.runs_of_other_studies);
+    }
     for finding in &audit.findings {
         text += &told(finding);
     }
@@ -59,7 +62,11 @@ fn told(finding: &AuditFinding) -> String {
     let who = finding.participant.as_deref().unwrap_or("?");
     let line = finding.line.map_or(String::new(), |line| format!(", line {line}"));
     let at = if finding.at.is_empty() { String::new() } else { format!(", {}", finding.at) };
-    format!("{who}, run {}{line}{at}: {}\n  {}\n", finding.run, finding.kind.title(), finding.words)
+    let place = match finding.run.as_str() {
+        "" => String::new(),
+        run => format!("{who}, run {run}{line}{at}: "),
+    };
+    format!("{place}{}\n  {}\n", finding.kind.title(), finding.words)
 }
 
 /// The runs as a table.

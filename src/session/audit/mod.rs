@@ -8,6 +8,7 @@ mod archives;
 mod clock;
 mod facts;
 mod finding;
+mod hidden_state;
 mod run_record;
 
 use std::collections::BTreeMap;
@@ -24,7 +25,7 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::verify::verify_sealed;
-use crate::session::study::definition::Study;
+use crate::session::study::definition::{Study, shortened};
 use crate::session::study::rules::SessionRules;
 use crate::session::study::visit_log::{VisitSummary, visits_of};
 use crate::session::trajectory::{Line, Trajectory, seconds};
@@ -37,6 +38,8 @@ pub struct Audit {
     pub runs: Vec<RunFacts>,
     /// What was found, by run, line and kind.
     pub findings: Vec<AuditFinding>,
+    /// Number of runs in the folders that belong to studies with another name. They were not examined.
+    pub runs_of_other_studies: usize,
     /// How many came, and what became of them.
     pub visits: VisitSummary,
 }
@@ -47,7 +50,12 @@ pub struct Audit {
 /// The public key of the lab cannot be read.
 pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| runs_in(base)).collect();
-    let mut audit = Audit { runs: Vec::new(), findings: Vec::new(), visits: VisitSummary::default() };
+    let mut audit = Audit {
+        runs: Vec::new(),
+        findings: Vec::new(),
+        runs_of_other_studies: 0,
+        visits: VisitSummary::default(),
+    };
     for machine in &records {
         for run in machine.iter().filter(|run| run.is_of(&study.digest)) {
             let own = Inspection { study, machine, run };
@@ -56,6 +64,10 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
         }
     }
     let all: Vec<&RunRecord> = records.iter().flatten().collect();
+    audit.findings.extend(nothing_examined(study, &all, machines));
+    audit.findings.extend(all.iter().filter_map(|run| not_examined(study, run)));
+    audit.runs_of_other_studies = all.iter().filter(|run| run.is_of_another_study(study)).count();
+    audit.findings.extend(hidden_state::views(study, &all));
     audit.findings.extend(second_sessions(study, &all));
     audit.findings.extend(archives::not_signed(study, machines)?);
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
@@ -69,7 +81,54 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
             other.kind,
         ))
     });
+    // Folders may be copies of one another.
+    audit.findings.dedup();
     Ok(audit)
+}
+
+/// A finding that there is no run to audit.
+fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) -> Option<AuditFinding> {
+    if runs.iter().any(|run| run.is_of(&study.digest)) {
+        return None;
+    }
+    let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
+    let words = format!(
+        "no run with the protocol digest {} is in {}: check the folders and the protocol",
+        study.short_digest(),
+        folders.join(", ")
+    );
+    Some(AuditFinding {
+        kind: AuditKind::NothingExamined,
+        run: String::new(),
+        participant: None,
+        line: None,
+        at: String::new(),
+        words,
+    })
+}
+
+/// A finding about a run that could not be examined although it may belong to the study.
+fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
+    let (kind, at, words) = match (&run.manifest, run.stamp()) {
+        (None, _) => {
+            let words = "neither its first line nor run.toml can be read, so its study is unknown".to_owned();
+            (AuditKind::Damaged, String::new(), words)
+        }
+        (Some(manifest), Some(stamp))
+            if stamp.name == study.protocol.name && stamp.digest != study.digest =>
+        {
+            let words = format!(
+                "it was played under the protocol digest {}, not {}. It was not examined: audit it with the folder of \
+                 the study that has its digest",
+                shortened(&stamp.digest),
+                study.short_digest()
+            );
+            (AuditKind::OtherProtocol, manifest.created.clone(), words)
+        }
+        _ => return None,
+    };
+    let participant = run.manifest.as_ref().and_then(|manifest| manifest.participant.clone());
+    Some(AuditFinding { kind, run: run.id.clone(), participant, line: None, at, words })
 }
 
 /// One run, and all runs of its machine.

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::all_run_folders;
+use crate::session::study::definition::Study;
+use crate::session::study::stamp::StudyStamp;
 use crate::session::trajectory::Trajectory;
 
 /// A run as its folder records it.
@@ -38,11 +40,18 @@ impl RunRecord {
         RunRecord { id, folder, manifest, trajectory }
     }
 
-    /// Whether it is a run of a study.
+    /// Returns its study, if its record names one.
+    pub(super) fn stamp(&self) -> Option<&StudyStamp> {
+        self.manifest.as_ref()?.study.as_ref()
+    }
+
+    /// Whether its study has this digest.
     pub(super) fn is_of(&self, study: &str) -> bool {
-        self.manifest
-            .as_ref()
-            .and_then(|manifest| manifest.study.as_ref())
-            .is_some_and(|stamp| stamp.digest == study)
+        self.stamp().is_some_and(|stamp| stamp.digest == study)
+    }
+
+    /// Whether it belongs to a study with another name.
+    pub(super) fn is_of_another_study(&self, study: &Study) -> bool {
+        self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }
 }

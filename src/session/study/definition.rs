@@ -316,6 +316,11 @@ impl Study {
         Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
+    /// Returns the first digits of the digest, for messages.
+    pub fn short_digest(&self) -> &str {
+        shortened(&self.digest)
+    }
+
     /// What says whether a word is the experimenter's code; none where the protocol has no code.
     pub fn code_check(&self) -> Option<CodeCheck> {
         let digest = self.protocol.access.code.clone()?;
@@ -422,6 +427,11 @@ impl Protocol {
         }
         Ok(())
     }
+}
+
+/// Returns the first 16 digits of a digest, for messages.
+pub(in crate::session) fn shortened(digest: &str) -> &str {
+    digest.get(..16).unwrap_or(digest)
 }
 
 /// A problem with a key of the table `voice`.

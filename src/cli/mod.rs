@@ -37,8 +37,7 @@ pub use failure::Failure;
 
 use crate::session::{
     Configuration, LabKey, Manifest, ModelSettings, RunError, STUDY_FILE, SealKey, Study, Trajectory,
-    lab_key_of, list_worlds_as_experimenter, list_worlds_in, manifest_of, participant_folder, record_look,
-    record_refused_code, seal_key_of,
+    lab_key_of, manifest_of, participant_folder, record_look, record_refused_code, seal_key_of,
 };
 
 /// Run a simulated AI subscription company for 500 days.
@@ -379,9 +378,6 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         study_folder: arguments.study.clone().or_else(study_here),
         is_experimenter: false,
     };
-    if let Some(runs) = Configuration::runs_folder() {
-        list_worlds_in(&runs);
-    }
     if let Some(folder) = &arguments.study {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
         let study = Study::read(folder)?;
@@ -402,7 +398,6 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
                 "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
             ));
         }
-        list_worlds_as_experimenter();
     }
     match arguments.command {
         None => play::run(arguments.play, &context),

@@ -14,7 +14,6 @@ use super::output_file::check_beginning;
 use super::{Context, Failure, print};
 use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
 pub use crate::lab::{Seeds, parse_seeds};
-use crate::session::{DEFAULT_SCENARIO, list_world};
 
 /// Options of `run`.
 #[derive(Debug, Args)]
@@ -97,8 +96,6 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let mut book =
         Book { metrics: options.metrics.as_ref().map(open_metrics).transpose()?, options, bankrupt: false };
-    let scenario = spec.scenario.as_deref().or(policy.start.scenario.as_deref()).unwrap_or(DEFAULT_SCENARIO);
-    list_world("run", (options.seed.first, options.seed.last), scenario, None, None);
     let seeds: Vec<u64> = (options.seed.first..=options.seed.last).collect();
     let progress = progress_bar(seeds.len() as u64, "runs");
     let results = start(&policy, &spec, seeds, options, context)?;

@@ -162,9 +162,6 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
         let score = session.score().map_or(String::new(), |score| format!(" · score {}", dollars(score)));
         text += &format!("run ended: {} · day {}{score}\n", ended.id(), figures.day);
     }
-    if session.rules().code_words {
-        text += &format!("code: {}\n", session.code_words());
-    }
     if let Some(remark) = &week.remark {
         text += &format!("note: {remark}\n");
     }
@@ -177,11 +174,7 @@ fn over(command: &str, session: &Session, week: &Week) -> Answer {
         true => "the practice is over; the session comes next\n".to_owned(),
         false => "the run is over; the result is not shown in this study\n".to_owned(),
     };
-    let mut object = json!({ "ended": true });
-    if session.rules().code_words {
-        text += &format!("code: {}\n", session.code_words());
-        object["code"] = session.code_words().into();
-    }
+    let object = json!({ "ended": true });
     if let Some(remark) = &week.remark {
         text += &format!("note: {remark}\n");
     }

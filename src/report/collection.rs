@@ -80,6 +80,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     collected.visits = VisitSummary::of(own_visits, &labels_recorded);
     collected.tables.add_visits(&visits);
     let mut present: BTreeSet<String> = BTreeSet::new();
+    let mut others: BTreeMap<String, (String, String)> = BTreeMap::new();
     for (done, run) in runs.iter().enumerate() {
         progress(done, runs.len());
         let id = &run.manifest.id;
@@ -88,10 +89,15 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
             let from = run.manifest.participant.clone().unwrap_or_default();
             notes.push(CollectNote::Relabelled { run: id.clone(), from, to: to.clone() });
         }
+        let other =
+            run.manifest.study.as_ref().filter(|stamp| study.is_some_and(|own| own.digest != stamp.digest));
+        if let (Some(stamp), Some(label)) = (other, &label) {
+            others.insert(label.clone(), (id.clone(), stamp.digest.clone()));
+        }
         match take(run, out, label.clone(), keys, &mut collected.tables) {
             Ok((seal, archive)) => {
                 let is_session = run.manifest.study.as_ref().is_none_or(|stamp| !stamp.practice);
-                present.extend(label.clone().filter(|_| is_session));
+                present.extend(label.clone().filter(|_| is_session && other.is_none()));
                 collected.runs.push((label, seal, archive));
             }
             Err(error) => {
@@ -109,7 +115,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     let unknown = labels.keys().filter(|run| !known.contains(run));
     notes.extend(unknown.map(|run| CollectNote::UnknownRun { run: run.clone() }));
     if let Some(assignment) = study.and_then(|study| study.assignment.as_ref()) {
-        notes.extend(missing_places(assignment, &present, &visits));
+        notes.extend(missing_places(assignment, &present, &others, &visits));
     }
     collected.notes = notes;
     Ok(collected)

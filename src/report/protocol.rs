@@ -23,7 +23,7 @@ pub fn protocol(study: &Study, configuration: &Configuration) -> Result<String, 
         time(),
         questions(study),
         measures(),
-        exclusion(study),
+        exclusion(),
         checklist(study),
         consent(study),
     ];
@@ -183,7 +183,6 @@ fn rules(study: &Study) -> String {
         );
     }
     text += &format!("| Whoever stops the clock is asked why | {} |\n", yes(rules.pause_reason));
-    text += &format!("| Week reports and the last page show four code words | {} |\n", yes(rules.code_words));
     text + &limits(&rules.limits)
 }
 
@@ -291,31 +290,26 @@ fn measures() -> String {
     text
 }
 
-fn exclusion(study: &Study) -> String {
-    let grave: Vec<&str> = AuditKind::ALL.iter().map(|kind| kind.title()).collect();
-    let witness = match study.witness() {
-        Some(_) => "A witness is told of every line.",
-        None => "There is no witness: lines that are rewritten or cut with fitting hashes stay unnoticed.",
-    };
+fn exclusion() -> String {
+    let of_sessions = AuditKind::ALL.iter().filter(|kind| **kind != AuditKind::NothingExamined);
+    let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
     format!(
-        "## Exclusion\n\nBefore any result is looked at, `novamind study audit` is run. {witness} A session with one of \
-         these findings is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
+        "## Exclusion\n\nBefore any result is looked at, `novamind study audit` is run. It reads the records alone: a run \
+         whose lines were rewritten with correct hashes, or that was continued in a copy of its folder, stays unnoticed. A \
+         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. To be decided before the first session: the number of failed \
          attention checks, of naive weeks and of weeks decided in less than ten active seconds from which a session is excluded.\n",
         grave.join(", ")
     )
 }
 
 fn checklist(study: &Study) -> String {
-    let mut points = vec![
+    let points = [
         "`novamind study check` on every machine.".to_owned(),
         format!("The digest on every machine is {}.", &study.digest[..16]),
         "Labels handed out once each.".to_owned(),
         "`novamind study watch` while people play; remarks noted with `--note`.".to_owned(),
+        "`novamind study collect` and `novamind study audit` at the end of each day.".to_owned(),
     ];
-    if study.protocol.integrity.code_words {
-        points.push("The four words of each week's report noted on the sheet.".to_owned());
-    }
-    points.push("`novamind study collect` and `novamind study audit` at the end of each day.".to_owned());
     let lines: Vec<String> = points.iter().map(|point| format!("- [ ] {point}\n")).collect();
     format!("## Checklist\n\n{}", lines.concat())
 }

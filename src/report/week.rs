@@ -72,8 +72,6 @@ pub struct WeekReport {
     pub comments: u32,
     /// News items in it.
     pub news_items: u32,
-    /// Four words for the record up to it, where the rules show them.
-    pub code: Option<String>,
     /// Days on which the program filed a week because the time for it was over.
     limit_days: Vec<u32>,
 }
@@ -176,15 +174,13 @@ impl WeekReport {
             };
             posts[kind].push(post.day);
         }
-        let told = WeekReport::of(&Sources {
+        WeekReport::of(&Sources {
             weeks: session.weeks(),
             decisions: session.decisions(),
             journal: session.journal(),
             cash_by_day: session.cash_by_day(),
             posts: posts.each_ref().map(Vec::as_slice),
-        });
-        let code = session.rules().code_words.then(|| session.code_words());
-        told.map(|told| WeekReport { code, ..told })
+        })
     }
 
     /// The last week of these; none before the first.
@@ -204,7 +200,6 @@ impl WeekReport {
             customer_posts,
             comments,
             news_items,
-            code: None,
             limit_days: sources.journal.iter().filter_map(filed_at_limit).collect(),
         })
     }

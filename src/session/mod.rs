@@ -25,7 +25,6 @@ mod study;
 mod trajectory;
 mod whatif;
 mod why;
-mod witness;
 mod xray;
 
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
@@ -84,9 +83,6 @@ pub use folder::preview::{RunPreview, run_preview};
 pub use folder::runs::{
     RunSummary, all_run_folders, base_of_runs, delete_run, end_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
-};
-pub use folder::world_log::{
-    WORLDS, WorldLine, WorldLog, list_world, list_worlds_as_experimenter, list_worlds_in,
 };
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
@@ -160,9 +156,6 @@ pub use whatif::{
 pub use why::{
     Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,
     WhyPart, WhyProgress,
-};
-pub use witness::{
-    Finding, FindingKind, Told, Witness, WitnessRecord, code_words, compare, line_of_code, read_witness,
 };
 
 pub use xray::breakpoint::condition::{Condition, Direction, Judged, Relation, WorldEvent};

@@ -13,7 +13,6 @@ use crate::session::figures::groups::GroupWeek;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::WeekFigures;
 use crate::session::folder::manifest::Manifest;
-use crate::session::folder::world_log::list_world;
 use crate::session::lesson::standing::LessonStanding;
 use crate::session::model_voice::speaker::ModelVoice;
 use crate::session::play::history::History;
@@ -26,7 +25,6 @@ use crate::session::resume::sealing::SealKey;
 use crate::session::study::answer_book::AnswerBook;
 use crate::session::study::rules::SessionRules;
 use crate::session::trajectory::record::Ended;
-use crate::session::witness::code_words;
 use crate::session::xray::breakpoint::list::Breakpoints;
 use crate::session::xray::hidden_day::Diary;
 use crate::session::xray::hidden_tables::HiddenTables;
@@ -58,8 +56,6 @@ pub struct Session {
     pub(super) clock: PersonalClock,
     /// The last line that was written, or applied again.
     pub(super) position: Position,
-    /// Hash of the line that closed the last week, or the run; empty before the first.
-    pub(super) closing_line: String,
     /// Rows that follow from what has happened.
     pub(super) projection: Projection,
     /// The last day on which each screen of the console was left, in the sittings before this one.
@@ -101,13 +97,6 @@ impl Session {
     /// The last day on which each screen of the console was left in an earlier sitting.
     pub fn viewed(&self) -> &BTreeMap<String, u32> {
         &self.viewed
-    }
-
-    /// Puts the world of the run on the machine's list.
-    pub(in crate::session) fn list_as(&self, by: &str) {
-        let Manifest { id, seed, scenario, mode, study, .. } = &self.manifest;
-        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
-        list_world(&format!("{by} {mode}"), (*seed, *seed), scenario, Some(id), study);
     }
 
     /// By which rules it is played.
@@ -203,12 +192,6 @@ impl Session {
     /// trajectory recorded.
     pub fn state_hash(&self) -> (String, BTreeMap<String, String>) {
         self.simulation.state_hash()
-    }
-
-    /// Four words for the trajectory up to the line that closed the last week, or the run: whoever notes them can later tell
-    /// that it was this one. Empty before the first week.
-    pub fn code_words(&self) -> String {
-        code_words(&self.closing_line)
     }
 
     /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use novamind::console::glyphs::Glyphs;
 use novamind::console::request::{Recorded, Request};
 use novamind::session::{
-    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent, compare,
-    line_of_code, lines_afterwards, read_witness, visits,
+    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent,
+    lines_afterwards, visits,
 };
 
 use super::harness::Console;
@@ -148,12 +148,6 @@ fn questions_of(run: &Path) -> Vec<String> {
     trajectory.lines.iter().chain(&after.lines).filter_map(told).collect()
 }
 
-/// The code that a page shows.
-fn code_on(screen: &str) -> String {
-    let (_, after) = screen.split_once("code: ").unwrap_or_else(|| panic!("no code:\n{screen}"));
-    after.split_whitespace().next().expect("words").to_owned()
-}
-
 /// Lets a week pass; its report stays open.
 fn week(console: &mut Console) {
     console.press("n enter 'test' enter f enter");
@@ -186,7 +180,6 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
     assert!(!screen.contains("question") && !screen.contains("seed"), "{screen}");
     week(&mut console);
     console.shows("Most unusual changes");
-    let code = code_on(&console.screen());
     console.press("n");
     console.shows("Choose the second option.");
     console.press("2 enter space down down space enter");
@@ -198,7 +191,6 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
     week(&mut console);
     // The run is over: its page leads to the last question, and nowhere else.
     let end = console.screen();
-    let code_at_end = code_on(&end);
     assert!(!end.contains("published") && !end.contains("replay"), "{end}");
     console.press("esc v enter");
     console.shows("What did you try?");
@@ -225,12 +217,6 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
         ]
     );
     let trajectory = Trajectory::read(&runs[0].join("trajectory.jsonl")).expect("it reads");
-    // What the experimenter notes leads to the line that closed the week, and to the last one.
-    let kind = |code: &str| {
-        let line = line_of_code(&trajectory.lines, code).expect("a code").expect("a line");
-        (line.day, line.record.kind())
-    };
-    assert_eq!((kind(&code), kind(&code_at_end)), ((7, "week"), (14, "end")));
     let Record::Start(start) = &trajectory.lines[0].record else { panic!("the first line") };
     let given = start.consent.as_ref().and_then(|consent| consent.given).expect("it was given");
     assert_eq!((given.means, given.scrolled_to_end), (ConsentMeans::Screen, true));
@@ -413,26 +399,6 @@ fn pages_fit_every_window_and_are_ascii_where_asked() {
     }
     console.size = (100, 30);
     console.shows("Thank you");
-}
-
-#[test]
-fn the_witness_of_the_study_is_told_of_sessions_in_the_console() {
-    let lab = Lab::new();
-    lab.edit("[access]", "[integrity]\nwitness = \"witness\"\n[access]");
-    lab.edit("days = 14", "days = 7");
-    std::fs::create_dir(lab.folder().join("witness")).expect("a folder");
-    let mut console = lab.visit((120, 40));
-    console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
-    console.press("enter 2 enter space enter 'I_guessed.' tab enter");
-    console.shows("Type the label");
-    drop(console);
-    let run = &lab.own_runs("P01")[0];
-    let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
-    let after = lines_afterwards(run, &trajectory).expect("it reads");
-    assert!(after.lines.iter().any(|line| matches!(line.record, Record::Activity(Activity::Answer(_)))));
-    let told = read_witness(&lab.folder().join("witness")).expect("a witness");
-    let told = told.runs.into_values().next().expect("a run that was told");
-    assert_eq!(compare(&trajectory, &after.lines, &told), []);
 }
 
 #[test]

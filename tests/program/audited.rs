@@ -1,4 +1,4 @@
-//! The audit of a study: what people do to their records is found, with its line, and honest sessions raise nothing.
+//! The audit of a study: contradictions of the records are found, with their line, and honest sessions raise nothing.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::support::home::{Home, Said, said};
 
-/// A study with a witness, and machines that people play on.
+/// A study, and machines that people play on.
 struct Study {
     home: Home,
 }
@@ -31,9 +31,7 @@ impl Study {
         let text = fs::read_to_string(&path).expect("a protocol");
         let text =
             text.replace("# days = 84 ", "days = 42 #").replace("offer = \"required\"", "offer = \"none\"");
-        let text = text.replace("# witness = \"/mnt/lab/witness\"", "witness = \"witness\" #");
         fs::write(path, text).expect("written");
-        fs::create_dir(study.home.0.path().join("pilot/witness")).expect("a folder");
         for questions in ["1-before", "2-effort", "3-end"] {
             fs::remove_file(study.home.0.path().join(format!("pilot/questions/{questions}.toml")))
                 .expect("gone");
@@ -109,8 +107,14 @@ fn hash(text: &str) -> String {
 
 /// Writes lines with a correct chain and correct sums.
 fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
+    forge_with_afterwards(run, lines, Vec::new());
+}
+
+/// The same, with lines after the end.
+fn forge_with_afterwards(run: &Path, lines: Vec<Map<String, Value>>, afterwards: Vec<Map<String, Value>>) {
     let (mut text, mut prev) = (String::new(), hash(""));
-    for (seq, mut line) in lines.into_iter().enumerate() {
+    let (mut after, count) = (String::new(), lines.len());
+    for (seq, mut line) in lines.into_iter().chain(afterwards).enumerate() {
         line.insert("seq".to_owned(), json!(seq));
         line.insert("prev".to_owned(), json!(prev));
         line.shift_remove("sum");
@@ -118,9 +122,12 @@ fn forge(run: &Path, lines: Vec<Map<String, Value>>) {
         line.insert("sum".to_owned(), json!(&hash(&bare)[..16]));
         let whole = Value::Object(line).to_string();
         prev = hash(&whole);
-        text += &(whole + "\n");
+        *(if seq < count { &mut text } else { &mut after }) += &(whole + "\n");
     }
     fs::write(run.join("trajectory.jsonl"), text).expect("written");
+    if !after.is_empty() {
+        fs::write(run.join("afterwards.jsonl"), after).expect("written");
+    }
     for derived in ["world.db", "world.db-wal", "world.db-shm", "snapshot.bin"] {
         let _ = fs::remove_file(run.join(derived));
     }
@@ -147,62 +154,71 @@ fn honest_sessions_raise_nothing() {
     study.visit("two", &format!("P03\nyes\n{}withdraw\nwithdraw\n", WEEKS[0]));
     study.visit("two", &format!("P04\nyes\nsql SELECT 1\n{}", WEEKS.concat()));
     study.visit("two", "P04\nnext \"six\" naive\n");
-    // What an experimenter does with finished runs is no rehearsal.
+    // An experimenter may replay finished runs.
     let run = study.only_run("one", "P01").file_name().expect("a name").to_string_lossy().into_owned();
     assert_eq!(study.run("one", &["--as", "P01", "replay", &run, "--verify"]).code, 0);
     assert_eq!(study.audit(&["one", "two"]), []);
 }
 
 #[test]
-fn a_session_that_was_rewritten_cut_or_played_twice_is_found() {
+fn records_of_earlier_builds_with_removed_fields_still_verify() {
     let study = Study::new();
-    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS.concat()));
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[..2].concat()));
+    let run = study.only_run("one", "P01");
+    let mut old = lines(&run);
+    old[0]["rules"]["code_words"] = json!(true);
+    for line in old.iter_mut().filter(|line| line["kind"] == "session" && line["event"] == "opened") {
+        line.insert("worlds".to_owned(), json!({ "lines": 3, "head": "8899aabbccddeeff" }));
+    }
+    forge(&run, old);
+    let manifest = fs::read_to_string(run.join("run.toml")).expect("text");
+    assert!(manifest.contains("[rules]\n"), "{manifest}");
+    fs::write(run.join("run.toml"), manifest.replace("[rules]\n", "[rules]\ncode_words = true\n"))
+        .expect("written");
+    fs::write(run.join("witness-queue.jsonl"), "{}\n").expect("written");
+    let text = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
+    let id = run.file_name().expect("a name").to_string_lossy().into_owned();
+    let verified = study.run("one", &["--as", "P01", "replay", &id, "--verify"]);
+    assert_eq!(verified.code, 0, "{}{}", verified.out, verified.err);
+    assert_eq!(study.audit(&["one"]), []);
+    // The run continues, and its first lines keep their bytes.
+    study.visit("one", &format!("P01\n{}quit\n", WEEKS[2]));
+    let continued = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
+    assert!(continued.starts_with(&text) && !continued[text.len()..].contains("worlds"));
+    assert_eq!(study.audit(&["one"]), []);
+}
+
+#[test]
+fn audit_finds_records_that_were_changed_cut_or_removed() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\nset_prices A=9\n{}quit\n", WEEKS.concat()));
     let run = study.only_run("one", "P01");
     let good = study.machine("good");
     copy(&study.machine("one"), &good);
-    let (witness, told_so_far) = (study.home.0.path().join("pilot/witness"), study.machine("witness"));
-    copy(&witness, &told_so_far);
     let restore = || {
-        for (place, from) in [(&study.machine("one"), &good), (&witness, &told_so_far)] {
-            fs::remove_dir_all(place).expect("gone");
-            copy(from, place);
-        }
+        fs::remove_dir_all(study.machine("one")).expect("gone");
+        copy(&good, &study.machine("one"));
     };
-    let advance = lines(&run).iter().position(|line| line["kind"] == "advance").expect("a week");
-    // Rationales and forecasts told anew, chain and sums correct.
-    let mut told = lines(&run);
-    told[advance].insert("rationale".to_owned(), json!("I knew it all along"));
-    told[advance]["forecasts"][0]["point"] = json!(998_000);
-    forge(&run, told);
-    assert_eq!(study.run("one", &["--as", "P01", "runs"]).code, 0);
-    let found = study.audit(&["one"]);
-    assert_eq!((found[0].0.as_str(), found[0].1), ("changed", Some(advance as u64 + 1)), "{found:?}");
-    restore();
-    // The last five weeks cut, and the database that remembers them removed.
-    let cut: Vec<_> = lines(&run).into_iter().take(advance).collect();
-    forge(&run, cut);
-    let found = study.audit(&["one"]);
-    assert!(
-        found.iter().any(|(kind, line, _)| kind == "cut" && *line == Some(advance as u64 + 1)),
-        "{found:?}"
-    );
-    // And played anew from there.
-    study.visit("one", "P01\nset_prices A=5\nnext \"better\" naive\nquit\n");
-    assert!(study.kinds(&["one"]).contains(&"two_histories".to_owned()));
-    restore();
-    // Copied aside, played on, copied back.
-    copy(&study.machine("one"), &study.machine("aside"));
-    study.visit("one", "P01\nset_prices A=1\nquit\n");
-    assert_eq!(study.audit(&["one"]), []);
-    fs::remove_dir_all(study.machine("one")).expect("gone");
-    copy(&study.machine("aside"), &study.machine("one"));
-    study.visit("one", "P01\nset_prices A=30\nnext \"six\" naive\n");
+    // A decision is changed; chain and sums are correct.
+    let mut changed = lines(&run);
+    let call = changed.iter().position(|line| line["kind"] == "call").expect("a call");
+    changed[call]["args"]["A"] = json!(30);
+    forge(&run, changed);
     let kinds = study.kinds(&["one"]);
-    assert!(kinds.contains(&"two_histories".to_owned()), "{kinds:?}");
-    // The trajectory removed.
+    assert!(kinds.contains(&"not_reached".to_owned()), "{kinds:?}");
+    restore();
+    // The last weeks are cut; the database still holds them.
+    let advance = lines(&run).iter().position(|line| line["kind"] == "advance").expect("a week");
+    let text = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
+    let cut: String = text.lines().take(advance).map(|line| format!("{line}\n")).collect();
+    fs::write(run.join("trajectory.jsonl"), cut).expect("written");
+    let found = study.audit(&["one"]);
+    assert_eq!((found[0].0.as_str(), found[0].1), ("cut", Some(advance as u64 + 1)), "{found:?}");
+    restore();
+    // A byte is changed, and the trajectory is removed.
+    fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":9", "\"A\":8", 1)).expect("written");
+    assert!(study.kinds(&["one"]).contains(&"damaged".to_owned()));
     fs::remove_file(run.join("trajectory.jsonl")).expect("gone");
-    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
-    fs::remove_dir_all(&run).expect("gone");
     assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
 }
 
@@ -232,7 +248,7 @@ fn edited_manifests_and_clocks_are_found() {
     fs::write(run.join("run.toml"), good.replace("participant = \"P01\"", "participant = \"P02\""))
         .expect("written");
     let kinds = study.kinds(&["one"]);
-    assert!(kinds.contains(&"changed".to_owned()) && kinds.contains(&"assignment".to_owned()), "{kinds:?}");
+    assert!(kinds.contains(&"assignment".to_owned()), "{kinds:?}");
     fs::write(run.join("run.toml"), &good).expect("written");
     // A clock that was set back between two lines, as the lines would tell it.
     told[0].insert("participant".to_owned(), json!("P01"));
@@ -243,97 +259,105 @@ fn edited_manifests_and_clocks_are_found() {
     assert!(found.iter().any(|(kind, line, _)| kind == "clock" && *line == Some(at as u64 + 1)), "{found:?}");
 }
 
-/// A way to rehearse a session, by its name.
-type Rehearsal = (&'static str, fn(&Study));
+#[test]
+fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
+    let study = Study::new();
+    fs::create_dir(study.machine("empty")).expect("a folder");
+    let found = study.audit(&["empty"]);
+    assert_eq!((found.len(), found[0].0.as_str()), (1, "nothing_examined"), "{found:?}");
+    study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[0]));
+    assert_eq!(study.audit(&["one"]), []);
+    // The protocol is changed: the run belongs to the old digest.
+    let path = study.home.0.path().join("pilot/study.toml");
+    let text = fs::read_to_string(&path).expect("a protocol");
+    fs::write(&path, format!("{text}\n# changed\n")).expect("written");
+    let kinds: Vec<String> = study.kinds(&["one"]);
+    assert_eq!(kinds.len(), 2, "{kinds:?}");
+    for kind in ["nothing_examined", "other_protocol"] {
+        assert!(kinds.contains(&kind.to_owned()), "{kinds:?}");
+    }
+    let said = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(said.code == 1 && !said.out.contains("Nothing was found"), "{}", said.out);
+    // The label has a run, and the collection says so.
+    let (one, out) =
+        (study.machine("one").display().to_string(), study.machine("data").display().to_string());
+    let collected = study.home.run(&["study", "collect", &one, "--out", &out, "--protocol", &study.folder()]);
+    assert!(
+        collected.out.contains("label P01 has no session under this protocol; its run "),
+        "{}",
+        collected.out
+    );
+    assert!(!collected.out.contains("label P01 has no session;"), "{}", collected.out);
+    assert!(collected.out.contains("label P02 has no session\n"), "{}", collected.out);
+    // Under another name it is another study: counted, and no finding of its own.
+    fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
+    let said = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(said.out.contains("Runs of other studies, not examined: 1."), "{}", said.out);
+    assert_eq!(study.kinds(&["one"]), ["nothing_examined"]);
+}
 
 #[test]
-fn rehearsals_on_the_machine_are_found() {
-    let session = |study: &Study| {
-        study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS[..2].concat()));
+fn audit_finds_a_clock_that_was_set_within_the_last_sitting() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
+    assert_eq!(study.audit(&["one"]), []);
+    let run = study.only_run("one", "P01");
+    let shift = |text: &str, from: usize, seconds: i64| -> String {
+        let mut all: Vec<Map<String, Value>> =
+            text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        for line in all.iter_mut().skip(from) {
+            let at = nanoseconds_of(line["at"].as_str().expect("a moment")) + seconds * 1_000_000_000;
+            line.insert("at".to_owned(), json!(written_moment(at)));
+        }
+        all.into_iter().map(|line| Value::Object(line).to_string() + "\n").collect()
     };
-    let finish = |study: &Study| {
-        let run = study.only_run("one", "P01").display().to_string();
-        study.visit("one", &format!("P01\n{}", WEEKS[..4].concat()));
-        run
-    };
-    let rehearse: [Rehearsal; 4] = [
-        ("run", |study| {
-            assert_eq!(
-                study.run("one", &["run", "--policy", "P0", "--seed", "2000..3000", "--until", "7"]).code,
-                0
-            );
-        }),
-        ("play debug", |study| {
-            let mut program = study.program("one");
-            let said = said(
-                program.args(["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"]),
-                "step\n",
-            );
-            assert_eq!(said.code, 0, "{}", said.err);
-        }),
-        ("run.toml gone", |study| {
-            // A rehearsal whose run was removed again.
-            let mut program = study.program("one");
-            said(
-                program.args(["play", "--plain", "--seed", "2718", "--mode", "sandbox", "--days", "42"]),
-                "",
-            );
-            for entry in fs::read_dir(study.machine("one")).expect("a folder").flatten() {
-                if entry.path().join("run.toml").exists() {
-                    fs::remove_dir_all(entry.path()).expect("gone");
-                }
-            }
-        }),
-        ("branch", |study| {
-            // The session copied, given up, and branched.
-            let run = study.only_run("one", "P01");
-            let id = run.file_name().expect("a name").to_owned();
-            copy(&run, &study.machine("one").join(&id));
-            let id = id.to_string_lossy().into_owned();
-            assert_eq!(study.run("one", &["runs", "end", &id]).code, 0);
-            let mut program = study.program("one");
-            said(program.args(["play", "--plain", "--run", &id]), "branch 2\nnext naive\n");
-            fs::remove_dir_all(study.machine("one").join(id)).expect("gone");
-        }),
-    ];
-    for (what, rehearse) in rehearse {
-        let study = Study::new();
-        session(&study);
-        rehearse(&study);
-        finish(&study);
+    let read = |name: &str| fs::read_to_string(run.join(name)).expect("lines");
+    let (text, after) = (read("trajectory.jsonl"), read("afterwards.jsonl"));
+    let at = text.lines().count() - 4;
+    for (seconds, is_found) in [(1, false), (600, true)] {
+        // The wall clock moved forward; the monotonic clock of the `session` lines did not.
+        let moved = |text: &str, from| shift(text, from, seconds);
+        let lines = moved(&text, at) + &moved(&after, 0);
+        let (text, after): (Vec<_>, Vec<_>) = lines
+            .lines()
+            .map(|line| serde_json::from_str::<Map<String, Value>>(line).expect("JSON"))
+            .partition(|line| line["seq"].as_u64().expect("a number") < text.lines().count() as u64);
+        forge_with_afterwards(&run, text, after);
         let found = study.audit(&["one"]);
-        assert!(
-            found.iter().any(|(kind, line, _)| kind == "rehearsal" && line.is_some()),
-            "{what}: {found:?}"
-        );
+        let is_clock = |(kind, _, words): &(String, Option<u64>, String)| {
+            kind == "clock" && words.contains("600 seconds ahead of the monotonic clock")
+        };
+        assert_eq!(found.iter().any(is_clock), is_found, "{found:?}");
     }
-    // A list of worlds from which the rehearsal was taken out.
+}
+
+#[test]
+fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
     let study = Study::new();
-    session(&study);
-    assert_eq!(study.run("one", &["run", "--policy", "P0", "--seed", "2718", "--until", "7"]).code, 0);
-    study.visit("one", "P01\nquit\n");
-    let list = study.machine("one").join("worlds.jsonl");
-    let kept: String =
-        fs::read_to_string(&list).expect("a list").lines().take(1).map(|line| format!("{line}\n")).collect();
-    fs::write(&list, kept).expect("written");
-    let kinds = study.kinds(&["one"]);
-    assert!(kinds.contains(&"world_list".to_owned()), "{kinds:?}");
-    // One that was taken out after the sitting had seen the list, before another world was opened.
-    let study = Study::new();
-    session(&study);
-    let run = |seed: &str| study.run("one", &["run", "--policy", "P0", "--seed", seed, "--until", "7"]).code;
-    assert_eq!((run("2718"), run("3")), (0, 0));
-    let list = study.machine("one").join("worlds.jsonl");
-    let whole = fs::read_to_string(&list).expect("a list");
-    let kept: Vec<&str> = whole
-        .lines()
-        .filter(|line| !line.contains("\"to_seed\":2718,\"scenario\":\"default\",\"prev\""))
-        .collect();
-    assert_eq!(kept.len() + 1, whole.lines().count());
-    fs::write(&list, kept.join("\n") + "\n").expect("written");
-    let found = study.audit(&["one"]);
+    study.visit("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
+    study.visit("two", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
+    assert_eq!(study.audit(&["one", "two"]), []);
+    // P01 is over and is viewed while P02 still plays the seed.
+    let id = study.only_run("one", "P01").file_name().expect("a name").to_string_lossy().into_owned();
+    let viewed = said(
+        study.program("one").args(["--as", "P01", "play", "--plain", "--run", &id]),
+        "xray leads S1\nquit\n",
+    );
+    assert!(viewed.code == 0 && viewed.out.contains("S1"), "{}{}", viewed.out, viewed.err);
+    let found = study.audit(&["one", "two"]);
     assert!(
-        found.iter().any(|(kind, _, words)| kind == "world_list" && words.contains("line 2")),
+        found.iter().any(|(kind, line, words)| {
+            kind == "hidden_state" && line.is_some() && words.ends_with("that were not over: P02")
+        }),
+        "{found:?}"
+    );
+    assert_eq!(study.audit(&["one"]), [], "nobody else plays the seed there");
+    // A debug run of the seed.
+    let debug = ["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"];
+    assert_eq!(said(study.program("two").args(debug), "quit\n").code, 0);
+    let found = study.audit(&["two"]);
+    assert!(
+        found.iter().any(|(kind, _, words)| kind == "hidden_state" && words.contains("debug run")),
         "{found:?}"
     );
 }
@@ -400,53 +424,21 @@ const END: &str = "title = \"The end\"\nwhen = \"end\"\n[[question]]\nid = \"har
                    points = 7\nlow = \"easy\"\nhigh = \"hard\"\n";
 
 #[test]
-fn answers_after_the_end_are_told_and_compared() {
+fn audit_finds_damaged_lines_after_the_end() {
     let study = Study::new();
     fs::write(study.home.0.path().join("pilot/questions/9-end.toml"), END).expect("written");
     study.visit("one", &format!("P01\nyes\n{}quit\n", WEEKS.concat()));
     study.visit("one", "P01\nnext \"six\" naive\n7\n");
     assert_eq!(study.audit(&["one"]), []);
-    let run = study.only_run("one", "P01");
-    let path = run.join("afterwards.jsonl");
+    let path = study.only_run("one", "P01").join("afterwards.jsonl");
     let good = fs::read_to_string(&path).expect("what was done after the end");
-    let last = lines(&run).last().expect("a line").clone();
-    // An answer told anew, chain and sums correct.
-    let (mut text, mut prev) = (String::new(), hash(&Value::Object(last).to_string()));
-    let answer = good.lines().position(|line| line.contains("\"answer\"")).expect("an answer");
-    for (at, line) in good.lines().enumerate() {
-        let mut line: Map<String, Value> = serde_json::from_str(line).expect("JSON");
-        line.insert("prev".to_owned(), json!(prev));
-        line.shift_remove("sum");
-        if at == answer {
-            assert_eq!(line["value"], 7);
-            line.insert("value".to_owned(), json!(1));
-        }
-        let bare = Value::Object(line.clone()).to_string();
-        line.insert("sum".to_owned(), json!(&hash(&bare)[..16]));
-        let whole = Value::Object(line).to_string();
-        prev = hash(&whole);
-        text += &(whole + "\n");
-    }
-    let number = lines(&run).len() + answer + 1;
-    fs::write(&path, text).expect("written");
-    let found = study.audit(&["one"]);
-    assert_eq!((found[0].0.as_str(), found[0].1), ("changed", Some(number as u64)), "{found:?}");
-    // Cut, and removed.
-    let before: String = good.lines().take(answer).map(|line| format!("{line}\n")).collect();
-    fs::write(&path, before).expect("written");
-    assert_eq!(study.kinds(&["one"]), ["cut"]);
-    fs::remove_file(&path).expect("gone");
-    assert_eq!(study.kinds(&["one"]), ["cut"]);
-    // Damaged.
     fs::write(&path, good.replacen("\"value\":7", "\"value\":1", 1)).expect("written");
-    assert!(study.kinds(&["one"]).contains(&"damaged".to_owned()));
-    fs::write(&path, &good).expect("written");
-    assert_eq!(study.audit(&["one"]), []);
+    assert_eq!(study.kinds(&["one"]), ["damaged"]);
 }
 
 #[cfg(unix)]
 #[test]
-fn stones_pipes_and_copies_deceive_nobody() {
+fn copies_and_pipes_do_not_confuse_the_audit() {
     let study = Study::new();
     study.visit("one", &format!("P01\nyes\n{}", WEEKS[0]));
     let run = study.only_run("one", "P01");
@@ -460,28 +452,16 @@ fn stones_pipes_and_copies_deceive_nobody() {
     // A copy of a folder of runs is no second session.
     copy(&study.machine("one"), &study.machine("copy"));
     assert_eq!(study.kinds(&["one", "copy"]), [] as [&str; 0]);
-    // The run is removed, and a stone is laid that nobody was told of.
-    fs::remove_dir_all(&run).expect("gone");
-    let other = study.machine("one").join("participants/P02");
-    fs::create_dir_all(&other).expect("a folder");
-    let stone = format!("run = \"{id}\"\nstudy = \"x\"\nat = \"2026-11-24T11:30:00Z\"\n");
-    fs::write(other.join("withdrawn.toml"), stone).expect("written");
-    let found = study.audit(&["one"]);
-    assert!(
-        found.iter().any(|(kind, _, words)| kind == "missing" && words.contains("no withdrawal")),
-        "{found:?}"
-    );
     // Pipes in the place of files keep nobody waiting.
     let pipes = [
         study.machine("one").join("participants/P02/11112222/trajectory.jsonl"),
         study.machine("one").join("visits.jsonl"),
-        study.home.0.path().join("pilot/witness/11112222-1.jsonl"),
     ];
     for pipe in pipes {
         fs::create_dir_all(pipe.parent().expect("a folder")).expect("a folder");
         let _ = fs::remove_file(&pipe);
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("it runs").success());
     }
-    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
+    assert_eq!(study.kinds(&["one"]), ["damaged"], "the study of that run is unknown");
     assert_eq!(study.run("one", &["study", "watch", &study.folder(), "--once"]).code, 0);
 }

@@ -51,27 +51,27 @@ impl Lab {
 }
 
 #[test]
-fn a_witness_that_is_not_there_is_told_and_never_made() {
+fn settings_that_were_removed_are_named_and_do_nothing() {
     let lab = Lab::new();
-    lab.edit("# witness = \"/mnt/lab/witness\"", "witness = \"share/witness\" #");
-    let share = lab.path("pilot/share");
-    lab.run("check", &[]).fails(1, &["not ready"]);
-    let told = lab.run("check", &[]).out;
-    assert!(told.contains("WRONG witness") && told.contains("is not there: mount the share"), "{told}");
-    assert_eq!(lab.visit("m1", "P1\nyes\nnext \"a\" naive\nquit\n").code, 0);
-    let missing = lab.run("audit", &[&lab.path("m1").display().to_string()]);
-    missing.fails(3, &["share/witness: the witness is not there", "--witness DIR"]);
-    assert!(!share.exists(), "neither the check nor a session makes it");
-    // The lines that waited are told once it is there again.
-    let watch = || lab.run("watch", &["--once", &lab.path("m1").display().to_string()]).out;
-    assert!(lab.path("m1/participants/P1").read_dir().expect("a folder").flatten().any(|run| {
-        fs::metadata(run.path().join("witness-queue.jsonl")).is_ok_and(|queue| queue.len() > 0)
-    }));
-    fs::create_dir_all(share.join("witness")).expect("mounted");
-    assert_eq!(lab.visit("m1", "P1\nquit\n").code, 0);
-    assert!(!watch().contains("witness"), "{}", watch());
-    let told = lab.run("check", &[]).out;
-    assert!(told.contains("note  witness") && told.contains("the file system of the runs"), "{told}");
+    let clean = lab.run("check", &[]).out;
+    assert!(!clean.contains("removed"), "{clean}");
+    lab.edit("[access]", "[integrity]\nwitness = \"share\"\ncode_words = true\n\n[access]");
+    fs::create_dir(lab.path("pilot/share")).expect("a folder");
+    let checked = lab.run("check", &[]);
+    assert_eq!(checked.code, 0, "{}{}", checked.out, checked.err);
+    for key in ["witness", "code_words"] {
+        let words = format!("note  settings    [integrity] {key} was removed and has no effect");
+        assert!(checked.out.contains(&words), "{}", checked.out);
+    }
+    let visit = lab.visit("m1", "P1\nyes\nnext \"a\" naive\nquit\n");
+    assert!(visit.code == 0 && !visit.out.contains("code:"), "{}{}", visit.out, visit.err);
+    assert_eq!(lab.path("pilot/share").read_dir().expect("a folder").count(), 0);
+    let audited = lab.run("audit", &[&lab.path("m1").display().to_string()]);
+    assert_eq!(audited.code, 0, "{}{}", audited.out, audited.err);
+    assert!(audited.err.contains("[integrity] witness was removed"), "{}", audited.err);
+    // A key that never existed is still refused.
+    lab.edit("code_words = true", "code_word = true");
+    lab.run("check", &[]).fails(3, &["study.toml", "code_word"]);
 }
 
 #[test]

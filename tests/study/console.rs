@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crossterm::event::Event;
 use novamind::console::message::Message;
-use novamind::session::{ScriptedClock, list_worlds_in};
+use novamind::session::ScriptedClock;
 
 use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};
 use crate::harness::Console;
@@ -49,7 +49,6 @@ impl<'a> Player<'a> {
 
     fn arrive_again(lab: &Lab, machine: &str, diary: Diary, clock: &'a ScriptedClock) -> Player<'a> {
         let runs = lab.machine(machine);
-        list_worlds_in(&runs);
         let mut console = Console::start(&runs, (100, 30));
         console.lead(lab.read_study()).expect("the page of the label");
         let view = ("overview", "", clock.moment());

@@ -7,7 +7,7 @@ use novamind::session::Study;
 
 use crate::support::home::{Home, Said};
 
-/// A study with a witness, on three machines.
+/// A study on three machines.
 pub struct Lab {
     home: Home,
 }
@@ -33,9 +33,6 @@ warning_minutes = 1
 at_limit = "naive"
 [record]
 drafts = "text"
-[integrity]
-code_words = true
-witness = "WITNESS"
 "#;
 
 const BEFORE: &str = r#"
@@ -90,9 +87,8 @@ impl Lab {
         let lab = Lab { home: Home::new() };
         let folder = lab.study();
         fs::create_dir_all(folder.join("questions")).expect("a folder");
-        fs::create_dir_all(lab.witness()).expect("a folder");
         let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
-        write("study.toml", &PROTOCOL.replace("WITNESS", &lab.witness().display().to_string()));
+        write("study.toml", PROTOCOL);
         write("consent.md", "# Taking part\n\nEverything you do is recorded.\n");
         write("questions/1-before.toml", BEFORE);
         write("questions/2-week.toml", WEEK);
@@ -117,10 +113,6 @@ impl Lab {
     /// Folder of the study.
     pub fn study(&self) -> PathBuf {
         self.path("study")
-    }
-
-    fn witness(&self) -> PathBuf {
-        self.path("witness")
     }
 
     /// Folder of runs of a machine.

@@ -1,6 +1,5 @@
 //! Experiments of the laboratory's commands: progress, ctrl-c, and the file in which their results are kept.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -10,9 +9,8 @@ use clap::Args;
 use crate::cli::run::{progress_bar, thread_pool};
 use crate::cli::{Context, Failure};
 use crate::lab::experiment::{
-    Arm, Conduct, Experiment, ExperimentError, ExperimentResults, Prepared, ResultStore, RunResult,
+    Conduct, Experiment, ExperimentError, ExperimentResults, Prepared, ResultStore, RunResult,
 };
-use crate::session::list_world;
 
 /// Options of commands that play many runs.
 #[derive(Debug, Clone, Args)]
@@ -84,9 +82,6 @@ fn with_store<R>(
     let mut prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
     add_known(&mut prepared);
     let left = prepared.left(numbers);
-    if left > 0 {
-        list_worlds(experiment);
-    }
     let progress = progress_bar(left as u64, "runs");
     let stop = stopped_by_signals();
     let on_run = || progress.inc(1);
@@ -100,14 +95,6 @@ fn with_store<R>(
     let results = conduct(prepared, &with);
     progress.finish_and_clear();
     Ok(results?)
-}
-
-/// Puts the worlds that are played on the machine's list, as every command does that plays one.
-fn list_worlds(experiment: &Experiment) {
-    let seeds = || experiment.seeds.iter().copied();
-    let (Some(first), Some(last)) = (seeds().min(), seeds().max()) else { return };
-    let scenarios: BTreeSet<String> = experiment.arms.iter().map(Arm::scenario).collect();
-    scenarios.iter().for_each(|scenario| list_world("lab", (first, last), scenario, None, None));
 }
 
 /// What ctrl-c sets; a second one ends the program at once.

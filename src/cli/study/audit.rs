@@ -1,9 +1,10 @@
-//! `novamind study audit`: what an honest session does not leave behind.
+//! `novamind study audit`: contradictions within and between the records of a study.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
+use super::read_study;
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::plain::table as aligned;
@@ -18,9 +19,6 @@ pub struct Options {
     /// Folders of runs of its machines, or copies of them [default: that of this machine].
     #[arg(value_name = "RUNS")]
     machines: Vec<PathBuf>,
-    /// Folder of the witness, where it is not that of the protocol.
-    #[arg(long, value_name = "DIR")]
-    witness: Option<PathBuf>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -28,9 +26,9 @@ pub struct Options {
 
 /// Runs the command; 1 where something was found.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let study = Study::read(&options.folder)?;
+    let study = read_study(&options.folder)?;
     let machines = context.machines(&options.machines)?;
-    let audit = audit(&study, &machines, options.witness.as_deref())?;
+    let audit = audit(&study, &machines)?;
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
     } else {
@@ -48,9 +46,8 @@ fn in_words(study: &Study, audit: &Audit) -> String {
     let mut text = format!("{} · protocol {}\n\n", study.protocol.name, &study.digest[..16]);
     text += &aligned(&facts(&audit.runs));
     text += &format!("\n\n{}\n\n", audit.visits);
-    if !audit.witnessed {
-        text +=
-            "No witness was asked: lines that were rewritten or cut with fitting hashes stay unnoticed.\n\n";
+    if audit.runs_of_other_studies > 0 {
+        text += &format!("Runs of other studies, not examined: {}.\n\n", audit.runs_of_other_studies);
     }
     for finding in &audit.findings {
         text += &told(finding);
@@ -65,7 +62,11 @@ fn told(finding: &AuditFinding) -> String {
     let who = finding.participant.as_deref().unwrap_or("?");
     let line = finding.line.map_or(String::new(), |line| format!(", line {line}"));
     let at = if finding.at.is_empty() { String::new() } else { format!(", {}", finding.at) };
-    format!("{who}, run {}{line}{at}: {}\n  {}\n", finding.run, finding.kind.title(), finding.words)
+    let place = match finding.run.as_str() {
+        "" => String::new(),
+        run => format!("{who}, run {run}{line}{at}: "),
+    };
+    format!("{place}{}\n  {}\n", finding.kind.title(), finding.words)
 }
 
 /// The runs as a table.

@@ -65,7 +65,8 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
         Point::new("machine", Ok(Machine::here().id)),
         Point::new("keys", Ok(keys(folder).to_owned())),
     ];
-    points.extend(study.witness().map(|folder| Point::new("witness", witness(&folder, &runs))));
+    let removed = study.protocol.removed_settings().into_iter();
+    points.extend(removed.map(|words| Point::new("settings", Outcome::Note(words))));
     points.extend(design::points(&study, &context.configuration));
     let failed = points.iter().filter(|point| matches!(point.outcome, Outcome::Wrong(_))).count();
     text.extend(points.iter().map(Point::line));
@@ -145,44 +146,9 @@ fn clock() -> Result<String, String> {
 /// The folder of runs can be written; it is made if it is missing, as the first session does.
 fn writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    takes_files(folder)
-}
-
-fn takes_files(folder: &Path) -> Result<(), String> {
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
     let tried = std::fs::write(&probe, b"check").and_then(|()| std::fs::remove_file(&probe));
     tried.map_err(|error| format!("{}: {error}", folder.display()))
-}
-
-/// The folder of the witness is there and can be written. It is never made: a share that is not mounted would become a
-/// folder of this machine.
-fn witness(folder: &Path, runs: &Path) -> Outcome {
-    if !folder.is_dir() {
-        return Outcome::Wrong(format!(
-            "{} is not there: mount the share, or make the folder on the machine that is to hold it; nothing was made here",
-            folder.display()
-        ));
-    }
-    match takes_files(folder) {
-        Err(problem) => Outcome::Wrong(problem),
-        Ok(()) if on_one_file_system(folder, runs) => Outcome::Note(format!(
-            "{} lies on the file system of the runs: where it belongs on a share, the share is not mounted",
-            folder.display()
-        )),
-        Ok(()) => Outcome::Fits(folder.display().to_string()),
-    }
-}
-
-#[cfg(unix)]
-fn on_one_file_system(one: &Path, other: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let device = |path: &Path| std::fs::metadata(path).map(|found| found.dev()).ok();
-    device(one).is_some() && device(one) == device(other)
-}
-
-#[cfg(not(unix))]
-fn on_one_file_system(_: &Path, _: &Path) -> bool {
-    false
 }
 
 /// Room on the disk, by writing: what a file system promises and what a quota allows are two things.

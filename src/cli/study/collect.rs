@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use super::read_study;
 use crate::cli::run::progress_bar;
 use crate::cli::runs::{tidy_up_on_signals, write_tables};
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::report::collection::{Collected, Collecting, LabKeys, collect};
-use crate::session::{CollectNote, LabKey, Study, lab_key_of, lab_public_key_of, seal_key_of};
+use crate::session::{CollectNote, LabKey, lab_key_of, lab_public_key_of, seal_key_of};
 
 /// Options of `study collect`.
 #[derive(Debug, Args)]
@@ -36,7 +37,7 @@ pub struct Options {
 /// Runs the command; 1 where somebody has to look into something.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     tidy_up_on_signals();
-    let study = options.protocol.as_deref().map(Study::read).transpose()?;
+    let study = options.protocol.as_deref().map(read_study).transpose()?;
     let labels = options.labels.as_deref().map(read_labels).transpose()?.unwrap_or_default();
     let lab = options.protocol.as_ref().or(context.study_folder.as_ref());
     let own = lab.map(|folder| lab_key_of(folder)).transpose()?.flatten();

@@ -11,11 +11,12 @@ mod new;
 mod protocol;
 mod watch;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
 use super::{Context, Failure, play};
+use crate::session::Study;
 
 /// Options of `study`.
 #[derive(Debug, Args)]
@@ -36,7 +37,7 @@ enum StudyCommand {
     },
     /// Assign labels to conditions and seeds, in random order within blocks.
     Assign(assign::Options),
-    /// Look for what an honest session does not leave behind: lines that were changed or cut, rehearsals, clocks that were set.
+    /// Check the records of a study: damaged or missing runs, other protocols, clocks that were set, looks at hidden state.
     Audit(audit::Options),
     /// Write the tables of a study without what tells who took part.
     Anonymise(anonymise::Options),
@@ -66,6 +67,13 @@ enum StudyCommand {
         #[command(flatten)]
         play: play::Options,
     },
+}
+
+/// Reads a study, and warns on standard error of settings in it that were removed.
+fn read_study(folder: &Path) -> Result<Study, Failure> {
+    let study = Study::read(folder)?;
+    study.protocol.removed_settings().iter().for_each(|words| eprintln!("novamind: study.toml: {words}"));
+    Ok(study)
 }
 
 /// Runs the command.

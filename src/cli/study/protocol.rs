@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use super::read_study;
 use crate::cli::{Context, Failure, print};
 use crate::report::protocol::protocol;
-use crate::session::Study;
 
 /// Prints the protocol as Markdown.
 pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
-    print(&protocol(&Study::read(folder)?, &context.configuration)?)
+    print(&protocol(&read_study(folder)?, &context.configuration)?)
 }

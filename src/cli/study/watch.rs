@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::read_study;
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::plain::table as aligned;
@@ -39,7 +40,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_secs(2);
 
 /// Runs the command.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let study = Study::read(&options.folder)?;
+    let study = read_study(&options.folder)?;
     let machines = context.machines(&options.machines)?;
     if let Some([label, text]) = options.note.as_deref() {
         return note(&study, &machines, label, text);

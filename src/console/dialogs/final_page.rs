@@ -155,10 +155,6 @@ impl FinalPage {
         let inside = canvas.pane(own, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
         canvas.text(row.intersection(inside), said, Role::Text);
-        let below = Rect { y: row.y + 1, ..row }.intersection(inside);
-        if let Some(code) = code(look.company) {
-            canvas.text(below, &code, Role::Strong);
-        }
         canvas.pane_keys(own, &look.hints(self.keys()));
     }
 
@@ -189,7 +185,6 @@ impl FinalPage {
             (true, _) => 8,
             (false, _) => 3,
         };
-        parts.extend(code(company).map(|code| vec![TextLine::from(canvas.span(code, Role::Strong))]));
         let published = company.rules.results == ResultsShown::Published;
         if published {
             parts.push(ranking(canvas, &standing, width, best, roomy));
@@ -261,12 +256,6 @@ impl FinalPage {
         lines.extend(highlights.iter().map(line));
         canvas.lines(below, &lines);
     }
-}
-
-/// Four words for the record of the run, where the rules show them.
-fn code(company: &Company) -> Option<String> {
-    let code = company.week.as_ref()?.code.as_ref()?;
-    Some(format!("code: {code}"))
 }
 
 fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, company: &Company) {

@@ -185,8 +185,6 @@ impl Report {
             told.parts.iter().map(|(name, amount)| format!("{name} {}", signed_dollars(*amount))).collect();
         let parts = flowed(&parts, width as usize).into_iter();
         lines.extend(parts.map(|line| Line::from(canvas.span(line, Role::Text))));
-        let code = told.code.iter().map(|code| format!("code: {code}"));
-        lines.extend(code.map(|code| Line::from(canvas.span(code, Role::Strong))));
         let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         if told.was_filed_at_limit() {

@@ -93,7 +93,7 @@ impl SessionThread {
         self.take(opened, id, None);
     }
 
-    /// Only its participant goes on with a session of a study, under its protocol and before its witness.
+    /// Only its participant goes on with a session of a study, under its protocol.
     fn refuse_session_of_study(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs.as_path());
         if self.lists_everybody && access == Access::Write && is_elsewhere {

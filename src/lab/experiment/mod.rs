@@ -42,11 +42,6 @@ impl Arm {
         Arm { name: name.into(), policy, spec: RunSpec::of_seed(0) }
     }
 
-    /// Name of the scenario that it plays.
-    pub fn scenario(&self) -> String {
-        new_run(&self.policy, &self.spec).scenario
-    }
-
     /// What its runs are played under: the last day, the cash on day 0 in dollars, and the parameters.
     ///
     /// # Errors

@@ -94,7 +94,6 @@ fn in_words(report: &WeekReport) -> String {
         counted(report.news_items, "news item", "news items"),
         counted(week.research_finished, "finished R&D project or study", "finished R&D projects and studies")
     ));
-    lines.extend(report.code.iter().map(|code| format!("code: {code}")));
     lines.join("\n").replace("from 1 weeks ago", "from 1 week ago")
 }
 
@@ -135,6 +134,5 @@ fn as_data(report: &WeekReport) -> Value {
         "filed_at_limit": report.was_filed_at_limit(),
         "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
         "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
-        "code": report.code,
     })
 }

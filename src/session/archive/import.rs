@@ -17,7 +17,6 @@ use crate::session::error::RunError;
 use crate::session::folder::durable::sync_folder;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
-use crate::session::folder::world_log::list_world;
 use crate::session::resume::open::check_start;
 use crate::session::trajectory::{Line, Record, Trajectory};
 
@@ -44,25 +43,6 @@ pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
 /// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
 /// state of the run is there, or the name is taken; [`RunError::NotPossible`] for what is no name. Nothing has changed then.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
-    let (seal, signer, imported) = place_under(runs, archive, name)?;
-    if let Imported::New(place) = &imported
-        && let Ok(Manifest { seed, scenario, study, .. }) = Manifest::read(place)
-    {
-        let study = study.as_ref().map(|stamp| stamp.digest.as_str());
-        list_world("import", (seed, seed), &scenario, Some(&seal.run), study);
-    }
-    Ok((seal, signer, imported))
-}
-
-/// As [`import_run`], for a folder that nobody plays from: the world is not listed as one that was opened.
-///
-/// # Errors
-/// The same.
-pub(in crate::session) fn place_run(runs: &Path, archive: &Path) -> Result<ImportedRun, RunError> {
-    place_under(runs, archive, None)
-}
-
-fn place_under(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
     if let Some(name) = name.filter(|name| !is_folder_name(name)) {
         let message =
             format!("{name} is no name for a run: up to 40 letters, digits, - and _. Nothing was imported");

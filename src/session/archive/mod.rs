@@ -27,7 +27,6 @@ mod workshop;
 use std::path::Path;
 
 pub use export::Export;
-pub(in crate::session) use import::place_run;
 pub use import::{Imported, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
 pub(in crate::session) use lab_key::{read_seal_key, write_seal_key};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{AuditFinding, AuditKind};
-use crate::session::archive::{LabPublicKey, Workshop, is_archive_name, place_run};
+use crate::session::archive::{LabPublicKey, Workshop, import_run, is_archive_name};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::study::definition::Study;
@@ -40,8 +40,9 @@ fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> O
         let (run, at) = (run.to_owned(), String::new());
         AuditFinding { kind, run, participant, line: None, at, words }
     };
-    let unpacked =
-        std::fs::create_dir(place).map_err(RunError::io(place)).and_then(|()| place_run(place, archive));
+    let unpacked = std::fs::create_dir(place)
+        .map_err(RunError::io(place))
+        .and_then(|()| import_run(place, archive, None));
     let (seal, signer, _) = match unpacked {
         Ok(unpacked) => unpacked,
         // An archive that cannot be read does not say whose run it holds.

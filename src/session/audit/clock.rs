@@ -1,36 +1,50 @@
-//! Whether the clock of a machine was set while a run was played.
+//! Whether the clock of a machine was changed while a run was played.
 
 use crate::session::trajectory::record::{Activity, Presence};
-use crate::session::trajectory::{CLOCK_CORRECTION, Line, Record, clock_went_back};
+use crate::session::trajectory::{Line, Record};
 
-/// Places where the clock was set: the line, and in words.
-pub(super) fn settings_of_clock(lines: &[Line]) -> Vec<(&Line, String)> {
-    let words = |back: f64| format!("the clock went back by {back:.0} seconds before this line");
-    let mut found: Vec<(&Line, String)> =
-        clock_went_back(lines).map(|(_, line, back)| (line, words(back))).collect();
-    let sittings: Vec<(&Line, &Presence)> = lines.iter().filter_map(presence).collect();
-    for pair in sittings.windows(2) {
-        let ((before, earlier), (line, later)) = (pair[0], pair[1]);
-        if earlier.boot != later.boot {
-            continue;
+/// Seconds that a running clock may be corrected by without a finding.
+const CORRECTION: f64 = 2.0;
+/// Seconds per second that the two clocks may drift apart without a finding: the fastest rate at which the Linux kernel
+/// slews a clock.
+const DRIFT: f64 = 500e-6;
+
+/// Returns the lines before which the wall clock was changed, each with an explanation. Between two lines, the wall clock
+/// must not go back. Between two `session` lines of one start of the machine, it must agree with the monotonic clock.
+pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Vec<(&'a Line, String)> {
+    let (mut found, mut before, mut earlier) = (Vec::new(), None::<&Line>, None::<(&Line, &Presence)>);
+    let mut is_known = false;
+    for line in lines {
+        let back = before.replace(line).map_or(0.0, |before| before.moment() - line.moment());
+        if back > CORRECTION {
+            found.push((line, format!("the wall clock went back by {back:.0} seconds before this line")));
+            is_known = true;
         }
-        let steady = later.monotonic_ms as f64 / 1e3 - earlier.monotonic_ms as f64 / 1e3;
-        let off = line.moment() - before.moment() - steady;
-        let known = found.iter().any(|(known, _)| (before.seq..=line.seq).contains(&known.seq));
-        if off.abs() > CLOCK_CORRECTION && !known {
-            let way = if off < 0.0 { "back" } else { "forward" };
-            let words =
-                format!("the clock was set {way} by {:.0} seconds since line {}", off.abs(), before.seq + 1);
-            found.push((line, words));
+        let Record::Activity(Activity::Session(presence)) = &line.record else { continue };
+        if let Some(earlier) = earlier.replace((line, presence.as_ref())).filter(|_| !is_known) {
+            found.extend(disagreement(earlier, (line, presence)).map(|words| (line, words)));
         }
+        is_known = false;
     }
-    found.sort_by_key(|(line, _)| line.seq);
     found
 }
 
-fn presence(line: &Line) -> Option<(&Line, &Presence)> {
-    match &line.record {
-        Record::Activity(Activity::Session(presence)) => Some((line, presence)),
-        _ => None,
+/// Explains by how much the two clocks disagree between two `session` lines, if they do.
+fn disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) -> Option<String> {
+    let ((before, from), (line, to)) = (earlier, later);
+    let steady = (to.monotonic_ms as f64 - from.monotonic_ms as f64) / 1e3;
+    let ahead = line.moment() - before.moment() - steady;
+    if from.boot != to.boot || ahead.abs() <= CORRECTION + DRIFT * steady.abs() {
+        return None;
     }
+    let way = if ahead < 0.0 { "behind" } else { "ahead of" };
+    let cause = match ahead < 0.0 {
+        true => "it was set back or slowed",
+        false => "it was set forward, or the machine slept while its monotonic clock stood still",
+    };
+    Some(format!(
+        "the wall clock moved {:.0} seconds {way} the monotonic clock since line {}: {cause}",
+        ahead.abs(),
+        before.seq + 1
+    ))
 }

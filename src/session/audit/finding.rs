@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct AuditFinding {
     /// What kind of thing it is.
     pub kind: AuditKind,
-    /// Run.
+    /// Run; empty if the finding belongs to none.
     pub run: String,
     /// Label of the participant, where it is known.
     pub participant: Option<String>,
@@ -23,36 +23,30 @@ pub struct AuditFinding {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AuditKind {
+    /// No run of the study is in the folders.
+    NothingExamined,
     /// The record is not there any more.
     Missing,
     /// The record is damaged.
     Damaged,
-    /// Lines are not those that a witness was told of.
-    Changed,
-    /// A witness was told of lines that are gone.
+    /// The database or the snapshot holds lines that the trajectory lacks.
     Cut,
-    /// The run went on twice from the same line.
-    TwoHistories,
-    /// No witness was told of decisions.
-    Unseen,
     /// The states that are recorded are not reached again.
     NotReached,
     /// Lines could not be written while the run was played.
     Unsaved,
+    /// The run belongs to another version of the protocol.
+    OtherProtocol,
     /// `run.toml` was edited.
     Manifest,
     /// Participant, seed, condition or rules are not those of the study.
     Assignment,
     /// The list of earlier runs is not what the machine knows.
     EarlierRuns,
-    /// The same world was played, or looked at, outside the session.
-    Rehearsal,
-    /// The machine's list of opened worlds was edited, cut or removed.
-    WorldList,
+    /// Hidden state of a session's seed was viewed before the session was over.
+    HiddenState,
     /// The clock of the machine was set.
     Clock,
-    /// The run went on on another machine.
-    OtherMachine,
     /// A participant has two sessions.
     SecondSession,
     /// An archive does not carry the signature of the lab.
@@ -61,22 +55,19 @@ pub enum AuditKind {
 
 impl AuditKind {
     /// Every kind, the gravest first.
-    pub const ALL: [AuditKind; 17] = [
+    pub const ALL: [AuditKind; 14] = [
+        AuditKind::NothingExamined,
         AuditKind::Missing,
         AuditKind::Damaged,
-        AuditKind::Changed,
         AuditKind::Cut,
-        AuditKind::TwoHistories,
-        AuditKind::Unseen,
         AuditKind::NotReached,
         AuditKind::Unsaved,
+        AuditKind::OtherProtocol,
         AuditKind::Manifest,
         AuditKind::Assignment,
         AuditKind::EarlierRuns,
-        AuditKind::Rehearsal,
-        AuditKind::WorldList,
+        AuditKind::HiddenState,
         AuditKind::Clock,
-        AuditKind::OtherMachine,
         AuditKind::SecondSession,
         AuditKind::NotSigned,
     ];
@@ -84,21 +75,18 @@ impl AuditKind {
     /// In words.
     pub fn title(self) -> &'static str {
         match self {
+            AuditKind::NothingExamined => "nothing examined",
             AuditKind::Missing => "record missing",
             AuditKind::Damaged => "record damaged",
-            AuditKind::Changed => "lines changed",
             AuditKind::Cut => "lines cut",
-            AuditKind::TwoHistories => "two histories",
-            AuditKind::Unseen => "lines no witness saw",
             AuditKind::NotReached => "states not reached again",
             AuditKind::Unsaved => "lines not saved",
+            AuditKind::OtherProtocol => "other protocol",
             AuditKind::Manifest => "run.toml edited",
             AuditKind::Assignment => "not as assigned",
             AuditKind::EarlierRuns => "earlier runs edited",
-            AuditKind::Rehearsal => "rehearsal",
-            AuditKind::WorldList => "list of worlds edited",
+            AuditKind::HiddenState => "hidden state viewed",
             AuditKind::Clock => "clock set",
-            AuditKind::OtherMachine => "other machine",
             AuditKind::SecondSession => "second session",
             AuditKind::NotSigned => "archive not signed",
         }

@@ -1,15 +1,15 @@
-//! The audit of a study: what an honest session does not leave behind, with its line and its moment.
+//! The audit of a study: contradictions within and between its records, each with its line and its time.
 //!
-//! A person with a shell can do anything to the files on a machine. What they do is found where something else
-//! remembers otherwise: the chain of hashes, the simulation, a witness on another machine, the machine's list of opened
-//! worlds, the assignment, the clock that nobody sets.
+//! A participant who controls the machine can change every file on it. The audit compares what the records contain: the
+//! chain of hashes, the simulation, the database and the snapshot, the assignment, two clocks. It cannot find a run that
+//! was continued in a copy of its folder, or lines that were rewritten with correct hashes.
 
 mod archives;
 mod clock;
 mod facts;
 mod finding;
-mod machine;
-mod rehearsal;
+mod hidden_state;
+mod run_record;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,12 +25,11 @@ use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
 use crate::session::resume::integrity::Integrity;
 use crate::session::resume::verify::verify_sealed;
-use crate::session::study::definition::Study;
+use crate::session::study::definition::{Study, shortened};
+use crate::session::study::rules::SessionRules;
 use crate::session::study::visit_log::{VisitSummary, visits_of};
-use crate::session::trajectory::record::{Activity, PresenceEvent};
-use crate::session::trajectory::{Line, Record, Trajectory};
-use crate::session::witness::{Finding, FindingKind, Told, compare, read_witness};
-use machine::{MachineRecord, RunRecord};
+use crate::session::trajectory::{Line, Trajectory, seconds};
+use run_record::{RunRecord, runs_in};
 
 /// What an audit of a study says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,44 +38,38 @@ pub struct Audit {
     pub runs: Vec<RunFacts>,
     /// What was found, by run, line and kind.
     pub findings: Vec<AuditFinding>,
-    /// Whether a witness was asked.
-    pub witnessed: bool,
+    /// Number of runs in the folders that belong to studies with another name. They were not examined.
+    pub runs_of_other_studies: usize,
     /// How many came, and what became of them.
     pub visits: VisitSummary,
 }
 
-/// Audits the runs of a study in the folders of runs of its machines, or copies of them. The witness is that of the
-/// protocol, unless another is named.
+/// Audits the runs of a study in the folders of runs of its machines, or in copies of them.
 ///
 /// # Errors
-/// The witness or the public key of the lab cannot be read.
-pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Result<Audit, RunError> {
-    let records: Vec<MachineRecord> = machines.iter().map(|base| MachineRecord::read(base)).collect();
-    let witness = witness.map(Path::to_owned).or_else(|| study.witness());
-    let told = match &witness {
-        Some(folder) if !folder.is_dir() => return Err(no_witness(folder)),
-        folder => folder.as_deref().map(read_witness).transpose()?,
-    };
-    let told_of =
-        |run: &str| told.as_ref().and_then(|record| record.runs.get(run)).map_or(&[][..], Vec::as_slice);
+/// The public key of the lab cannot be read.
+pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
+    let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| runs_in(base)).collect();
     let mut audit = Audit {
         runs: Vec::new(),
         findings: Vec::new(),
-        witnessed: told.is_some(),
+        runs_of_other_studies: 0,
         visits: VisitSummary::default(),
     };
     for machine in &records {
-        for run in machine.runs.iter().filter(|run| run.is_of(&study.digest)) {
+        for run in machine.iter().filter(|run| run.is_of(&study.digest)) {
             let own = Inspection { study, machine, run };
-            audit.findings.extend(own.findings(told.is_some().then(|| told_of(&run.id))));
+            audit.findings.extend(own.findings());
             audit.runs.extend(own.facts());
         }
     }
-    audit.findings.extend(second_sessions(study, &records));
+    let all: Vec<&RunRecord> = records.iter().flatten().collect();
+    audit.findings.extend(nothing_examined(study, &all, machines));
+    audit.findings.extend(all.iter().filter_map(|run| not_examined(study, run)));
+    audit.runs_of_other_studies = all.iter().filter(|run| run.is_of_another_study(study)).count();
+    audit.findings.extend(hidden_state::views(study, &all));
+    audit.findings.extend(second_sessions(study, &all));
     audit.findings.extend(archives::not_signed(study, machines)?);
-    if let Some(record) = &told {
-        audit.findings.extend(gone(&records, &record.runs));
-    }
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
     audit.visits = VisitSummary::of(&visits_of(study, machines), &with_runs);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
@@ -88,19 +81,60 @@ pub fn audit(study: &Study, machines: &[PathBuf], witness: Option<&Path>) -> Res
             other.kind,
         ))
     });
+    // Folders may be copies of one another.
+    audit.findings.dedup();
     Ok(audit)
 }
 
-fn no_witness(folder: &Path) -> RunError {
-    let problem = "the witness is not there: mount its share, or name a copy of its folder with --witness DIR. Nothing was audited";
-    let error = std::io::Error::new(std::io::ErrorKind::NotFound, problem);
-    RunError::Io { path: folder.to_owned(), error }
+/// A finding that there is no run to audit.
+fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) -> Option<AuditFinding> {
+    if runs.iter().any(|run| run.is_of(&study.digest)) {
+        return None;
+    }
+    let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
+    let words = format!(
+        "no run with the protocol digest {} is in {}: check the folders and the protocol",
+        study.short_digest(),
+        folders.join(", ")
+    );
+    Some(AuditFinding {
+        kind: AuditKind::NothingExamined,
+        run: String::new(),
+        participant: None,
+        line: None,
+        at: String::new(),
+        words,
+    })
 }
 
-/// One run, on its machine.
+/// A finding about a run that could not be examined although it may belong to the study.
+fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
+    let (kind, at, words) = match (&run.manifest, run.stamp()) {
+        (None, _) => {
+            let words = "neither its first line nor run.toml can be read, so its study is unknown".to_owned();
+            (AuditKind::Damaged, String::new(), words)
+        }
+        (Some(manifest), Some(stamp))
+            if stamp.name == study.protocol.name && stamp.digest != study.digest =>
+        {
+            let words = format!(
+                "it was played under the protocol digest {}, not {}. It was not examined: audit it with the folder of \
+                 the study that has its digest",
+                shortened(&stamp.digest),
+                study.short_digest()
+            );
+            (AuditKind::OtherProtocol, manifest.created.clone(), words)
+        }
+        _ => return None,
+    };
+    let participant = run.manifest.as_ref().and_then(|manifest| manifest.participant.clone());
+    Some(AuditFinding { kind, run: run.id.clone(), participant, line: None, at, words })
+}
+
+/// One run, and all runs of its machine.
 struct Inspection<'a> {
     study: &'a Study,
-    machine: &'a MachineRecord,
+    machine: &'a [RunRecord],
     run: &'a RunRecord,
 }
 
@@ -119,7 +153,7 @@ impl Inspection<'_> {
         RunFacts::of(self.run.manifest.as_ref()?, trajectory)
     }
 
-    fn findings(&self, told: Option<&[Told]>) -> Vec<AuditFinding> {
+    fn findings(&self) -> Vec<AuditFinding> {
         let mut found = self.unsaved();
         match &self.run.trajectory {
             Err(RunError::Damaged { line, problem, .. }) => {
@@ -133,15 +167,12 @@ impl Inspection<'_> {
                 let damaged = |problem| self.finding(AuditKind::Damaged, None, "", problem);
                 found.extend(afterwards.as_ref().err().map(|problem| damaged(problem.to_string())));
                 let afterwards = afterwards.map_or(Vec::new(), |after| after.lines);
-                let beside = |told| self.beside_witness(trajectory, &afterwards, told);
-                found.extend(told.into_iter().flat_map(beside));
                 found.extend(self.beside_database(trajectory));
                 found.extend(self.simulated());
                 found.extend(self.manifest());
                 found.extend(self.assigned(trajectory));
-                found.extend(self.clock(trajectory));
-                found.extend(rehearsal::of(self, trajectory));
-                found.extend(self.world_list(trajectory));
+                found.extend(self.clock(trajectory, &afterwards));
+                found.extend(self.earlier_runs());
             }
         }
         found
@@ -156,27 +187,6 @@ impl Inspection<'_> {
             format!("{name}: the trajectory was moved, removed or replaced while the run was played")
         };
         unsaved.map(|name| self.finding(AuditKind::Unsaved, None, "", words(name))).collect()
-    }
-
-    fn beside_witness(
-        &self,
-        trajectory: &Trajectory,
-        afterwards: &[Line],
-        told: &[Told],
-    ) -> Vec<AuditFinding> {
-        let kind = |kind: FindingKind| match kind {
-            FindingKind::Changed => Some(AuditKind::Changed),
-            FindingKind::Cut => Some(AuditKind::Cut),
-            FindingKind::TwoHistories => Some(AuditKind::TwoHistories),
-            FindingKind::Unseen => Some(AuditKind::Unseen),
-            FindingKind::OtherMachine => Some(AuditKind::OtherMachine),
-            // The lines themselves tell.
-            FindingKind::ClockBack => None,
-        };
-        let of = |Finding { kind: own, line, at, words, .. }: Finding| {
-            Some(self.finding(kind(own)?, Some(line), &at, words))
-        };
-        compare(trajectory, afterwards, told).into_iter().filter_map(of).collect()
     }
 
     /// Whether the lines lead to the states that they record.
@@ -226,7 +236,9 @@ impl Inspection<'_> {
         if folder.as_deref() != Some(label.as_str()) {
             wrong.push(format!("the run of {label} lies in the folder {}", folder.unwrap_or_default()));
         }
-        if manifest.recorded_rules() != self.study.rules() {
+        // Earlier builds recorded one more setting, which changed nothing that a run depends on.
+        let rules = SessionRules { code_words: None, ..manifest.recorded_rules() };
+        if rules != self.study.rules() {
             wrong.push("it was played by other rules than those of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {
@@ -255,45 +267,41 @@ impl Inspection<'_> {
             .collect()
     }
 
-    fn clock(&self, trajectory: &Trajectory) -> Vec<AuditFinding> {
-        let settings = clock::settings_of_clock(&trajectory.lines).into_iter();
-        settings
+    fn clock(&self, trajectory: &Trajectory, afterwards: &[Line]) -> Vec<AuditFinding> {
+        // The sitting in which a run ends is closed by a line after the end.
+        let changes = clock::clock_changes(trajectory.lines.iter().chain(afterwards)).into_iter();
+        changes
             .map(|(line, words)| self.finding(AuditKind::Clock, Some(line.seq + 1), &line.at, words))
             .collect()
     }
 
-    /// What sittings saw of the machine's list of opened worlds, beside the list.
-    fn world_list(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
-        let log = &self.machine.worlds;
-        let saw = trajectory.lines.iter().filter_map(|line| match &line.record {
-            Record::Activity(Activity::Session(own)) if own.event == PresenceEvent::Opened => {
-                own.worlds.as_ref().map(|seen| (line, seen))
-            }
-            _ => None,
+    /// Older runs of the same participant that the first line does not list.
+    fn earlier_runs(&self) -> Vec<AuditFinding> {
+        let Some(manifest) = &self.run.manifest else { return Vec::new() };
+        let began = seconds(&manifest.created);
+        let unlisted = self.machine.iter().filter_map(|run| run.manifest.as_ref()).filter(|other| {
+            other.participant == manifest.participant
+                && other.id != manifest.id
+                && other.parent.is_none()
+                && seconds(&other.created) < began
+                && !manifest.earlier.iter().any(|known| known.run == other.id)
         });
-        let lost = saw.into_iter().find(|(_, seen)| !log.holds(seen));
-        let words = |lines: u64| {
-            format!(
-                "the machine's list of opened worlds had {lines} lines at this line; it is not that list any more"
-            )
-        };
-        let lost = lost.map(|(line, seen)| {
-            self.finding(AuditKind::WorldList, Some(line.seq + 1), &line.at, words(seen.lines))
-        });
-        lost.or_else(|| {
-            let words = format!(
-                "line {} of the machine's list of opened worlds does not follow from the one before",
-                log.broken_at?
-            );
-            Some(self.finding(AuditKind::WorldList, None, "", words))
-        })
+        unlisted
+            .map(|other| {
+                let words = format!(
+                    "run {} of this participant is older, and the first line does not list it",
+                    other.id
+                );
+                self.finding(AuditKind::EarlierRuns, Some(1), &manifest.created, words)
+            })
+            .collect()
     }
 }
 
 /// Participants with more than one session, and runs that lie in two places.
-fn second_sessions(study: &Study, machines: &[MachineRecord]) -> Vec<AuditFinding> {
+fn second_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let mut sessions: BTreeMap<String, Vec<&RunRecord>> = BTreeMap::new();
-    for run in machines.iter().flat_map(|machine| &machine.runs).filter(|run| run.is_of(&study.digest)) {
+    for run in runs.iter().filter(|run| run.is_of(&study.digest)) {
         let Some(manifest) = &run.manifest else { continue };
         if manifest.study.as_ref().is_some_and(|stamp| !stamp.practice) {
             let known = sessions.entry(manifest.participant.clone().unwrap_or_default()).or_default();
@@ -328,31 +336,4 @@ fn second_sessions(study: &Study, machines: &[MachineRecord]) -> Vec<AuditFindin
 fn is_copy(one: &RunRecord, other: &RunRecord) -> bool {
     let last = |run: &RunRecord| run.trajectory.as_ref().ok()?.lines.last().map(|line| line.hash.clone());
     last(one).is_some() && last(one) == last(other)
-}
-
-/// Runs that a witness was told of, and that are nowhere.
-fn gone(machines: &[MachineRecord], told: &BTreeMap<String, Vec<Told>>) -> Vec<AuditFinding> {
-    let is_there = |run: &str| machines.iter().any(|machine| machine.runs.iter().any(|own| own.id == run));
-    let withdrawn = |run: &str| machines.iter().any(|machine| machine.withdrawn.iter().any(|own| own == run));
-    // A stone is laid by anybody; the witness is told by the program alone.
-    let is_told = |lines: &[Told]| lines.iter().any(Told::is_withdrawal);
-    let missing = told.iter().filter(|(run, lines)| !(is_there(run) || withdrawn(run) && is_told(lines)));
-    missing
-        .map(|(run, lines)| {
-            let last = lines.iter().filter(|told| !told.is_withdrawal()).max_by_key(|told| told.seq);
-            let words = match (withdrawn(run), is_told(lines)) {
-                (true, _) => "withdrawn.toml says that its participant has withdrawn, and the witness was told of no withdrawal",
-                (false, true) => "the witness was told that its participant has withdrawn, and no withdrawn.toml says so",
-                (false, false) => "the witness was told of this run, and it is in none of the folders",
-            };
-            AuditFinding {
-                kind: AuditKind::Missing,
-                run: run.clone(),
-                participant: None,
-                line: last.map(|told| told.seq + 1),
-                at: last.map(|told| told.at.clone()).unwrap_or_default(),
-                words: words.to_owned(),
-            }
-        })
-        .collect()
 }

@@ -15,7 +15,6 @@ use crate::session::folder::durable::{create_folder, write_whole};
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::folder::runs::{list_runs, participant_folder};
-use crate::session::folder::world_log::list_world;
 use crate::session::lesson::conduct::LessonEntry;
 use crate::session::lesson::lesson_file::Lesson;
 use crate::session::state::Session;
@@ -225,11 +224,7 @@ impl Handout {
             .and_then(|()| write_whole(&folder.join("trajectory.jsonl"), past.trajectory.as_bytes()))
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
-                true => {
-                    let Manifest { id, seed, scenario, mode, .. } = manifest;
-                    list_world(&format!("branch {mode}"), (seed, seed), &scenario, Some(&id), None);
-                    Ok(())
-                }
+                true => Ok(()),
                 false => Err(RunError::NotPossible(
                     "the run of the hand-out belongs to another hand-out".to_owned(),
                 )),

@@ -167,9 +167,6 @@ impl Session {
                 let folder = runs.join(&manifest.id);
                 create_folder(&folder)?;
                 let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
-                if let Ok(session) = &begun {
-                    session.list_as("play");
-                }
                 if begun.is_err() {
                     // A run that did not begin leaves nothing behind.
                     let _ = std::fs::remove_dir_all(&folder);
@@ -220,7 +217,6 @@ impl Session {
             simulation,
             projection,
             position: Position { seq: 0, line_hash: String::new() },
-            closing_line: String::new(),
             surroundings: RunSurroundings::default(),
             viewed: BTreeMap::new(),
             answers: AnswerBook::default(),

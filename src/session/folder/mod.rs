@@ -14,4 +14,3 @@ pub(in crate::session) mod manifest;
 pub(in crate::session) mod mode;
 pub(in crate::session) mod preview;
 pub(in crate::session) mod runs;
-pub(in crate::session) mod world_log;

@@ -228,7 +228,6 @@ impl Session {
         let end = End { reason: Ended::Abandoned, cash: self.simulation.world.finance.cash, score: None };
         self.append(&Record::End(end), Durability::Synced).map_err(not_saved)?;
         self.history.ended = Some(Ended::Abandoned);
-        self.closing_line.clone_from(&self.position.line_hash);
         self.commit_projection();
         Ok(())
     }
@@ -321,7 +320,6 @@ impl Session {
         let is_week = matches!(record, Record::Week(_));
         let unclosed = self.append_done(&record);
         self.simulation.facts_chain.close();
-        self.closing_line.clone_from(&self.position.line_hash);
         self.settle_lesson();
         if unclosed.is_none() {
             self.word_days_after(from);
@@ -395,9 +393,7 @@ impl Session {
         self.history.ended = Some(ended);
         self.note_end(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
-        let problem = self.append_done(&Record::End(end));
-        self.closing_line.clone_from(&self.position.line_hash);
-        problem
+        self.append_done(&Record::End(end))
     }
 
     /// Keeps the answer to a week that a replay simulated, if its request carried an id.

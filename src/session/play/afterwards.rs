@@ -33,9 +33,6 @@ impl Session {
     /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
     pub(in crate::session) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
         self.answers = AnswerBook::of(&trajectory.lines);
-        let closes = |line: &&Line| matches!(line.record, Record::Week(_) | Record::Step(_) | Record::End(_));
-        let closing = trajectory.lines.iter().rev().find(closes);
-        self.closing_line = closing.map(|line| line.hash.clone()).unwrap_or_default();
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
         match lines_afterwards(&folder, trajectory) {
             Ok(after) => {

@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use crate::session::figures::attendance::TimeSpent;
-use crate::session::folder::world_log::worlds_seen;
 use crate::session::play::machine::Machine;
 use crate::session::play::recorder::Recorder;
 use crate::session::state::Session;
@@ -29,7 +28,6 @@ impl Session {
             interface: Some(interface.name.to_owned()),
             window: interface.window,
             version: Some(env!("CARGO_PKG_VERSION").to_owned()),
-            worlds: worlds_seen(),
             ..presence(PresenceEvent::Opened)
         };
         self.note_activity(Activity::Session(Box::new(presence)));

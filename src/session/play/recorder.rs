@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::database::Position;
 use crate::session::error::RunError;
@@ -12,7 +11,6 @@ use crate::session::folder::lock::lock_run;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::AFTERWARDS;
 use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
-use crate::session::witness::Witness;
 
 /// What a run has that is played, and a run that is only read has not.
 pub(in crate::session) struct Recorder {
@@ -125,9 +123,7 @@ impl Recorder {
         }
         if self.afterwards.is_none() {
             let path = folder.join(AFTERWARDS);
-            let mut afterwards = TrajectoryWriter::open_after(&path, self.trajectory.position())?;
-            self.trajectory.witness().into_iter().for_each(|witness| afterwards.tell(Arc::clone(witness)));
-            self.afterwards = Some(afterwards);
+            self.afterwards = Some(TrajectoryWriter::open_after(&path, self.trajectory.position())?);
         }
         let Some(writer) = &mut self.afterwards else { return Ok(now()) };
         writer.append(day, record, durability)
@@ -154,18 +150,6 @@ impl Recorder {
     /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
     pub(in crate::session) fn sync_calls(&self) -> Result<(), RunError> {
         self.trajectory.sync_written()
-    }
-
-    /// Tells a witness of every line that is on the disk from now on.
-    pub(in crate::session) fn tell(&mut self, witness: Witness) {
-        let witness = Arc::new(witness);
-        self.afterwards.iter_mut().for_each(|afterwards| afterwards.tell(Arc::clone(&witness)));
-        self.trajectory.tell(witness);
-    }
-
-    /// Who is told of lines, if somebody is.
-    pub(in crate::session) fn witness(&self) -> Option<&Witness> {
-        self.trajectory.witness().map(Arc::as_ref)
     }
 
     /// Why nothing is saved any more, from the moment on at which that was noticed.

@@ -1,7 +1,5 @@
 //! What a session writes: lines of the trajectory, and rows for the database.
 
-use std::path::Path;
-
 use super::entry::entry_of;
 use super::recorder::Recorder;
 use crate::database::Entry;
@@ -9,7 +7,6 @@ use crate::session::error::RunError;
 use crate::session::state::Session;
 use crate::session::trajectory::record::{Activity, View};
 use crate::session::trajectory::{Durability, Record, now, seconds};
-use crate::session::witness::Witness;
 
 impl Session {
     /// The facts of day 0 with the words that belong to them.
@@ -52,19 +49,6 @@ impl Session {
         self.position = recorder.position();
         self.clock.pass(record, seconds(&now()));
         problem
-    }
-
-    /// Tells a folder of every line that is on the disk from now on, as this machine. Does nothing for a run that is only
-    /// read or kept in memory.
-    pub fn tell_witness(&mut self, folder: &Path, machine: &str) {
-        if let (Some(own), Some(recorder)) = (&self.folder, &mut self.recorder) {
-            recorder.tell(Witness::start(folder, machine, &self.manifest.id, own));
-        }
-    }
-
-    /// Why the witness could not be told when it was last tried; none while all is well, or where there is none.
-    pub fn witness_problem(&self) -> Option<String> {
-        self.recorder.as_ref()?.witness()?.problem()
     }
 
     /// Records what the person looked at, and for how long.

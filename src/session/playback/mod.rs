@@ -71,7 +71,6 @@ impl Playback {
             Playback { origin, trajectory, good, stops: Vec::new(), session, applied: 0, follows: false };
         playback.find_stops(0);
         playback.forward(1, &mut |_| ControlFlow::Continue(()))?;
-        playback.session.list_as("replay");
         Ok(playback)
     }
 

@@ -60,8 +60,8 @@ impl Integrity {
                 line: line as usize,
                 problem: format!("{problem} ({file} was made from it)"),
                 safe: format!(
-                    "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. Or restore the trajectory from a \
-                     copy, or remove {file} to continue from what is there"
+                    "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. To continue this run, restore the \
+                     whole trajectory from a copy"
                 ),
             })
         })

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::open::Access;
 use super::sealing::SealKey;
-use crate::session::archive::{Export, Imported, place_run};
+use crate::session::archive::{Export, Imported, import_run};
 use crate::session::folder::configuration::Configuration;
 use crate::session::folder::create::{NewRun, Storage};
 use crate::session::folder::durable::probe;
@@ -237,7 +237,7 @@ fn names_of_runs_and_archives_are_on_the_disk() {
     export.write(&archive, true, None).expect("an archive");
     assert!(probe::has_synced(&archive));
     let other = place.path().join("other");
-    let Imported::New(imported) = place_run(&other, &archive).expect("imported").2 else {
+    let Imported::New(imported) = import_run(&other, &archive, None).expect("imported").2 else {
         panic!("it is new")
     };
     assert!(probe::has_synced(&other) && probe::has_synced(&imported));

@@ -69,10 +69,9 @@ impl UnnamedBranch {
             .parent()
             .map_or(Ok(()), sync_folder)
             .and_then(|()| Session::open(named, Access::Write, true));
-        match &opened {
-            Ok(session) => session.list_as("branch"),
+        if opened.is_err() {
             // A branch that cannot be opened is nobody's run.
-            Err(_) => drop(std::fs::remove_dir_all(named)),
+            drop(std::fs::remove_dir_all(named));
         }
         opened
     }

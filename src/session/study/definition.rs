@@ -74,9 +74,10 @@ pub struct Protocol {
     /// The language model that lends its voice to the runs; none: the built-in voice speaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
-    /// What makes the record evidence.
-    #[serde(default)]
-    pub integrity: IntegrityPage,
+    /// Settings that earlier builds had. They are read, so that the studies that use them keep their digest, and have no
+    /// effect.
+    #[serde(default, skip_serializing)]
+    integrity: RemovedSettings,
     /// What opens what participants do not get.
     #[serde(default)]
     pub access: AccessPage,
@@ -227,21 +228,12 @@ impl Default for RecordPage {
     }
 }
 
-/// What makes the record evidence.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// The keys of the table `integrity`, which were removed.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct IntegrityPage {
-    /// Folder on another machine that is told of every line.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub witness: Option<PathBuf>,
-    /// Week reports show four words that stand for the record, to be noted by the experimenter.
-    pub code_words: bool,
-}
-
-impl Default for IntegrityPage {
-    fn default() -> Self {
-        IntegrityPage { witness: None, code_words: true }
-    }
+struct RemovedSettings {
+    witness: Option<PathBuf>,
+    code_words: Option<bool>,
 }
 
 /// What opens what participants do not get.
@@ -324,9 +316,9 @@ impl Study {
         Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
-    /// Folder that is told of every line; one that is named without its place lies in the folder of the study.
-    pub fn witness(&self) -> Option<PathBuf> {
-        self.protocol.integrity.witness.as_ref().map(|witness| self.folder.join(witness))
+    /// Returns the first digits of the digest, for messages.
+    pub fn short_digest(&self) -> &str {
+        shortened(&self.digest)
     }
 
     /// What says whether a word is the experimenter's code; none where the protocol has no code.
@@ -337,7 +329,7 @@ impl Study {
 
     /// By which rules its sessions are played.
     pub fn rules(&self) -> SessionRules {
-        let Protocol { session, record, integrity, limits, .. } = &self.protocol;
+        let Protocol { session, record, limits, .. } = &self.protocol;
         SessionRules {
             advice: session.advice,
             calibration: session.calibration,
@@ -346,13 +338,28 @@ impl Study {
             drafts: record.drafts,
             unrecorded: record.leave_out.clone(),
             pause_reason: session.pause_reason,
-            code_words: integrity.code_words,
+            code_words: None,
             limits: *limits,
         }
     }
 }
 
 impl Protocol {
+    /// Returns the settings in the file that were removed from the program, each with the reason and the next step.
+    pub fn removed_settings(&self) -> Vec<String> {
+        let RemovedSettings { witness, code_words } = &self.integrity;
+        let keys = [("witness", witness.is_some()), ("code_words", code_words.is_some())];
+        let used = keys.into_iter().filter(|(_, is_used)| *is_used);
+        used.map(|(key, _)| {
+            format!(
+                "[integrity] {key} was removed and has no effect: a participant who controls the machine could bypass it. \
+                 Runs of this study can still be continued, audited and collected. For a new study, delete the line; \
+                 the digest of the protocol changes with it"
+            )
+        })
+        .collect()
+    }
+
     /// Whether a code opens what participants do not get. Without a code in the protocol nothing does.
     pub fn opens_with(&self, code: Option<&str>) -> bool {
         matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.opens(code))
@@ -422,6 +429,11 @@ impl Protocol {
     }
 }
 
+/// Returns the first 16 digits of a digest, for messages.
+pub(in crate::session) fn shortened(digest: &str) -> &str {
+    digest.get(..16).unwrap_or(digest)
+}
+
 /// A problem with a key of the table `voice`.
 fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
     let key = match key {
@@ -459,4 +471,27 @@ fn question_files(folder: &Path) -> Result<Vec<(PathBuf, String)>, RunError> {
         Err(error) => Err(RunError::Io { path, error }),
     };
     paths.into_iter().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digest_of_a_protocol_is_that_of_its_text() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let read = |text: &str| {
+            std::fs::write(folder.path().join(STUDY_FILE), text).expect("written");
+            Study::read(folder.path()).expect("a study")
+        };
+        let text = "name = \"pilot\"\ntitle = \"A company\"\n[seeds]\nseed = 7\n";
+        let plain = read(text);
+        // Runs carry this digest: it must be the same in every build.
+        assert_eq!(plain.digest, "9c6e07e6aa3cdcbd5263b75c588fa133f240e81f2c415b579128125f39ce69a1");
+        assert!(plain.protocol.removed_settings().is_empty());
+        // A file with settings that were removed is read as before.
+        let old = read(&format!("{text}[integrity]\nwitness = \"/mnt/lab\"\ncode_words = true\n"));
+        assert_eq!(old.digest, "9ae42916627507b38d81028fd909f77262e5aad500f01ac8d7a77a6eecbcec06");
+        assert_eq!((old.rules(), old.protocol.removed_settings().len()), (plain.rules(), 2));
+    }
 }

@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::session::archive::{LabPublicKey, is_archive_name, place_run};
+use crate::session::archive::{LabPublicKey, import_run, is_archive_name};
 use crate::session::error::RunError;
 use crate::session::folder::manifest::Manifest;
 use crate::session::play::afterwards::lines_afterwards;
 use crate::session::study::assignment::Assignment;
+use crate::session::study::definition::shortened;
 use crate::session::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 use crate::session::trajectory::{Trajectory, nanoseconds};
 
@@ -59,6 +60,15 @@ pub enum CollectNote {
         label: String,
         /// What the machines say of the label last.
         last_visit: Option<VisitEvent>,
+    },
+    /// A session of the label exists, under another version of the protocol.
+    OtherProtocol {
+        /// Label.
+        label: String,
+        /// Run.
+        run: String,
+        /// Digest of the protocol of the run.
+        digest: String,
     },
     /// A run was given another label.
     Relabelled {
@@ -139,6 +149,11 @@ impl fmt::Display for CollectNote {
                 let word = event.as_str().map_or_else(|| event.to_string(), |word| word.replace('_', " "));
                 write!(out, "label {label} has no session; last visit: {word}")
             }
+            CollectNote::OtherProtocol { label, run, digest } => write!(
+                out,
+                "label {label} has no session under this protocol; its run {run} has the protocol digest {}",
+                shortened(digest)
+            ),
             CollectNote::Relabelled { run, from, to } => {
                 write!(out, "run {run}: label {from:?} becomes {to:?}")
             }
@@ -250,25 +265,27 @@ pub fn gather(sources: &[PathBuf], workshop: &Path, without: &Path, lab: Option<
     gathered
 }
 
-/// Places of an assignment without a session among runs, given the label of each run.
+/// Returns a note for each place of an assignment without a session. `labels` are those with a session, `others` the run
+/// and its digest by label of runs under another protocol.
 pub fn missing_places(
     assignment: &Assignment,
     labels: &BTreeSet<String>,
+    others: &BTreeMap<String, (String, String)>,
     visits: &[FoundVisit],
 ) -> Vec<CollectNote> {
     let last_visits: BTreeMap<&String, VisitEvent> =
         visits.iter().map(|visit| (&visit.line.label, visit.line.event)).collect();
     let missing = assignment.places.iter().filter(|place| !labels.contains(&place.label));
-    let note = |label: &String| CollectNote::Missing {
-        label: label.clone(),
-        last_visit: last_visits.get(label).copied(),
+    let note = |label: &String| match others.get(label).cloned() {
+        Some((run, digest)) => CollectNote::OtherProtocol { label: label.clone(), run, digest },
+        None => CollectNote::Missing { label: label.clone(), last_visit: last_visits.get(label).copied() },
     };
     missing.map(|place| note(&place.label)).collect()
 }
 
 fn unpacked(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<LabPublicKey>), RunError> {
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let (seal, signer, _) = place_run(folder, archive)?;
+    let (seal, signer, _) = import_run(folder, archive, None)?;
     Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 

@@ -26,9 +26,9 @@ pub struct SessionRules {
     /// The person is asked why they stop the clock.
     #[serde(default)]
     pub pause_reason: bool,
-    /// Each week's report shows four words that stand for the record up to it.
-    #[serde(default)]
-    pub code_words: bool,
+    /// A setting that earlier builds had: it is read and never written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub code_words: Option<bool>,
     /// How long a person may take.
     #[serde(default)]
     pub limits: TimeLimits,
@@ -144,7 +144,7 @@ impl SessionRules {
             drafts: DraftsKept::Lengths,
             unrecorded: Vec::new(),
             pause_reason: false,
-            code_words: false,
+            code_words: None,
             limits: TimeLimits::default(),
         };
         match mode {

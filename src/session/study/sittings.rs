@@ -11,7 +11,6 @@ use crate::session::folder::runs::{all_run_folders, last_lines};
 use crate::session::study::definition::Study;
 use crate::session::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
 use crate::session::trajectory::{Line, Record, now, seconds};
-use crate::session::witness::waiting_lines;
 
 /// A run of a study as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,7 +29,7 @@ pub struct Sitting {
     pub days: u32,
     /// Seconds since the last line.
     pub quiet_seconds: f64,
-    /// What is wrong, as far as the record says so: the last refusal to save, a witness that is not reached.
+    /// What is wrong, as far as the record says so: the last refusal to save.
     pub problems: Vec<String>,
 }
 
@@ -75,11 +74,6 @@ fn sitting(folder: &Path, manifest: &Manifest) -> Sitting {
     let quiet = lines.last().map_or(0.0, |line| (seconds(&now()) - line.moment()).max(0.0));
     let mut problems: Vec<String> = damaged.into_iter().collect();
     problems.extend(not_saved(&lines));
-    problems.extend(waiting_lines(folder).map(|waiting| {
-        let lines =
-            if waiting.lines == 1 { "1 line waits" } else { &format!("{} lines wait", waiting.lines) };
-        format!("the witness has not been reached since {}: {lines} on the machine", waiting.since)
-    }));
     Sitting {
         participant: manifest.participant.clone().unwrap_or_default(),
         run: manifest.id.clone(),

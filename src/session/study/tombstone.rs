@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::session::error::RunError;
 use crate::session::folder::durable::{create_folder, write_whole};
-use crate::session::trajectory::{now, read_regular_text};
+use crate::session::trajectory::now;
 
 /// Name of the file.
 const FILE: &str = "withdrawn.toml";
 
 /// That somebody has withdrawn, and which runs were erased.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(in crate::session) struct Tombstone {
     /// Runs that were erased, with blanks between them.
     run: String,
@@ -33,11 +33,6 @@ impl Tombstone {
         folder.join(FILE).exists()
     }
 
-    /// The one in a folder of runs; none where there is none that can be read.
-    pub(in crate::session) fn read(folder: &Path) -> Option<Tombstone> {
-        toml::from_str(&read_regular_text(&folder.join(FILE))).ok()
-    }
-
     /// Leaves it in a folder of runs.
     ///
     /// # Errors
@@ -45,10 +40,5 @@ impl Tombstone {
     pub(in crate::session) fn write(&self, folder: &Path) -> Result<(), RunError> {
         create_folder(folder)?;
         write_whole(&folder.join(FILE), toml::to_string(self).unwrap_or_default().as_bytes())
-    }
-
-    /// The runs that were erased.
-    pub(in crate::session) fn runs(&self) -> impl Iterator<Item = &str> {
-        self.run.split_whitespace()
     }
 }

@@ -18,11 +18,8 @@ use crate::session::folder::derived::Derived;
 use crate::session::folder::manifest::Manifest;
 use crate::session::folder::mode::Mode;
 use crate::session::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
-use crate::session::play::machine::Machine;
 use crate::session::resume::open::Access;
 use crate::session::state::Session;
-use crate::session::trajectory::now;
-use crate::session::witness::Witness;
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \
@@ -202,7 +199,7 @@ impl Visit {
         }
     }
 
-    /// Begins the practice or the session; the study's witness is told of every line.
+    /// Begins the practice or the session.
     ///
     /// # Errors
     /// As [`Session::create`].
@@ -212,26 +209,17 @@ impl Visit {
         agreed: Option<Agreed>,
         configuration: &Configuration,
     ) -> Result<Session, RunError> {
-        let mut session = Session::create(self.new_run(practice, agreed), configuration)?;
-        self.watch(&mut session);
-        Ok(session)
+        Session::create(self.new_run(practice, agreed), configuration)
     }
 
-    /// Opens a run of the participant to go on with it; the study's witness is told of every line.
+    /// Opens a run of the participant to go on with it.
     ///
     /// # Errors
     /// As [`Session::open`].
     pub fn open(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.join_model(self.study.protocol.voice.as_ref());
-        self.watch(&mut session);
         Ok(session)
-    }
-
-    fn watch(&self, session: &mut Session) {
-        if let Some(folder) = self.study.witness() {
-            session.tell_witness(&folder, &Machine::here().id);
-        }
     }
 
     /// Records that the participant has passed over the practice.
@@ -255,11 +243,6 @@ impl Visit {
     /// They are in use, or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
         let own: Vec<String> = self.own_runs()?.into_iter().map(|(_, run)| run.id).collect();
-        if let Some(folder) = self.study.witness() {
-            let (machine, at) = (Machine::here().id, now());
-            // A witness that is not reached keeps nobody from withdrawing; the audit asks about it.
-            own.iter().for_each(|run| drop(Witness::tell_withdrawal(&folder, &machine, run, &at)));
-        }
         own.iter().try_for_each(|run| delete_run(&self.runs, run))?;
         Tombstone::of(&own, &self.study.digest).write(&self.runs)?;
         self.log.write(&self.label, VisitEvent::Withdrew);
@@ -268,17 +251,9 @@ impl Visit {
 
     /// What was erased and what is kept of a participant who has withdrawn.
     fn kept_after_withdrawal(&self) -> String {
-        let witness = match self.study.witness() {
-            Some(_) => {
-                ", and on the witness the number, the hash and the moment of each of their lines, without content"
-            }
-            None => "",
-        };
-        format!(
-            "Erased: your runs with everything you did, wrote and answered in them. Kept: your label with when you came and \
-             that you withdrew; of each erased run its name, its world and when it was opened{witness}; and what the \
-             experimenter noted or copied before."
-        )
+        "Erased: your runs with everything you did, wrote and answered in them. Kept: your label, the times of your visits, and \
+         that you withdrew; the names of the erased runs; and what the experimenter noted or copied before."
+            .to_owned()
     }
 
     fn consent_text(&self) -> Option<ConsentText> {

@@ -4,7 +4,6 @@
 //! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
 //! confirmed and is dropped.
 
-mod clock;
 #[cfg(test)]
 mod failed_sync_tests;
 mod line;
@@ -20,7 +19,6 @@ mod writer;
 
 use std::path::Path;
 
-pub use clock::{CLOCK_CORRECTION, clock_went_back};
 pub use line::Line;
 pub(super) use line::hash_of_first_line;
 #[cfg(test)]

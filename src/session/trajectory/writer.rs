@@ -4,7 +4,6 @@ use std::cell::RefCell;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
@@ -18,7 +17,6 @@ use crate::database::Position;
 use crate::session::error::RunError;
 use crate::session::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
 use crate::session::trajectory::Trajectory;
-use crate::session::witness::Witness;
 
 /// When a line has to be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,10 +42,6 @@ pub struct TrajectoryWriter {
     loss: Option<String>,
     /// Where everything went when the file was no longer there.
     aside: Option<PathBuf>,
-    /// Who is told of lines once they are on the disk.
-    witness: Option<Arc<Witness>>,
-    /// Number, hash and moment of lines that the witness has not been told of.
-    untold: Vec<(u64, String, String)>,
 }
 
 impl TrajectoryWriter {
@@ -62,8 +56,6 @@ impl TrajectoryWriter {
             last_at: String::new(),
             loss: None,
             aside: None,
-            witness: None,
-            untold: Vec::new(),
         }
     }
 
@@ -112,21 +104,6 @@ impl TrajectoryWriter {
         })
     }
 
-    /// Tells a witness of the last line, and of every line that follows once it is on the disk.
-    pub fn tell(&mut self, witness: Arc<Witness>) {
-        // A file that goes on from another and holds no line yet has none of its own to tell.
-        if !self.last_at.is_empty() {
-            witness.tell(self.next_seq - 1, &self.last_hash, &self.last_at);
-        }
-        self.untold.clear();
-        self.witness = Some(witness);
-    }
-
-    /// Who is told, if somebody is.
-    pub fn witness(&self) -> Option<&Arc<Witness>> {
-        self.witness.as_ref()
-    }
-
     /// Number and hash of the last line.
     pub fn position(&self) -> Position {
         Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
@@ -165,7 +142,6 @@ impl TrajectoryWriter {
         let written = self.write(&bytes, durability).map_err(|error| self.set_aside(error));
         if written.is_ok() {
             self.accept(hash, &at);
-            self.tell_synced(durability);
         }
         written.map(|()| at)
     }
@@ -179,9 +155,8 @@ impl TrajectoryWriter {
         let (bytes, hash, at) = self.line(record.kind(), day, record.fields());
         let written = self.write(&bytes, Durability::Synced);
         self.accept(hash, &at);
-        match &written {
-            Ok(()) => self.tell_synced(Durability::Synced),
-            Err(_) => self.backlog.extend_from_slice(&bytes),
+        if written.is_err() {
+            self.backlog.extend_from_slice(&bytes);
         }
         written.map_err(|error| self.set_aside(error))
     }
@@ -217,19 +192,9 @@ impl TrajectoryWriter {
     }
 
     fn accept(&mut self, hash: String, at: &str) {
-        if self.witness.is_some() {
-            self.untold.push((self.next_seq, hash.clone(), at.to_owned()));
-        }
         self.next_seq += 1;
         self.last_hash = hash;
         at.clone_into(&mut self.last_at);
-    }
-
-    /// Tells the witness of every line, all of which are on the disk after one that was synced.
-    fn tell_synced(&mut self, durability: Durability) {
-        if let Some(witness) = self.witness.as_ref().filter(|_| durability == Durability::Synced) {
-            self.untold.drain(..).for_each(|(seq, hash, at)| witness.tell(seq, &hash, &at));
-        }
     }
 
     fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
@@ -297,9 +262,7 @@ impl TrajectoryWriter {
     /// # Errors
     /// The disk refuses.
     pub fn sync(&mut self) -> Result<(), RunError> {
-        self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))?;
-        self.tell_synced(Durability::Synced);
-        Ok(())
+        self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))
     }
 }
 

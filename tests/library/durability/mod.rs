@@ -8,4 +8,3 @@ mod recorded;
 mod resume;
 pub mod run;
 mod sealed;
-mod witness;

@@ -39,9 +39,7 @@ fn played(home: &Home, participant: &str) -> PathBuf {
 }
 
 fn folders(runs: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
-    // The list of opened worlds is the machine's.
-    entries.filter(|path| !path.ends_with("worlds.jsonl")).collect()
+    fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path()).collect()
 }
 
 fn text(path: &Path) -> String {

@@ -28,9 +28,7 @@ pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
 pub use called_tool::CalledTool;
 pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
-pub use presence::{
-    Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent, WorldsSeen,
-};
+pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
 pub use request_id::RequestId;
 pub use start::{Parent, Start};
 pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};

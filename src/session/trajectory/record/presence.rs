@@ -1,6 +1,7 @@
 //! Whether somebody is there: the program taking up and leaving a run, absences, the stopped clock, time limits.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// The program or the person came or went.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,18 +29,9 @@ pub struct Presence {
     /// Milliseconds since the last key, where the person was found to be idle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub idle_ms: Option<u64>,
-    /// How long the machine's list of opened worlds was, and how it ended.
+    /// Length and last hash of `worlds.jsonl`, a list that earlier builds kept. Read, never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub worlds: Option<WorldsSeen>,
-}
-
-/// How long a list of opened worlds was, and how it ended.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct WorldsSeen {
-    /// Lines.
-    pub lines: u64,
-    /// First 16 hexadecimal digits of the hash of the last one; empty where there is none.
-    pub head: String,
+    pub worlds: Option<Value>,
 }
 
 /// What happened to the presence of program or person.

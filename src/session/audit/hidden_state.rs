@@ -1,0 +1,86 @@
+//! Recorded views of the hidden state of a seed that sessions still played.
+
+use super::run_record::RunRecord;
+use super::{AuditFinding, AuditKind};
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::mode::Mode;
+use crate::session::play::afterwards::lines_afterwards;
+use crate::session::study::definition::Study;
+use crate::session::trajectory::record::Activity;
+use crate::session::trajectory::{Line, Record, seconds};
+
+/// The first moment at which a run showed hidden state.
+struct View {
+    seconds: f64,
+    at: String,
+    /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation on.
+    line: Option<u64>,
+    words: String,
+}
+
+/// Returns a finding for each run that showed the hidden state of a session's seed before that session was over. The
+/// record does not say who looked.
+pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
+    let sessions: Vec<(&RunRecord, &Manifest, Option<f64>)> =
+        runs.iter().filter_map(|run| session(study, run)).collect();
+    let finding = |run: &&RunRecord| {
+        let manifest = run.manifest.as_ref()?;
+        let view = first_view(run, manifest)?;
+        let is_affected = |(own, session, end): &&(&RunRecord, &Manifest, Option<f64>)| {
+            own.id != run.id && session.seed == manifest.seed && end.is_none_or(|end| view.seconds < end)
+        };
+        let mut labels: Vec<&str> = sessions
+            .iter()
+            .filter(is_affected)
+            .filter_map(|(_, session, _)| session.participant.as_deref())
+            .collect();
+        labels.sort_unstable();
+        labels.dedup();
+        if labels.is_empty() {
+            return None;
+        }
+        let words = format!(
+            "{} of seed {}; sessions of that seed that were not over: {}",
+            view.words,
+            manifest.seed,
+            labels.join(", ")
+        );
+        Some(AuditFinding {
+            kind: AuditKind::HiddenState,
+            run: run.id.clone(),
+            participant: manifest.participant.clone(),
+            line: view.line,
+            at: view.at,
+            words,
+        })
+    };
+    runs.iter().filter_map(finding).collect()
+}
+
+/// Returns the run if it is a session of the study, with the moment at which it was over, if it is.
+fn session<'a>(study: &Study, run: &'a RunRecord) -> Option<(&'a RunRecord, &'a Manifest, Option<f64>)> {
+    run.stamp().filter(|stamp| stamp.digest == study.digest && !stamp.practice)?;
+    let end = run.trajectory.as_ref().ok().and_then(|trajectory| trajectory.end());
+    Some((run, run.manifest.as_ref()?, end.map(Line::moment)))
+}
+
+fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<View> {
+    if manifest.mode == Mode::Debug {
+        let (seconds, at) = (seconds(&manifest.created), manifest.created.clone());
+        let words = "this debug run shows the hidden state".to_owned();
+        return Some(View { seconds, at, line: None, words });
+    }
+    let trajectory = run.trajectory.as_ref().ok()?;
+    let afterwards = lines_afterwards(&run.folder, trajectory).map_or(Vec::new(), |after| after.lines);
+    let mut views = trajectory.lines.iter().chain(&afterwards).filter(|line| is_view(line));
+    let first = views.next()?;
+    let words = match views.count() {
+        0 => "its record has 1 view of the hidden state".to_owned(),
+        more => format!("its record has {} views of the hidden state", more + 1),
+    };
+    Some(View { seconds: first.moment(), at: first.at.clone(), line: Some(first.seq + 1), words })
+}
+
+fn is_view(line: &Line) -> bool {
+    matches!(line.record, Record::Activity(Activity::Xray(_)))
+}

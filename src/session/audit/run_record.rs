@@ -1,0 +1,57 @@
+//! The runs in a folder of runs.
+
+use std::path::{Path, PathBuf};
+
+use crate::session::error::RunError;
+use crate::session::folder::manifest::Manifest;
+use crate::session::folder::runs::all_run_folders;
+use crate::session::study::definition::Study;
+use crate::session::study::stamp::StudyStamp;
+use crate::session::trajectory::Trajectory;
+
+/// A run as its folder records it.
+pub(super) struct RunRecord {
+    pub id: String,
+    pub folder: PathBuf,
+    /// The manifest in the first line, or in `run.toml` if that line cannot be read.
+    pub manifest: Option<Manifest>,
+    pub trajectory: Result<Trajectory, RunError>,
+}
+
+/// Reads every run in a machine's folder of runs, those of participants included, ordered by path.
+pub(super) fn runs_in(base: &Path) -> Vec<RunRecord> {
+    let folders = all_run_folders(base);
+    let entries = |folder: &PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut places: Vec<PathBuf> = folders.iter().flat_map(entries).map(|entry| entry.path()).collect();
+    places.sort_unstable();
+    let is_run = |place: &PathBuf| place.is_dir() && place.file_name().is_some_and(|name| name.len() == 8);
+    places.into_iter().filter(is_run).map(RunRecord::read).collect()
+}
+
+impl RunRecord {
+    fn read(folder: PathBuf) -> RunRecord {
+        let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let path = folder.join("trajectory.jsonl");
+        let trajectory = Trajectory::read(&path);
+        let first = trajectory.as_ref().ok().and_then(|trajectory| trajectory.lines.first());
+        let manifest = Manifest::of_start(&path, first).ok();
+        // What cannot be read may still say whose it was.
+        let manifest = manifest.or_else(|| Manifest::read(&folder).ok());
+        RunRecord { id, folder, manifest, trajectory }
+    }
+
+    /// Returns its study, if its record names one.
+    pub(super) fn stamp(&self) -> Option<&StudyStamp> {
+        self.manifest.as_ref()?.study.as_ref()
+    }
+
+    /// Whether its study has this digest.
+    pub(super) fn is_of(&self, study: &str) -> bool {
+        self.stamp().is_some_and(|stamp| stamp.digest == study)
+    }
+
+    /// Whether it belongs to a study with another name.
+    pub(super) fn is_of_another_study(&self, study: &Study) -> bool {
+        self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
+    }
+}

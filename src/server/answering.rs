@@ -59,6 +59,7 @@ fn call(session: &mut Session, tool: &str, mut args: Value, request_id: &Value, 
     }
     match session.call_once(tool, &args, via, request_id) {
         Ok(data) => Answer::data(data),
+        Err(refusal) if tool == ToolId::Query.name() => Answer::refused(Status::Refused, refusal),
         Err(refusal) => Answer::refused(Status::Done, refusal),
     }
 }

@@ -78,6 +78,12 @@ impl Request {
             Value::Object(fields) => fields,
             given => return Request::Call { tool: name.to_owned(), args: given, request_id },
         };
+        let is_statement =
+            |(field, value): (&String, &Value)| field == "sql" && (value.is_string() || value.is_null());
+        if name == ToolId::Query.name() && !fields.iter().all(is_statement) {
+            // The tool itself refuses wrong arguments, as every tool does.
+            return Request::Call { tool: name.to_owned(), args: fields.into(), request_id };
+        }
         let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
         if name == ToolId::NextWeek.name() {
             return Request::NextWeek {

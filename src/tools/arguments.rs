@@ -9,7 +9,7 @@ use serde_json::{Map, Number, Value};
 
 use super::numbers::Numbers;
 use super::refusal::Refusal;
-use super::spec::{Range, Spec};
+use super::spec::{ArgumentKind, Range, Spec};
 use super::view::View;
 use crate::world::identifiers::{Channel, Group, Plan};
 use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
@@ -41,6 +41,7 @@ impl Arguments {
         if let Some(whole) = spec.whole
             && !map.is_empty()
             && !map.keys().any(|name| is_named(spec, name))
+            && may_be_whole(spec, &map)
         {
             map = Map::from_iter([(whole.to_owned(), Value::Object(map))]);
         }
@@ -94,6 +95,13 @@ fn is_named(spec: &Spec, name: &str) -> bool {
     spec.arguments.iter().any(|argument| argument.name == name || argument.alias == Some(name))
 }
 
+/// Whether an object without names of arguments can be the one argument itself. A deal names its customer or its offerings;
+/// a map can have any key.
+fn may_be_whole(spec: &Spec, map: &Map<String, Value>) -> bool {
+    let is_deal = spec.arguments.iter().any(|argument| matches!(argument.kind, ArgumentKind::Structure(_)));
+    !is_deal || ["customer_id", "offerings"].iter().any(|key| map.contains_key(*key))
+}
+
 fn names(spec: &Spec) -> String {
     let names: Vec<&str> = spec.arguments.iter().map(|argument| argument.name).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
@@ -106,7 +114,7 @@ pub fn number(value: &Value) -> Option<f64> {
 
 /// A JSON whole number; integral floats count, booleans and texts do not.
 pub fn integer(value: &Value) -> Option<i64> {
-    let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.0e15;
+    let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.2e18;
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 

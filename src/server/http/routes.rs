@@ -153,7 +153,10 @@ async fn next_week(State(door): State<Routed>, body: Body) -> Response {
 }
 
 async fn query(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::Query, body, |mut fields| Request::Query { sql: fields.take("sql") }).await
+    ask_with(&door, ToolId::Query, body, |fields| {
+        Request::of_tool(ToolId::Query.name(), fields.rest(), Value::Null)
+    })
+    .await
 }
 
 async fn keep_script(State(door): State<Routed>, body: Body) -> Response {

@@ -131,12 +131,12 @@ impl Session {
         let Filing { rationale, predictions, filled_naively, expected_day, request } = filing;
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
         let allowed = allowed.and_then(|()| self.refuse_unexpected_day(expected_day));
-        let possible = allowed.and_then(|()| self.simulation.refuse_crowded_day());
         let unasked = Value::from(UNASKED);
         let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
-        let checked = possible.and_then(|()| {
+        let checked = allowed.and_then(|()| {
             let text = tools::rationale(rationale)?;
             let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;
+            self.simulation.refuse_crowded_day()?;
             Ok((text, Forecasts { all, filled_naively }))
         });
         let (text, forecasts) = match checked {

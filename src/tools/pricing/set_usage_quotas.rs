@@ -51,7 +51,7 @@ pub struct UsageQuotas {
     pub quotas: IndexMap<Plan, Sent>,
 }
 
-fn quota_of(plan: Plan, given: Option<&Value>) -> Result<(Sent, Quota), Refusal> {
+fn quota_of(plan: Plan, given: Option<&Value>) -> Result<Sent, Refusal> {
     let Some(value) = given else {
         let message = format!("quota of plan {plan} is missing; give all three");
         return Err(Refusal::at(plan.id(), "quota_missing", message));
@@ -61,8 +61,7 @@ fn quota_of(plan: Plan, given: Option<&Value>) -> Result<(Sent, Quota), Refusal>
         let message = format!("quota of plan {plan} must not be negative");
         return Err(Refusal::at(plan.id(), "quota_negative", message));
     }
-    let quota = Quota::of(sent.value).ok_or_else(|| too_large(MOST_UNITS, plan.id(), "units/day"))?;
-    Ok((sent, quota))
+    Ok(sent)
 }
 
 impl Tool for SetUsageQuotas {
@@ -78,7 +77,15 @@ impl Tool for SetUsageQuotas {
     }
 
     fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
-        Plan::ALL.into_iter().map(|plan| Ok((plan, quota_of(plan, arguments.get(plan.id()))?))).collect()
+        let given: Vec<Sent> = Plan::ALL
+            .into_iter()
+            .map(|plan| quota_of(plan, arguments.get(plan.id())))
+            .collect::<Result<_, _>>()?;
+        let stored = |(plan, sent): (Plan, Sent)| match Quota::of(sent.value) {
+            Some(quota) => Ok((plan, (sent, quota))),
+            None => Err(too_large(MOST_UNITS, plan.id(), "units/day")),
+        };
+        Plan::ALL.into_iter().zip(given).map(stored).collect()
     }
 
     fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<UsageQuotas>, Refusal> {

@@ -1,4 +1,4 @@
-use super::super::arguments::Arguments;
+use super::super::arguments::{Arguments, text};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
@@ -57,8 +57,8 @@ impl Tool for Query {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
-        Ok(())
+    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<(), Refusal> {
+        text(arguments, "sql").map(|_| ())
     }
 
     fn plan(&self, _: &View<'_>, (): ()) -> Result<Planned<()>, Refusal> {

@@ -209,8 +209,8 @@ fn a_week_answers_with_the_figures_of_plain_mode() {
     let line = format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
     let options = ["--seed", "7", "--days", "28", "--mode", "sandbox", "--json"];
     let said = plain.play(&options, &line);
-    let answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let next = answers.filter(|answer| answer["command"] == "next").last().expect("an answer");
+    let mut answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let next = answers.find(|answer| answer["command"] == "next").expect("an answer");
     let figures = &next["data"]["figures"];
     assert!(figures["new_individual_leads"].is_number(), "{next}");
     assert_eq!(week["figures"], *figures);

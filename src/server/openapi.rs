@@ -66,6 +66,7 @@ fn write(summary: &str, body: Value, answer: &str) -> Value {
             "200": { "description": answer },
             "400": { "description": "refused, or no JSON object: success false, error, code, field" },
             "413": { "description": "the body is too large" },
+            "503": { "description": "too many connections: send the request again after the seconds in Retry-After" },
         },
     })
 }

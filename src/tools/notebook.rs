@@ -4,6 +4,21 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::refusal::Refusal;
+use crate::notation::grouped;
+
+/// Most scripts of a run, and most calculations.
+const MAX_ENTRIES: usize = 100;
+/// Most bytes of the code of one entry.
+const MAX_CODE_BYTES: usize = 256 * 1024;
+/// Most bytes of a name.
+const MAX_NAME_BYTES: usize = 200;
+/// Most bytes of all scripts and calculations of a run together.
+const MAX_BYTES: usize = 4 * 1024 * 1024;
+
+/// Code of the refusal of what is beyond a quota.
+pub(super) const QUOTA_EXCEEDED: &str = "quota_exceeded";
+
 /// What is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
@@ -99,6 +114,53 @@ impl Notebook {
         }
     }
 
+    /// Refuses a change beyond the quotas. A session asks for new calls only: a recorded one of an older version is applied
+    /// whatever its size.
+    ///
+    /// # Errors
+    /// `quota_exceeded`, stating the limit.
+    pub fn refuse_beyond_quota(&self, change: &NotebookChange) -> Result<(), Refusal> {
+        let NotebookChange::Keep { what, name, code } = change else { return Ok(()) };
+        let refused = |field: &str, message: String| {
+            let message = format!("{message}; nothing was stored and nothing was removed");
+            Err(Refusal::at(field, QUOTA_EXCEEDED, message))
+        };
+        let bytes = |count: usize| grouped(count as f64, 0);
+        if name.len() > MAX_NAME_BYTES {
+            return refused(
+                "name",
+                format!("the name has {} bytes, and {MAX_NAME_BYTES} are allowed", bytes(name.len())),
+            );
+        }
+        if code.len() > MAX_CODE_BYTES {
+            let (own, most) = (bytes(code.len()), bytes(MAX_CODE_BYTES));
+            return refused("code", format!("the code has {own} bytes, and {most} are allowed"));
+        }
+        let own = self.statements(*what);
+        if own.get(name).is_none() && own.entries().len() >= MAX_ENTRIES {
+            let kind = match what {
+                Kept::Calculation => "calculations",
+                Kept::Script => "scripts",
+            };
+            return refused(
+                "name",
+                format!("the run keeps {MAX_ENTRIES} {kind}, and no more are allowed; delete one first"),
+            );
+        }
+        let entries = self.calculations.entries().iter().chain(self.scripts.entries());
+        let kept: usize = entries.map(|(name, code)| name.len() + code.len()).sum();
+        let replaced = own.get(name).map_or(0, |code| name.len() + code.len());
+        let after = kept - replaced + name.len() + code.len();
+        if after > MAX_BYTES {
+            let (after, most) = (bytes(after), bytes(MAX_BYTES));
+            let message = format!(
+                "scripts and calculations would have {after} bytes together, and {most} are allowed; delete some first"
+            );
+            return refused("code", message);
+        }
+        Ok(())
+    }
+
     /// Keeps or forgets what a change says.
     pub fn apply(&mut self, change: &NotebookChange) {
         match change {
@@ -111,6 +173,42 @@ impl Notebook {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tools::ToolId;
+
+    #[test]
+    fn quotas_bound_names_codes_counts_and_the_whole() {
+        let keep = |what: Kept, name: &str, bytes: usize| NotebookChange::Keep {
+            what,
+            name: name.to_owned(),
+            code: "x".repeat(bytes),
+        };
+        let field = |notebook: &Notebook, change: &NotebookChange| {
+            notebook.refuse_beyond_quota(change).err().map(|refusal| (refusal.code, refusal.field))
+        };
+        let beyond = |field: &str| Some((QUOTA_EXCEEDED, Some(field.to_owned())));
+        let mut notebook = Notebook::new();
+        assert_eq!(field(&notebook, &keep(Kept::Script, &"n".repeat(201), 1)), beyond("name"));
+        assert_eq!(field(&notebook, &keep(Kept::Script, "a", MAX_CODE_BYTES + 1)), beyond("code"));
+        assert_eq!(field(&notebook, &keep(Kept::Script, "a", MAX_CODE_BYTES)), None);
+        for number in 0..MAX_ENTRIES {
+            notebook.apply(&keep(Kept::Script, &format!("s{number}"), 1));
+        }
+        assert_eq!(field(&notebook, &keep(Kept::Script, "another", 1)), beyond("name"));
+        assert_eq!(field(&notebook, &keep(Kept::Script, "s7", 2)), None, "it replaces one");
+        assert_eq!(field(&notebook, &keep(Kept::Calculation, "another", 1)), None);
+        for number in 0..15 {
+            notebook.apply(&keep(Kept::Script, &format!("s{number}"), MAX_CODE_BYTES));
+        }
+        let room = MAX_BYTES - (15 * MAX_CODE_BYTES + 85 + 10 * 2 + 90 * 3);
+        assert_eq!(field(&notebook, &keep(Kept::Calculation, "c", room - 1)), None);
+        assert_eq!(field(&notebook, &keep(Kept::Calculation, "c", room)), beyond("code"));
+        assert_eq!(field(&notebook, &keep(Kept::Script, "s0", MAX_CODE_BYTES)), None, "it replaces itself");
+        for tool in [ToolId::RegisterScript, ToolId::RegisterDailyCalculation] {
+            for quota in [MAX_ENTRIES, MAX_CODE_BYTES, MAX_NAME_BYTES, MAX_BYTES] {
+                assert!(tool.spec().effect.contains(&grouped(quota as f64, 0)), "{tool}: {quota}");
+            }
+        }
+    }
 
     #[test]
     fn names_keep_their_place_when_their_statements_change() {

@@ -185,6 +185,8 @@ mod tests {
             ("list_all_tables", &["tables, 19"][..]),
             ("post_social_media", &["the text, 1 to"]),
             ("next_week", &["95 times out of 100"]),
+            ("register_script", &["At most 100", "200 bytes", "262,144", "4,194,304"]),
+            ("register_daily_calculation", &["At most 100", "200 bytes", "262,144", "4,194,304"]),
         ];
         for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
             let known = TYPED.iter().chain(&also).filter(|(name, _)| *name == spec.name());

@@ -4,6 +4,7 @@ use novamind::session::{Access, Configuration, NewRun, Refusal, Session, Storage
 use serde_json::{Value, json};
 
 use crate::support::company::{call, week};
+use crate::support::forging::forge;
 
 fn create(storage: Storage) -> Session {
     let new = NewRun { seed: Some(7), days: Some(28), storage, ..NewRun::default() };
@@ -179,4 +180,38 @@ fn the_dashboard_is_that_of_the_last_week_until_the_next() {
     let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
     let next = again.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
     assert!(next.contains("Prices: A $13"), "{next}");
+}
+
+#[test]
+fn quotas_hold_for_new_calls_and_not_for_recorded_ones() {
+    let place = tempfile::tempdir().expect("a folder");
+    let mut session = create(Storage::Runs(place.path().to_owned()));
+    let folder = session.folder().expect("a folder").to_owned();
+    let large = format!("SELECT '{}'", "x".repeat(300_000));
+    for tool in ["register_script", "register_daily_calculation"] {
+        let refusal =
+            try_call(&mut session, tool, json!({ "name": "large", "code": large })).expect_err("a quota");
+        assert_eq!((refusal.code, refusal.field.as_deref()), ("quota_exceeded", Some("code")), "{tool}");
+        assert!(
+            refusal.message.contains("300,009") && refusal.message.contains("262,144"),
+            "{}",
+            refusal.message
+        );
+    }
+    call(&mut session, "register_script", json!({"name": "small", "code": "SELECT 1"}));
+    drop(session);
+    // As a version without quotas recorded it.
+    forge(&folder, |_, line| {
+        if line["tool"] == "register_script" && line["ok"] == true {
+            line["args"]["code"] = large.clone().into();
+            line["result"]["code_length"] = 300_009.into();
+        }
+    });
+    verify(&folder).expect("it verifies");
+    for derived in ["snapshot.bin", "world.db"] {
+        let _ = std::fs::remove_file(folder.join(derived));
+    }
+    let session = Session::open(&folder, Access::Write, true).expect("it opens");
+    let kept = session.notebook().statements(novamind::tools::Kept::Script).get("small").map(str::len);
+    assert_eq!(kept, Some(300_009));
 }

@@ -98,7 +98,8 @@ fn refused_calls_change_nothing_and_are_recorded() {
         _ => None,
     };
     let recorded: Vec<Option<String>> = lines.iter().skip(1).map(refused).collect();
-    assert_eq!(recorded, ["price_not_positive", "rationale_missing"].map(|code| Some(code.to_owned())));
+    let expected = ["price_not_positive", "unknown_tool", "rationale_missing"];
+    assert_eq!(recorded, expected.map(|code| Some(code.to_owned())));
 }
 
 #[test]

@@ -209,8 +209,8 @@ fn a_week_answers_with_the_figures_of_plain_mode() {
     let line = format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
     let options = ["--seed", "7", "--days", "28", "--mode", "sandbox", "--json"];
     let said = plain.play(&options, &line);
-    let answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let next = answers.filter(|answer| answer["command"] == "next").last().expect("an answer");
+    let mut answers = said.out.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let next = answers.find(|answer| answer["command"] == "next").expect("an answer");
     let figures = &next["data"]["figures"];
     assert!(figures["new_individual_leads"].is_number(), "{next}");
     assert_eq!(week["figures"], *figures);
@@ -281,6 +281,8 @@ fn a_number_that_json_cannot_hold_is_refused_as_a_tool_refuses() {
     assert_eq!((status, &refused["success"], &refused["code"]), (200, &json!(false), &json!("wrong_type")));
     assert_eq!((&refused["field"], refused["data"].is_null()), (&json!("B"), true));
     assert!(refused["error"].as_str().is_some_and(|text| text.contains("B is NaN")), "{refused}");
+    let (_, unnamed) = ask("/call", "{}");
+    assert!(unnamed["error"].as_str().is_some_and(|text| text.contains("names no tool")), "{unnamed}");
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let (status, refused) = ask("/next-week", &filed.replacen("2000000.0", "Infinity", 1));
     assert_eq!((status, &refused["success"]), (400, &json!(false)), "{refused}");
@@ -359,8 +361,14 @@ fn input_that_is_not_json_is_answered_over_the_protocol() {
     assert_eq!(ask(&prices(7, 12).to_string())["result"], first["result"]);
     let other = ask(&prices(8, 13).to_string());
     assert_eq!(other["result"]["structuredContent"]["code"], "request_id_payload_mismatch", "{other}");
+    let unknown = json!({ "jsonrpc": "2.0", "id": 9, "method": "tools/call", "params": { "name": "set_wages", "arguments": { "A": 1 } } });
+    assert_eq!(ask(&unknown.to_string())["result"]["structuredContent"]["code"], "unknown_tool");
     drop(to);
     assert!(child.wait().expect("it ends").success());
+    let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
+    let mut lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+    let line = lines.find(|line| line["tool"] == "set_wages").expect("it is recorded");
+    assert_eq!((&line["via"], &line["args"]), (&json!("mcp"), &json!({ "A": 1 })));
 }
 
 #[test]

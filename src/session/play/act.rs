@@ -272,6 +272,8 @@ impl Session {
     ) -> Result<(Arguments, Planned<Answer>), Refusal> {
         let (given, planned) = self.plan_again(tool, arguments)?;
         bounds::hold(tool.spec(), &given)?;
+        let beyond = |change| self.notebook().refuse_beyond_quota(change);
+        planned.change.as_ref().map_or(Ok(()), beyond)?;
         Ok((given, planned))
     }
 

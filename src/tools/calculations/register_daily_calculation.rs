@@ -1,5 +1,6 @@
 use super::super::arguments::{Arguments, text};
 use super::super::keeping::{KeptCode, NamedCode};
+use super::super::notebook::QUOTA_EXCEEDED;
 use super::super::scripts::CODE;
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
@@ -30,10 +31,11 @@ static SPEC: Spec = Spec {
     when: When::NextDay,
     effect: "From the next week on, the code runs before each week, on the company as it is then. The \
              dashboard shows the first {limits.dashboard_calculation_max_chars} characters of the output. A calculation of the same name is \
-             replaced.",
+             replaced. At most 100 calculations are kept, each with a name of at \
+             most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
     writes: &[],
-    refusals: &[],
+    refusals: &[QUOTA_EXCEEDED],
     returns: &[
         Output { name: "name", kind: "text", doc: "the name" },
         Output { name: "code_length", kind: "integer", doc: "characters" },

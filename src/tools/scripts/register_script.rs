@@ -1,5 +1,6 @@
 use super::super::arguments::{Arguments, text};
 use super::super::keeping::{KeptCode, NamedCode};
+use super::super::notebook::QUOTA_EXCEEDED;
 use super::super::{
     Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
@@ -28,10 +29,11 @@ static SPEC: Spec = Spec {
     own_unknown: false,
     whole: None,
     when: When::Now,
-    effect: "run_script runs it. A script of the same name is replaced.",
+    effect: "run_script runs it. A script of the same name is replaced. At most 100 scripts are kept, each with a name of at \
+             most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
     writes: &[],
-    refusals: &["script_name_blank"],
+    refusals: &["script_name_blank", QUOTA_EXCEEDED],
     returns: &[
         Output { name: "name", kind: "text", doc: "the name, without the blanks around it" },
         Output { name: "code_length", kind: "integer", doc: "characters" },

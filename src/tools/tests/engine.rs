@@ -56,6 +56,8 @@ impl Host {
         let view = View::new(&world, &params).within(self);
         let arguments = Arguments::of(tool.spec(), given, || Numbers::shipped().into())?;
         let planned = tool.plan(&view, &arguments)?;
+        let beyond = |change| self.notebook.refuse_beyond_quota(change);
+        planned.change.as_ref().map_or(Ok(()), beyond)?;
         let told = match planned.reply {
             Reply::Output(script, _) => Err(script),
             reply => Ok(reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()),
@@ -105,6 +107,7 @@ fn calculations_are_kept_listed_and_removed() {
             (json!({"name": "x"}), "argument_missing", "code"),
             (json!({"name": 5, "code": "SELECT 1"}), "wrong_type", "name"),
             (json!({"name": "x", "code": ["SELECT 1"]}), "wrong_type", "code"),
+            (json!({"name": "x", "code": "x".repeat(300_000)}), "quota_exceeded", "code"),
         ],
     );
     host.assert_refused(
@@ -129,6 +132,7 @@ fn scripts_are_stored_found_and_deleted() {
             (json!({"name": " \t", "code": "SELECT 1"}), "script_name_blank", "name"),
             (json!({"name": "x", "code": 5}), "wrong_type", "code"),
             (json!({"name": "x"}), "argument_missing", "code"),
+            (json!({"name": "x".repeat(300), "code": "SELECT 1"}), "quota_exceeded", "name"),
         ],
     );
     let data = host.call("register_script", json!({"name": " churn ", "code": "SELECT 1"}));

@@ -28,6 +28,30 @@ next naive
     assert!(told.out.contains("day:\n  failed: python3 is not on the path"), "{}", told.out);
 }
 
+#[cfg(unix)]
+#[test]
+fn path_chooses_the_python_of_sandbox_runs_only() {
+    use std::os::unix::fs::PermissionsExt;
+    let home = Home::new();
+    let tools = home.0.path().join("tools");
+    std::fs::create_dir(&tools).expect("a folder");
+    let fake = tools.join("python3");
+    std::fs::write(&fake, "#!/bin/sh\necho chosen by PATH\n").expect("written");
+    std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).expect("permissions");
+    let play = |options: &[&str]| {
+        let mut program = home.program();
+        program.env("PATH", &tools).args(["play", "--plain"]).args(options);
+        said(&mut program, "python_exec {\"code\": \"# python\\nprint(6 * 7)\"}\nquit\n")
+    };
+    let sandbox = play(&["--days", "28"]);
+    assert!(sandbox.out.contains("chosen by PATH"), "{}{}", sandbox.out, sandbox.err);
+    let baseline = play(&["--mode", "baseline", "--participant", "P01"]);
+    assert!(!baseline.out.contains("chosen by PATH"), "{}", baseline.out);
+    let answered = baseline.out.contains("ok python_exec\n42\n");
+    let refused = baseline.out.contains("a baseline run does not search PATH for python3");
+    assert!(answered != refused, "{}{}", baseline.out, baseline.err);
+}
+
 #[test]
 fn what_was_recorded_with_python_is_read_without_it() {
     let tried = Command::new("python3").args(["-c", ""]).output();

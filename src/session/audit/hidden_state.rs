@@ -10,7 +10,7 @@ use crate::session::trajectory::record::Activity;
 use crate::session::trajectory::{Line, Record, seconds};
 
 /// The first moment at which a run showed hidden state.
-struct View {
+struct HiddenView {
     seconds: f64,
     at: String,
     /// Number of the line, from 1; `None` for a debug run, which shows hidden state from its creation on.
@@ -64,11 +64,11 @@ fn session<'a>(study: &Study, run: &'a RunRecord) -> Option<(&'a RunRecord, &'a 
     Some((run, run.manifest.as_ref()?, end.map(Line::moment)))
 }
 
-fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<View> {
+fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<HiddenView> {
     if manifest.mode == Mode::Debug {
         let (seconds, at) = (seconds(&manifest.created), manifest.created.clone());
         let words = "this debug run shows the hidden state".to_owned();
-        return Some(View { seconds, at, line: None, words });
+        return Some(HiddenView { seconds, at, line: None, words });
     }
     let trajectory = run.trajectory.as_ref().ok()?;
     let afterwards = lines_afterwards(&run.folder, trajectory).map_or(Vec::new(), |after| after.lines);
@@ -78,7 +78,7 @@ fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<View> {
         0 => "its record has 1 view of the hidden state".to_owned(),
         more => format!("its record has {} views of the hidden state", more + 1),
     };
-    Some(View { seconds: first.moment(), at: first.at.clone(), line: Some(first.seq + 1), words })
+    Some(HiddenView { seconds: first.moment(), at: first.at.clone(), line: Some(first.seq + 1), words })
 }
 
 fn is_view(line: &Line) -> bool {

@@ -93,7 +93,8 @@ fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) ->
     }
     let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
     let words = format!(
-        "no run with the protocol digest {} is in {}: check the folders and the protocol",
+        "no run with the protocol digest {} is in {}: check the folders and the protocol. Of archives only \
+         the signature is checked",
         study.short_digest(),
         folders.join(", ")
     );

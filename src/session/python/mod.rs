@@ -12,6 +12,8 @@ mod channel;
 #[cfg(unix)]
 mod empty_folder;
 #[cfg(unix)]
+mod interpreter;
+#[cfg(unix)]
 mod process;
 #[cfg(unix)]
 mod run;

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::captured::Captured;
 use super::channel::{Channel, Heard, ScriptRequest};
 use super::empty_folder::EmptyFolder;
+use super::interpreter::Interpreter;
 
 /// What runs before the script, within the process.
 const BOOTSTRAP: &str = include_str!("../../../assets/scripts/python.py");
@@ -50,16 +51,17 @@ pub(super) struct ScriptProcess {
 }
 
 impl ScriptProcess {
-    /// Starts python3 with this code; it has to end in this time.
+    /// Starts Python with this code; it has to end in this time.
     ///
     /// # Errors
     /// There is no python3, or the system has no process, socket or folder for it.
-    pub fn start(code: &str, time: Duration) -> std::io::Result<ScriptProcess> {
+    pub fn start(code: &str, interpreter: Interpreter, time: Duration) -> std::io::Result<ScriptProcess> {
         let deadline = Instant::now() + time;
         let folder = EmptyFolder::create()?;
         let (channel, other) = Channel::pair()?;
         let path = std::env::var_os("PATH").unwrap_or_else(|| OsString::from("/usr/local/bin:/usr/bin:/bin"));
-        let mut command = Command::new("python3");
+        let (program, path) = interpreter.program(path)?;
+        let mut command = Command::new(program);
         command.args(["-I", "-B", "-X", "utf8", "-c", BOOTSTRAP]).current_dir(folder.path());
         // A library that splits its work over threads would find none.
         command.env_clear().env("PATH", path).envs([("OPENBLAS_NUM_THREADS", "1"), ("OMP_NUM_THREADS", "1")]);

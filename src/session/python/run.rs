@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::channel::ScriptRequest;
 use super::failed;
+use super::interpreter::Interpreter;
 use super::process::{ScriptEnd, ScriptProcess};
 use crate::database::Rows;
 use crate::database::query::Limits;
@@ -37,7 +38,9 @@ impl Session {
     ) -> Result<Said, Refusal> {
         let stop = self.interrupt().map_err(|refusal| failed(refusal.message))?;
         let ticket = stop.ticket();
-        let mut process = ScriptProcess::start(code, time).map_err(not_started)?;
+        let interpreter = Interpreter::of(self.manifest.mode);
+        let started = ScriptProcess::start(code, interpreter, time);
+        let mut process = started.map_err(|error| not_started(interpreter, &error))?;
         let mut asked = 0;
         let end = process.serve(&|| stop.has_stopped(ticket), &mut |request, left| {
             asked += 1;
@@ -82,12 +85,9 @@ impl Session {
     }
 }
 
-fn not_started(error: std::io::Error) -> Refusal {
+fn not_started(interpreter: Interpreter, error: &std::io::Error) -> Refusal {
     match error.kind() {
-        ErrorKind::NotFound => failed(
-            "python3 is not on the path of this machine: install Python 3.8 or newer, or write SQL statements \
-             instead",
-        ),
+        ErrorKind::NotFound => failed(interpreter.missing()),
         _ => failed(format!("python3 cannot be started: {error}")),
     }
 }

@@ -1,0 +1,69 @@
+//! Which Python runs a script.
+
+use std::ffi::OsString;
+use std::io::{Error, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use crate::session::folder::mode::Mode;
+
+/// Where baseline runs look for Python, in this order. On macOS `/usr/bin/python3` may be a stub that opens an installer.
+#[cfg(target_os = "macos")]
+const SYSTEM_PYTHONS: [&str; 5] = [
+    "/Library/Developer/CommandLineTools/usr/bin/python3",
+    "/Library/Frameworks/Python.framework/Versions/Current/bin/python3",
+    "/opt/homebrew/bin/python3",
+    "/usr/local/bin/python3",
+    "/opt/local/bin/python3",
+];
+/// Where baseline runs look for Python, in this order.
+#[cfg(not(target_os = "macos"))]
+const SYSTEM_PYTHONS: [&str; 4] =
+    ["/usr/bin/python3", "/usr/local/bin/python3", "/run/current-system/sw/bin/python3", "/opt/bin/python3"];
+/// The search path of scripts in baseline runs.
+const SYSTEM_PATH: &str = "/usr/bin:/bin";
+
+/// Which Python runs a script.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Interpreter {
+    /// The first on `PATH`.
+    OfPath,
+    /// The first of a fixed list of absolute paths, so that a participant cannot choose it through `PATH`.
+    OfSystem,
+}
+
+impl Interpreter {
+    /// Returns the interpreter of a run in this mode. Runs of studies are baseline runs.
+    pub fn of(mode: Mode) -> Interpreter {
+        if mode == Mode::Baseline { Interpreter::OfSystem } else { Interpreter::OfPath }
+    }
+
+    /// Returns the program to start and the `PATH` that it gets, given the `PATH` of this process.
+    ///
+    /// # Errors
+    /// None of the fixed paths exists.
+    pub fn program(self, path: OsString) -> std::io::Result<(PathBuf, OsString)> {
+        if self == Interpreter::OfPath {
+            return Ok((PathBuf::from("python3"), path));
+        }
+        let found = SYSTEM_PYTHONS.into_iter().find(|program| Path::new(program).is_file());
+        found
+            .map(|program| (program.into(), SYSTEM_PATH.into()))
+            .ok_or_else(|| Error::from(ErrorKind::NotFound))
+    }
+
+    /// Returns the message for a player whose machine has no such Python.
+    pub fn missing(self) -> String {
+        match self {
+            Interpreter::OfPath => {
+                "python3 is not on the path of this machine: install Python 3.8 or newer, or write SQL \
+                                    statements instead"
+                    .to_owned()
+            }
+            Interpreter::OfSystem => format!(
+                "a baseline run does not search PATH for python3, and none of these files exists: {}. Install Python 3.8 or \
+                 newer there, or write SQL statements instead",
+                SYSTEM_PYTHONS.join(", ")
+            ),
+        }
+    }
+}

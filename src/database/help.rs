@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
 use super::guard::is_unsafe_function;
-use super::mathematics;
+use super::mathematics::register_mathematics;
 use super::tokens::{Token, TokenKind, tokens};
 use crate::notation::nearest;
 
@@ -57,7 +57,7 @@ fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
 fn functions() -> Vec<String> {
     let names = || -> rusqlite::Result<Vec<String>> {
         let engine = rusqlite::Connection::open_in_memory()?;
-        mathematics::register(&engine)?;
+        register_mathematics(&engine)?;
         let mut statement = engine.prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name")?;
         statement.query_map([], |row| row.get(0))?.collect()
     };

@@ -49,8 +49,11 @@ const OF_TWO: [(&str, OfTwo); 5] = [
     ("power", libm::pow),
 ];
 
-/// Registers the functions on a connection.
-pub(super) fn register(connection: &Connection) -> rusqlite::Result<()> {
+/// Registers SQL's mathematical functions on a connection.
+///
+/// # Errors
+/// The connection cannot take functions.
+pub fn register_mathematics(connection: &Connection) -> rusqlite::Result<()> {
     let flags =
         FunctionFlags::SQLITE_UTF8 | FunctionFlags::SQLITE_DETERMINISTIC | FunctionFlags::SQLITE_INNOCUOUS;
     for (name, function) in ROUNDING {
@@ -128,7 +131,7 @@ mod tests {
 
     fn connection() -> Connection {
         let connection = Connection::open_in_memory().expect("memory");
-        register(&connection).expect("functions");
+        register_mathematics(&connection).expect("functions");
         connection
     }
 

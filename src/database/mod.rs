@@ -45,6 +45,7 @@ pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};
 pub use hidden::HiddenValue;
 pub use interrupt::{Interrupt, Ticket};
 pub use location::Location;
+pub use mathematics::register_mathematics;
 pub use plain_copy::copy_for_other_programs;
 pub use projector::{
     Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,

@@ -24,7 +24,7 @@ use super::hidden;
 use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
 use super::loading::BlockSource;
 use super::location::Location;
-use super::mathematics;
+use super::mathematics::register_mathematics;
 use super::packed_tables;
 use super::plan;
 use super::released::{Reading, Released, without_explain};
@@ -92,7 +92,7 @@ impl QueryConnection {
         let seen = Arc::new(Seen::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
-        mathematics::register(&connection)?;
+        register_mathematics(&connection)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         if scope == Scope::Hidden {
             hidden::attach(&connection)?;

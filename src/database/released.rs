@@ -15,7 +15,7 @@ use rusqlite::{Batch, Connection, Statement};
 use super::catalogue::{Scope, Table, table, tables};
 use super::guard::{CUSTOMER, Columns, Guard, Objections, Reads, limit};
 use super::hidden;
-use super::mathematics;
+use super::mathematics::register_mathematics;
 use super::query::Fault;
 use super::tokens::{Token, tokens};
 
@@ -65,7 +65,7 @@ impl Released {
         }
         let declarations: Vec<String> = tables().iter().map(Table::declaration).collect();
         connection.execute_batch(&declarations.join(";\n"))?;
-        mathematics::register(&connection)?;
+        register_mathematics(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
         limit(&connection)?;
         let guard = Guard::of_ordinary_tables(&connection, scope)?;

@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
 use novamind::database::query::Limits;
-use novamind::database::{Cell, QueryConnection, Rows, tables};
+use novamind::database::{Cell, QueryConnection, Rows, register_mathematics, tables};
 use novamind::lab::bench::{Bench, company_to_ask};
 use novamind::session::{Configuration, Mode, NewRun, Session, Via, WaitingThread};
 use rusqlite::Connection;
@@ -110,6 +110,7 @@ fn answer(session: &mut Session) {
 /// Ordinary tables, declared as the released simulator declares them, with the rows of a company.
 fn plain_tables(connection: &QueryConnection) -> Connection {
     let mut plain = Connection::open_in_memory().expect("memory");
+    register_mathematics(&plain).expect("functions");
     let transaction = plain.transaction().expect("a transaction");
     for table in tables() {
         transaction.execute_batch(&table.declaration()).expect("a table");

@@ -285,6 +285,7 @@ fn archive_of_inspect_is_imported() {
         manifest.contains("seed = 9") && manifest.contains("participant = \"mockllm/model\""),
         "{manifest}"
     );
+    home.run(&["runs", "import", &file.to_string_lossy()]).fails(2, &["inspect.eval", "--transcript"]);
     let bytes = fs::read(&file).expect("an archive");
     let cut = home.0.path().join("cut.eval");
     fs::write(&cut, &bytes[..bytes.len() - 30]).expect("a file");

@@ -10,6 +10,8 @@ use super::formats::{self, ExportFormat};
 use super::transcript::import_transcript;
 use super::{find_in, list_all};
 #[cfg(feature = "server")]
+use crate::cli::for_shell;
+#[cfg(feature = "server")]
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
@@ -294,6 +296,8 @@ impl Import {
         if self.under.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--under names one run: import one archive with it"));
         }
+        #[cfg(feature = "server")]
+        self.refuse_logs()?;
         let mut failures: Vec<Failure> = Vec::new();
         for file in &self.files {
             match import_run(runs, file, self.under.as_deref()) {
@@ -316,6 +320,21 @@ impl Import {
                 Err(if worst.code == 3 { Failure::unreadable(message) } else { Failure::failed(message) })
             }
         }
+    }
+}
+
+#[cfg(feature = "server")]
+impl Import {
+    /// Refuses files that are read with `--transcript`.
+    fn refuse_logs(&self) -> Result<(), Failure> {
+        let is_log = |file: &&PathBuf| file.extension().is_some_and(|own| own == "eval" || own == "json");
+        let Some(log) = self.files.iter().find(is_log) else { return Ok(()) };
+        Err(Failure::usage(format!(
+            "{} is not an archive of a run: `novamind runs import --transcript {}` plays the calls of a log or trajectory in a \
+             new run. Nothing was imported",
+            log.display(),
+            for_shell(log)
+        )))
     }
 }
 

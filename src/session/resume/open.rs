@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
-use super::rebuild::{end_may_be_kept, rebuild_database};
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use super::unnamed::remove_leftovers;
@@ -31,6 +30,17 @@ pub enum Access {
     Write,
     /// Look at it; nothing of it is changed.
     Read,
+}
+
+/// How a reading command keeps what it had to simulate.
+#[derive(Clone, Copy)]
+pub(in crate::session) struct Keeping {
+    /// Returns whether the end of the run may be kept.
+    pub(in crate::session) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
+    /// Keeps snapshot and database. Returns whether they were kept.
+    pub(in crate::session) keep_database: fn(&Path, &SealKey) -> bool,
+    /// Keeps the snapshot.
+    pub(in crate::session) keep_snapshot: fn(&Session, &Path),
 }
 
 /// The screen that a line says was left, and the day.
@@ -60,24 +70,19 @@ impl Session {
         projection: bool,
         key: SealKey,
     ) -> Result<Session, RunError> {
-        Session::open_and_keep(folder, access, projection, key, false)
+        Session::open_and_keep(folder, access, projection, key, None)
     }
 
-    /// Opens a run to read it. If the run has ended and had to be simulated, snapshot and database are kept in its folder, if it
-    /// can be written: the next command opens it at once.
+    /// As [`Session::open_sealed`]. If `keeping` is given, what a reading command had to simulate is kept.
     ///
     /// # Errors
-    /// As [`Session::open`].
-    pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
-        Session::open_and_keep(folder, Access::Read, projection, SealKey::default(), true)
-    }
-
-    fn open_and_keep(
+    /// The same.
+    pub(in crate::session) fn open_and_keep(
         folder: &Path,
         access: Access,
         projection: bool,
         key: SealKey,
-        keep_end: bool,
+        keeping: Option<Keeping>,
     ) -> Result<Session, RunError> {
         let derived = Derived::of(folder)?;
         let manifest = derived.manifest.clone();
@@ -101,12 +106,9 @@ impl Session {
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
-        let keep_end = keep_end && end_may_be_kept(folder, &manifest, &trajectory, &key);
-        if keep_end
-            && projection
-            && finished.is_none()
-            && rebuild_database(folder, &key, &mut |_, _| {}).is_ok()
-        {
+        let keeping = keeping.filter(|own| (own.may_keep)(folder, &manifest, &trajectory, &key));
+        let simulates = projection && finished.is_none();
+        if simulates && keeping.is_some_and(|own| (own.keep_database)(folder, &key)) {
             return Session::open_sealed(folder, access, projection, key);
         }
         let database = match projection && finished.is_none() {
@@ -125,8 +127,8 @@ impl Session {
         session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
-        if keep_end && !projection && seen < trajectory.lines.len() {
-            session.keep_end(folder);
+        if let Some(own) = keeping.filter(|_| !projection && seen < trajectory.lines.len()) {
+            (own.keep_snapshot)(&session, folder);
         }
         if let Some(location) = finished {
             session.projection = Projection::finished(location);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
-use super::open::{Access, check_start, open_projector, usable};
+use super::open::{Access, Keeping, check_start, open_projector, usable};
 use super::sealing::SealKey;
 use super::snapshot::SnapshotPlace;
 use crate::session::error::RunError;
@@ -54,12 +54,7 @@ pub fn rebuild_database(
 
 /// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown, and the
 /// file is not one that only the secret of a study opens.
-pub(in crate::session) fn end_may_be_kept(
-    folder: &Path,
-    manifest: &Manifest,
-    trajectory: &Trajectory,
-    key: &SealKey,
-) -> bool {
+fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
     let ended = trajectory.end().and_then(|line| match &line.record {
         Record::End(end) => Some(end.reason),
         _ => None,
@@ -68,9 +63,23 @@ pub(in crate::session) fn end_may_be_kept(
 }
 
 impl Session {
+    /// Opens a run to read it. If the run has ended and had to be simulated, snapshot and database are kept in its folder, if it
+    /// can be written: the next command opens it at once.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
+        let keeping = Keeping {
+            may_keep: end_may_be_kept,
+            keep_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
+            keep_snapshot: Session::keep_end,
+        };
+        Session::open_and_keep(folder, Access::Read, projection, SealKey::default(), Some(keeping))
+    }
+
     /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if another program uses the run, or if
     /// its folder cannot be written.
-    pub(in crate::session) fn keep_end(&self, folder: &Path) {
+    fn keep_end(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest.id) {
             self.write_snapshot(SnapshotPlace::of(folder, &self.seal_key), false);
         }

@@ -55,7 +55,7 @@ pub fn movement(series: &[f64], noise: f64) -> Option<Movement> {
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < ENOUGH {
         // Half of the size of a figure counts as unusual, a tenth of it does not.
-        (size * 6.0).min(change.abs() / noise)
+        size * 6.0
     } else {
         let usual = median(&before);
         let distances: Vec<f64> = before.iter().map(|earlier| (earlier - usual).abs()).collect();
@@ -63,6 +63,7 @@ pub fn movement(series: &[f64], noise: f64) -> Option<Movement> {
         let spread = (NORMAL * median(&distances)).max(0.02 * old.abs().max(new.abs()));
         (change - usual).abs() / spread.max(noise)
     };
+    let unusual = unusual.min(change.abs() / noise);
     Some(Movement { old, new, unusual, noise, since, known: before.len() })
 }
 
@@ -117,6 +118,10 @@ mod tests {
         let one = movement(&series, 1.0).expect("it moved");
         assert!(one.unusual <= 1.0, "{one:?}");
         assert_eq!(one.standing(), "");
+        // Growth that stops is no change to speak of.
+        let stalled =
+            movement(&[0.0, 600.0, 1200.0, 1800.0, 2400.0, 3000.0, 3072.0], 180.0).expect("it moved");
+        assert!(stalled.unusual < 1.0, "{stalled:?}");
         let first_weeks = movement(&[1.0, 0.0], 1.0).expect("it moved");
         assert!(first_weeks.unusual <= 1.0, "{first_weeks:?}");
         let many = movement(&[&series[..], &[40.0]].concat(), 40f64.sqrt()).expect("it moved");

@@ -199,7 +199,8 @@ os.write(socket, b'{"ask":"vars"}\n')
 
     /// Serves a script that asks once, and is answered more than a socket holds.
     fn served(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
-        let mut process = ScriptProcess::start(&format!("{ASK}{code}"), time).expect("python3");
+        let mut process =
+            ScriptProcess::start(&format!("{ASK}{code}"), Interpreter::OfPath, time).expect("python3");
         let has_asked = Cell::new(false);
         let end = process.serve(&|| stop_after_asking && has_asked.get(), &mut |_, _| {
             has_asked.set(true);

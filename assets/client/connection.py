@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import os
-import select
+import selectors
 import threading
 import time
 import uuid
@@ -149,8 +149,9 @@ def _is_closed_by_server(connection: HTTPConnection) -> bool:
     """Whether the other end has closed: then there is something to read, which is the end."""
     if connection.sock is None:
         return False
-    readable, _, _ = select.select([connection.sock], [], [], 0)
-    return bool(readable)
+    with selectors.DefaultSelector() as selector:
+        selector.register(connection.sock, selectors.EVENT_READ)
+        return bool(selector.select(timeout=0))
 
 
 def _seconds(header: Optional[str]) -> float:

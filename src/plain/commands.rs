@@ -353,17 +353,7 @@ impl Interpreter {
 
     /// Calls a tool by its name, with or without its module.
     fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let Some(tool) = tool_called(word) else {
-            // A word that is followed by the arguments of a call is one of a tool that does not exist.
-            if let Ok(args) = as_object(arguments, None)
-                && !arguments.is_empty()
-                && tools::find(word).is_none()
-            {
-                // Refused and recorded; what is shown names the commands of plain mode too.
-                let _ = self.session.call(word, &args, Via::Plain);
-            }
-            return Err(unknown(word, column));
-        };
+        let tool = tool_called(word).ok_or_else(|| self.unknown_tool(word, column, arguments))?;
         let arguments = read_arguments(tool, arguments)?;
         Ok(self.call_named(tool.spec().id, &arguments))
     }

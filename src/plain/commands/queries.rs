@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
+use super::super::grammar::{Argument, Problem, as_object};
 use super::super::signals::Phase;
-use super::{Interpreter, problem};
+use super::{Interpreter, problem, unknown};
 use crate::session::library::NamedQuery;
 use crate::session::{QuerySource, Refusal, Via};
 use crate::tools::{self, ToolId};
@@ -37,6 +37,16 @@ impl Interpreter {
         };
         let sql = query.sql.clone();
         Ok(self.query(&sql, QuerySource::Library))
+    }
+
+    /// Records a call of a tool that does not exist: a word that is followed by the arguments of a call.
+    pub(super) fn unknown_tool(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Problem {
+        let args = as_object(arguments, None).ok().filter(|_| !arguments.is_empty());
+        if let Some(args) = args.filter(|_| tools::find(word).is_none()) {
+            // What is shown names the commands of plain mode too.
+            let _ = self.session.call(word, &args, Via::Plain);
+        }
+        unknown(word, column)
     }
 
     /// Calls a tool; a script that runs long is stopped as a query is.

@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::act::not_saved;
 use super::facts_chain::StateHash;
-use super::once::arguments_of_week;
 use super::recorder::Recorder;
 use super::simulation::Simulation;
+use super::week::Week;
 use crate::database::{Entry, ForecastRow, ProjectionError};
-use crate::notation::json_number;
 use crate::session::figures::journal::JournalEntry;
 use crate::session::figures::week::{Forecasts, WeekFigures};
 use crate::session::resume::snapshot::WEEKS_BETWEEN;
@@ -49,43 +47,6 @@ pub(in crate::session) struct Filing<'a> {
     pub(in crate::session) expected_day: &'a Value,
     /// The id that the program gave the request.
     pub(in crate::session) request: Option<RequestId>,
-}
-
-/// A week, or the rest of one, that was simulated.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Week {
-    /// Its figures.
-    pub figures: WeekFigures,
-    /// The dashboard.
-    pub dashboard: String,
-    /// What was put into the inbox: day and text.
-    pub notices: Vec<(u32, String)>,
-    /// How the run ended with it, if it did.
-    pub ended: Option<Ended>,
-    /// What the person should know: the disk did not take the closing line, the next day has no room for its leads, the database
-    /// could not be written, or the language model did not speak.
-    pub remark: Option<String>,
-}
-
-impl Week {
-    /// The week as programs get it.
-    pub fn as_json(&self) -> Value {
-        let notices: Vec<Value> =
-            self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();
-        let mut data = Map::from_iter([
-            ("day".to_owned(), self.figures.day.into()),
-            ("days_run".to_owned(), self.figures.days_run.into()),
-            ("cash".to_owned(), json_number(self.figures.cash)),
-            ("figures".to_owned(), Value::Object(self.figures.as_json())),
-            ("dashboard".to_owned(), self.dashboard.clone().into()),
-            ("notifications".to_owned(), notices.into()),
-            ("ended".to_owned(), json!(self.ended)),
-        ]);
-        if let Some(remark) = &self.remark {
-            data.insert("remark".to_owned(), remark.clone().into());
-        }
-        Value::Object(data)
-    }
 }
 
 impl Session {
@@ -469,4 +430,17 @@ impl Session {
 /// Whether the next day has room for those who come.
 fn has_room(simulation: &Simulation) -> bool {
     simulation.refuse_crowded_day().is_ok()
+}
+
+/// The arguments of a week as its refusal records them.
+pub(in crate::session) fn arguments_of_week(
+    rationale: &Value,
+    predictions: &Value,
+    expected_day: &Value,
+) -> Value {
+    let mut args = json!({ "rationale": rationale, "predictions": predictions });
+    if !expected_day.is_null() {
+        args["expected_day"] = expected_day.clone();
+    }
+    args
 }

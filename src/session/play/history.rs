@@ -1,7 +1,7 @@
 //! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
 
+use super::first_answers::FirstAnswers;
 use super::irrevocable::Irrevocable;
-use super::once::FirstAnswers;
 use super::simulation::Simulation;
 use super::surroundings::Calculated;
 use super::this_week::ThisWeek;

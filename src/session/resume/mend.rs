@@ -55,7 +55,7 @@ mod tests {
     use crate::session::Cell;
     use crate::session::folder::configuration::Configuration;
     use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::play::advance::Week;
+    use crate::session::play::week::Week;
     use crate::session::trajectory::record::Via;
 
     /// Rows that tell how far the database has come.

@@ -9,10 +9,6 @@ use crate::tools::{Kept, ToolId};
 /// Tools whose arguments older programs send as null where they mean to leave them out.
 const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
-/// Tools whose arguments are the map of budgets itself, so that a call without arguments clears it, as in the release.
-const NOTHING_CLEARS: [ToolId; 3] =
-    [ToolId::SetTargetedAdSpend, ToolId::SetTargetedOpsSpend, ToolId::SetTargetedDevSpend];
-
 /// Answers a request. What is asked comes in through `via`.
 pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
     match request {
@@ -54,7 +50,8 @@ fn call(session: &mut Session, tool: &str, mut args: Value, request_id: &Value, 
     {
         fields.retain(|_, value| !value.is_null());
     }
-    if args.as_object().is_some_and(Map::is_empty) && NOTHING_CLEARS.iter().any(|id| id.name() == tool) {
+    // The release reads the arguments as the map by group, so a call without arguments clears it.
+    if tool == ToolId::SetTargetedOpsSpend.name() && args.as_object().is_some_and(Map::is_empty) {
         args = json!({ "targeted_spend": {} });
     }
     match session.call_once(tool, &args, via, request_id) {

@@ -290,6 +290,10 @@ const ARGUMENTS_AND_ANSWERS: [Example; 14] = [
     ("takes *set_capacity_tier* without a tier", |stage| {
         stage.refuses("set_capacity_tier", json!({}), "argument_missing");
     }),
+    ("takes *set_targeted_ad_spend* and *set_targeted_dev_spend* without arguments", |stage| {
+        stage.refuses("set_targeted_ad_spend", json!({}), "argument_missing");
+        stage.refuses("set_targeted_dev_spend", json!({}), "argument_missing");
+    }),
     ("takes texts and truth values as forecasts", |stage| {
         for point in [json!("1000000"), json!(true)] {
             let mut week = json!({ "rationale": "on", "predictions": predictions() });
@@ -519,12 +523,10 @@ fn answers_have_the_form_of_the_release() {
         let name = if tool == "describe_tables" { "table_names" } else { "tool_names" };
         assert_eq!(stage.data(tool, json!({ name: ["all"] })), stage.data(tool, json!({})), "{tool}");
     }
-    // Arguments of a targeted budget without a name are its map.
+    // Arguments of targeted operations without a name are the map by group.
     stage.data("set_targeted_ops_spend", json!({ "by_group": {"S1": 5}, "by_plan": {"A": 10} }));
     let cleared = stage.data("set_targeted_ops_spend", json!({}));
     assert_eq!((&cleared["by_group"], &cleared["by_plan"]["A"]), (&json!({}), &json!(10.0)));
-    assert_eq!(stage.data("set_targeted_ad_spend", json!({}))["targeted_spend"], json!({}));
-    assert_eq!(stage.data("set_targeted_dev_spend", json!({}))["total_extra_per_day"], 0);
     // Keys are checked before values; maps by customer entry by entry.
     stage.refuses("set_promotion", json!({ "by_group": {"S1": -1, "S9": 5} }), "unknown_group");
     stage.refuses("set_promotion", json!({ "by_customer": {"1": -1, "x": 5} }), "promotion_negative");

@@ -93,7 +93,7 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     terminal.type_keys("\x1b[15~");
     terminal.wait_for("esc cancels");
     terminal.type_keys("\x1b");
-    terminal.wait_for("stopped");
+    terminal.wait_for("the query was cancelled");
     terminal.wait_for("SELECT count(*) FROM n");
     terminal.type_keys("\x03");
     assert_eq!(terminal.end().0, 0);

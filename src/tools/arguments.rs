@@ -98,7 +98,10 @@ fn is_named(spec: &Spec, name: &str) -> bool {
 /// Whether an object without names of arguments can be the one argument itself. A deal names its customer or its offerings;
 /// a map can have any key.
 fn may_be_whole(spec: &Spec, map: &Map<String, Value>) -> bool {
-    let is_deal = spec.arguments.iter().any(|argument| matches!(argument.kind, ArgumentKind::Structure(_) | ArgumentKind::Deals(_)));
+    let is_deal = spec
+        .arguments
+        .iter()
+        .any(|argument| matches!(argument.kind, ArgumentKind::Structure(_) | ArgumentKind::Deals(_)));
     !is_deal || ["customer_id", "offerings"].iter().any(|key| map.contains_key(*key))
 }
 

@@ -274,7 +274,7 @@ const DONE_BY_AGENTS: [Example; 1] = [("Agents run Python in", |stage| {
     stage.manual_says("python_exec", &["#", "Python"]);
 })];
 
-const ARGUMENTS_AND_ANSWERS: [Example; 14] = [
+const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
     ("ignores unknown arguments", |stage| {
         let args = json!({ "A": 1, "B": 1, "C": 1, "D": 1 });
         stage.refuses("set_usage_quotas", args, "unknown_argument");

@@ -89,7 +89,7 @@ class Connection:
             NovamindError: the refusal of the tool.
         """
         given = {name: value for name, value in arguments.items() if value is not None}
-        body = {"tool": tool, "args": given, "request_id": request_id or new_id()}
+        body = {"tool": tool, "args": given, "request_id": new_id() if request_id is None else request_id}
         return checked(self.request("POST", "/call", body)).get("data")
 
     def _address(self) -> Tuple[int, str]:

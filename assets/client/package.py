@@ -97,7 +97,7 @@ class Client:
         Raises:
             NovamindError: something is missing, the run is over, or it is on another day. No day has passed then.
         """
-        body = {"rationale": rationale, "predictions": predictions, "request_id": request_id or new_id()}
+        body = {"rationale": rationale, "predictions": predictions, "request_id": new_id() if request_id is None else request_id}
         if expected_day is not None:
             body["expected_day"] = expected_day
         return checked(self.connection.request("POST", "/next-week", body))

@@ -225,6 +225,10 @@ impl Context {
     /// # Errors
     /// As [`Context::runs`].
     fn machines(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+        if let Some(missing) = named.iter().find(|folder| !folder.is_dir()) {
+            let problem = format!("{} is not a folder; nothing was read", missing.display());
+            return Err(Failure::failed(problem));
+        }
         if named.is_empty() { Ok(vec![self.runs()?]) } else { Ok(named.to_vec()) }
     }
 

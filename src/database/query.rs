@@ -150,6 +150,10 @@ impl QueryConnection {
         if sql.trim().is_empty() {
             return Err(refusal("sql_empty", "no SQL was given"));
         }
+        if sql.contains('\0') {
+            // SQLite would read only what stands before it.
+            return Err(refusal("sql_error", "the statement contains a NUL character"));
+        }
         self.look(ticket, sql, limits)?;
         let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
         let closed = self.look_away();

@@ -291,6 +291,7 @@ fn what_is_hidden_cannot_be_asked() {
         // The obvious attempts, then what people try next.
         ("", "sql_empty"),
         ("  ", "sql_empty"),
+        ("SELECT 1\0; SELECT 2", "sql_error"),
         ("SELECT c_max AS x FROM customers", "sql_error"),
         ("SELECT * FROM social_media_posts WHERE sentiment = 'positive'", "sql_error"),
         ("SELECT * FROM _rng_states", "sql_hidden_table"),

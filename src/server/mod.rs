@@ -10,6 +10,7 @@ mod client;
 mod http;
 mod inspect_log;
 mod mcp;
+mod not_numbers;
 mod openapi;
 mod owner;
 mod page;

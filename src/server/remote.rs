@@ -55,7 +55,9 @@ impl Remote {
         };
         let remote = Remote { port: announcement.port?, announcement, token };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
-        (health.status == 200 && health.body["run"] == run).then_some(remote)
+        // A server that has no room for another connection names no run, and says so again to the request itself.
+        let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
+        (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
     }
 
     /// Reads something.
@@ -78,8 +80,8 @@ impl Remote {
     ///
     /// # Errors
     /// As [`Remote::get`].
-    pub fn shut_down(&self) -> Result<(), String> {
-        self.post("/shutdown", &json!({})).map(|_| ())
+    pub fn shut_down(&self) -> Result<Reply, String> {
+        self.post("/shutdown", &json!({}))
     }
 
     fn send(

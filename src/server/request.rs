@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::schema::REQUEST_ID;
 use crate::session::Refusal;
 use crate::session::record::RefusalRecord;
 use crate::tools::{ToolId, find};
@@ -73,10 +74,16 @@ pub enum Request {
 
 impl Request {
     /// What a call of a tool asks: a statement and a week have requests of their own, whichever door they come through.
+    ///
+    /// The id of the request may be among the arguments.
     pub fn of_tool(name: &str, args: Value, request_id: Value) -> Request {
         let mut fields = match args {
             Value::Object(fields) => fields,
             given => return Request::Call { tool: name.to_owned(), args: given, request_id },
+        };
+        let request_id = match request_id {
+            Value::Null => fields.remove(REQUEST_ID).unwrap_or(Value::Null),
+            given => given,
         };
         let is_statement =
             |(field, value): (&String, &Value)| field == "sql" && (value.is_string() || value.is_null());
@@ -84,8 +91,11 @@ impl Request {
             // The tool itself refuses wrong arguments, as every tool does.
             return Request::Call { tool: name.to_owned(), args: fields.into(), request_id };
         }
-        let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
         if name == ToolId::NextWeek.name() {
+            if let Some(refusal) = unknown_argument_of_week(&fields) {
+                return Request::Refused { tool: name.to_owned(), args: fields.into(), refusal };
+            }
+            let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
             return Request::NextWeek {
                 rationale: take("rationale"),
                 predictions: take("predictions"),
@@ -94,7 +104,7 @@ impl Request {
             };
         }
         if name == ToolId::Query.name() {
-            return Request::Query { sql: take("sql") };
+            return Request::Query { sql: fields.remove("sql").unwrap_or(Value::Null) };
         }
         Request::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
@@ -107,6 +117,16 @@ impl Request {
             _ => false,
         }
     }
+}
+
+/// Refuses a week with an argument that it does not have: a mistyped `expected_day` would protect nothing.
+fn unknown_argument_of_week(fields: &Map<String, Value>) -> Option<Refusal> {
+    const KNOWN: [&str; 3] = ["rationale", "predictions", "expected_day"];
+    let unknown = fields.keys().find(|name| !KNOWN.contains(&name.as_str()))?;
+    let message = format!(
+        "next_week has no argument {unknown}; it has rationale, predictions, expected_day and request_id. No day has passed"
+    );
+    Some(Refusal::at(unknown.clone(), "unknown_argument", message))
 }
 
 /// The text of an error: if several deals are all refused, one line for each, as in the release.

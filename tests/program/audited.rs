@@ -465,3 +465,16 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
     assert_eq!(study.kinds(&["one"]), ["damaged"], "the study of that run is unknown");
     assert_eq!(study.run("one", &["study", "watch", &study.folder(), "--once"]).code, 0);
 }
+
+#[test]
+fn audit_finds_that_the_run_of_a_finished_participant_is_gone() {
+    let study = Study::new();
+    study.visit("one", &format!("P01\nyes\n{}{}quit\n", WEEKS.concat(), WEEKS[0]));
+    study.visit("one", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
+    assert_eq!(study.audit(&["one"]), []);
+    fs::remove_dir_all(study.machine("one").join("participants/P01")).expect("gone");
+    assert_eq!(study.kinds(&["one"]), ["missing"]);
+    let missing = study.home.run(&["study", "audit", &study.folder(), "no-such-folder"]);
+    assert_eq!(missing.code, 1);
+    assert!(missing.err.contains("no-such-folder is not a folder"), "{}", missing.err);
+}

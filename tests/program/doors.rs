@@ -315,6 +315,11 @@ fn the_connection_after_the_last_is_told_to_come_back() {
     assert!(head.starts_with("HTTP/1.1 503 ") && head.contains("retry-after: 1"), "{head}");
     let body: Value = serde_json::from_str(body).expect("JSON");
     assert_eq!((&body["success"], &body["code"]), (&json!(false), &json!("too_many_connections")));
+    let run = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
+    for command in ["status", "stop"] {
+        let full = home.run(&["agent", command, "--run", &run]);
+        assert_eq!(full.code, 7, "{command}: {}{}", full.out, full.err);
+    }
     drop(held);
 }
 
@@ -342,6 +347,10 @@ fn input_that_is_not_json_is_answered_over_the_protocol() {
             "{answer}"
         );
     }
+    let not_a_number = r#"{"jsonrpc": "2.0", "id": 3, "method": "tools/call", "params": {"name": "set_prices", "arguments": {"A": NaN}}}"#;
+    let answer = ask(not_a_number);
+    assert_eq!((&answer["id"], &answer["error"]["code"]), (&json!(3), &json!(-32700)), "{answer}");
+    assert!(answer["error"]["message"].as_str().is_some_and(|text| text.contains("A is NaN")), "{answer}");
     let call = json!({ "jsonrpc": "2.0", "id": 4, "method": "tools/call", "params": { "name": "get_vars", "arguments": {} } });
     assert_eq!(ask(&call.to_string())["id"], 4);
     let tools = ask(&json!({ "jsonrpc": "2.0", "id": 5, "method": "tools/list", "params": {} }).to_string());

@@ -58,3 +58,30 @@ fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
     assert!(answers.iter().all(|answer| *answer == answers[0] && answer.0 == 200), "{answers:?}");
     assert_eq!(lines(&home, "advance").len(), 1);
 }
+
+#[test]
+fn a_week_refuses_arguments_that_it_does_not_have() {
+    let home = Home::new();
+    let server = Server::start(&home, &NEW);
+    let mut mistyped = week("a", 0);
+    mistyped["expected_dy"] = 7.into();
+    let routes = [
+        ("/next-week", 400, mistyped.clone()),
+        ("/call", 200, json!({ "tool": "next_week", "args": mistyped })),
+    ];
+    for (route, expected, body) in routes {
+        let (status, answer) = server.post(route, &body);
+        assert_eq!((status, &answer["code"]), (expected, &json!("unknown_argument")), "{answer}");
+        assert_eq!(answer["field"], "expected_dy");
+    }
+    assert_eq!(lines(&home, "call").len(), 2, "both are on record");
+    // The id and the day may stand among the arguments of a call or next to them.
+    let filed = json!({ "rationale": "on", "predictions": predictions() });
+    let mut within = filed.clone();
+    within["request_id"] = "b".into();
+    let within = json!({ "tool": "next_week", "args": within });
+    assert_eq!(server.post("/call", &within), server.post("/call", &within));
+    let late = json!({ "tool": "next_week", "args": filed, "expected_day": 0 });
+    assert_eq!(server.post("/call", &late).1["code"], "unexpected_day");
+    assert_eq!(lines(&home, "advance").len(), 1);
+}

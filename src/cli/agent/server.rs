@@ -105,7 +105,8 @@ impl AgentRun {
     pub fn stop(&self) -> Result<bool, Failure> {
         let _gate = self.gate()?;
         let Some(remote) = Remote::find(&self.folder, &self.id) else { return Ok(false) };
-        remote.shut_down().map_err(|error| super::exit::unreachable(&error))?;
+        let reply = remote.shut_down().map_err(|error| super::exit::unreachable(&error))?;
+        super::exit::check(&reply)?;
         let asked = Instant::now();
         while is_being_played(&self.folder) {
             if asked.elapsed() > LAST_WEEK {

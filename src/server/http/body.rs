@@ -5,7 +5,7 @@ use std::time::Duration;
 use axum::body::{Body, to_bytes};
 use serde_json::{Map, Value};
 
-use super::not_numbers;
+use crate::server::not_numbers;
 use crate::server::request::{Answer, Status};
 use crate::session::Refusal;
 

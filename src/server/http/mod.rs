@@ -2,7 +2,6 @@
 
 mod body;
 mod guard;
-mod not_numbers;
 mod routes;
 mod shutdown;
 
@@ -197,9 +196,11 @@ async fn refuse(mut stream: TcpStream) {
          connection: close\r\n\r\n",
         body.len()
     );
+    // Clients take an answer that comes before they have asked for a fault of the connection.
+    let mut unread = [0; 4096];
+    let _ = tokio::time::timeout(REFUSAL_DEADLINE / 2, stream.read(&mut unread)).await;
     let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;
     if answered.is_ok() && stream.shutdown().await.is_ok() {
-        let mut unread = [0; 4096];
         while matches!(stream.read(&mut unread).await, Ok(1..)) {}
     }
 }

@@ -131,10 +131,14 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
         Value::Null => String::new(),
         other => other.to_string(),
     };
-    let args = match fields.take("args") {
+    let mut args = match fields.take("args") {
         Value::Null => json!({}),
         given => given,
     };
+    // Next to the arguments or among them, as the id.
+    if let (Value::Object(args), day @ Value::Number(_)) = (&mut args, fields.take("expected_day")) {
+        args.entry("expected_day").or_insert(day);
+    }
     let request = match fields.refusal.take() {
         Some(refusal) => Request::Refused { tool, args, refusal },
         None => Request::of_tool(&tool, args, fields.take("request_id")),
@@ -143,11 +147,8 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
 }
 
 async fn next_week(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::NextWeek, body, |mut fields| Request::NextWeek {
-        rationale: fields.take("rationale"),
-        predictions: fields.take("predictions"),
-        expected_day: fields.take("expected_day"),
-        request_id: fields.take("request_id"),
+    ask_with(&door, ToolId::NextWeek, body, |fields| {
+        Request::of_tool(ToolId::NextWeek.name(), fields.rest(), Value::Null)
     })
     .await
 }

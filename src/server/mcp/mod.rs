@@ -23,7 +23,6 @@ use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use super::page::{PageOf, goal_and_rules};
 use super::request::Request;
-use super::schema::REQUEST_ID;
 use crate::session::{RunError, Session, Via};
 use crate::tools::Numbers;
 
@@ -98,9 +97,8 @@ impl ServerHandler for McpDoor {
         request: CallToolRequestParams,
         _: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
-        let mut arguments = request.arguments.unwrap_or_default();
-        let request_id = arguments.remove(REQUEST_ID).unwrap_or_default();
-        let request = Request::of_tool(&request.name, arguments.into(), request_id);
+        let arguments = request.arguments.unwrap_or_default();
+        let request = Request::of_tool(&request.name, arguments.into(), serde_json::Value::Null);
         Ok(tools::result(self.handle.ask(request).await).into())
     }
 

@@ -7,6 +7,8 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexS
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
 
+use crate::server::not_numbers;
+
 /// Bytes between the streams and the protocol.
 const BUFFER_BYTES: usize = 64 * 1024;
 /// Longest message, in bytes.
@@ -34,7 +36,7 @@ async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
         }
         if line.len() > MAX_MESSAGE_BYTES {
             let message = format!("the message is longer than {MAX_MESSAGE_BYTES} bytes");
-            let _ = problems.send(parse_error(&message));
+            let _ = problems.send(parse_error(&Value::Null, &message));
             skip_line(&mut input).await;
             continue;
         }
@@ -49,7 +51,11 @@ async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
                 }
             }
             Err(error) => {
-                let _ = problems.send(parse_error(&format!("the message is not valid JSON: {error}")));
+                let problem = match not_numbers::read(&line) {
+                    Some((message, refusal)) => parse_error(&message["id"], &refusal.message),
+                    None => parse_error(&Value::Null, &format!("the message is not valid JSON: {error}")),
+                };
+                let _ = problems.send(problem);
             }
         }
     }
@@ -86,6 +92,7 @@ async fn write(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
     }
 }
 
-fn parse_error(message: &str) -> String {
-    json!({ "jsonrpc": "2.0", "id": null, "error": { "code": -32700, "message": message } }).to_string()
+/// The answer to a message that is not JSON; with its id if it is JSON but for `NaN` or `Infinity`.
+fn parse_error(id: &Value, message: &str) -> String {
+    json!({ "jsonrpc": "2.0", "id": id, "error": { "code": -32700, "message": message } }).to_string()
 }

@@ -27,7 +27,7 @@ use crate::session::resume::integrity::Integrity;
 use crate::session::resume::verify::verify_sealed;
 use crate::session::study::definition::{Study, shortened};
 use crate::session::study::rules::SessionRules;
-use crate::session::study::visit_log::{VisitSummary, visits_of};
+use crate::session::study::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
 use crate::session::trajectory::{Line, Trajectory, seconds};
 use run_record::{RunRecord, runs_in};
 
@@ -71,7 +71,10 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     audit.findings.extend(second_sessions(study, &all));
     audit.findings.extend(archives::not_signed(study, machines)?);
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
-    audit.visits = VisitSummary::of(&visits_of(study, machines), &with_runs);
+    let visits = visits_of(study, machines);
+    audit.visits = VisitSummary::of(&visits, &with_runs);
+    let gone = finished_without_run(&visits, &with_runs).into_iter().map(run_gone);
+    audit.findings.extend(gone);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     audit.findings.sort_by(|one, other| {
         (&one.participant, &one.run, one.line, one.kind).cmp(&(
@@ -84,6 +87,18 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     // Folders may be copies of one another.
     audit.findings.dedup();
     Ok(audit)
+}
+
+/// A finding that a participant finished, and their run is gone.
+fn run_gone(visit: &VisitLine) -> AuditFinding {
+    AuditFinding {
+        kind: AuditKind::Missing,
+        run: String::new(),
+        participant: Some(visit.label.clone()),
+        line: None,
+        at: visit.at.clone(),
+        words: format!("{VISITS} says that this participant finished, and there is no run of theirs"),
+    }
 }
 
 /// A finding that there is no run to audit.

@@ -151,6 +151,18 @@ impl fmt::Display for VisitSummary {
     }
 }
 
+/// Returns the visits that ended with everything done and were not withdrawn, of labels without a run.
+pub fn finished_without_run<'a>(
+    lines: &'a BTreeSet<VisitLine>,
+    with_runs: &BTreeSet<&str>,
+) -> Vec<&'a VisitLine> {
+    let withdrew =
+        |label: &str| lines.iter().any(|line| line.label == label && line.event == VisitEvent::Withdrew);
+    let is_finished = |line: &&VisitLine| line.event == VisitEvent::Finished;
+    let has_no_run = |line: &&VisitLine| !with_runs.contains(line.label.as_str()) && !withdrew(&line.label);
+    lines.iter().filter(is_finished).filter(has_no_run).collect()
+}
+
 /// Who came to a study on some machines, each line once: folders may be copies of one another.
 pub fn visits_of(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
     let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));

@@ -24,8 +24,7 @@ pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
         }
         Request::Query { sql } => query(session, &sql),
         Request::Refused { tool, args, refusal } => {
-            session.record_refused_call(&tool, &args, via, &refusal);
-            Answer::refused(Status::Refused, refusal)
+            Answer::refused(Status::Refused, session.refuse_call(&tool, &args, via, refusal))
         }
         Request::Vars => Answer::plain(json!({ "current_day": session.day() })),
         Request::Dashboard => {

@@ -192,6 +192,7 @@ fn a_run_that_is_over_says_so_with_a_code_of_its_own() {
     assert_eq!(shell.does(&["status"])["ended"], "horizon");
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     shell.agent(&["next-week", &filed]).fails(6, &["run_over"]);
+    shell.agent(&["next-week", r#"{"rationale": "on", "extra": 1}"#]).fails(6, &["run_over"]);
     shell.agent(&["call", "set_prices", "--A", "9"]).fails(6, &["run_over"]);
     assert_eq!(shell.does(&["call", "get_vars"])["success"], true);
 }

@@ -339,9 +339,13 @@ impl Session {
         self.note_refused(Record::Call(call));
     }
 
-    /// Records a call that was refused before it reached the session.
-    pub fn record_refused_call(&mut self, tool: &str, arguments: &Value, via: Via, refusal: &Refusal) {
-        self.record_refusal(tool, arguments, via, refusal, None);
+    /// Records a call that was refused before it reached the session, and returns the refusal: if the run is over and the tool
+    /// acts, that comes first.
+    pub fn refuse_call(&mut self, tool: &str, arguments: &Value, via: Via, refusal: Refusal) -> Refusal {
+        let over = find(tool).and_then(|tool| self.refuse_if_over(tool.spec().kind).err());
+        let refusal = over.unwrap_or(refusal);
+        self.record_refusal(tool, arguments, via, &refusal, None);
+        refusal
     }
 
     /// Records a refused call. A refusal changes nothing, so a disk that refuses its line takes nothing away.

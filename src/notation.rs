@@ -73,6 +73,11 @@ pub fn price(value: f64) -> String {
     }
 }
 
+/// A price to the cent: `$12`, `$22.50`.
+pub fn price_to_cents(value: f64) -> String {
+    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+}
+
 /// Money with its sign before the dollar; what rounds to nothing has none.
 fn signed(value: f64, decimals: usize) -> String {
     let text = grouped(value.abs(), decimals);

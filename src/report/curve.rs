@@ -1,6 +1,6 @@
 //! The curve explorer in words: what it is drawn from, the curve at some prices, and what leads would do.
 
-use crate::notation::{cents, dollars, percent};
+use crate::notation::{cents, percent, price_to_cents};
 use crate::session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
 use crate::world::identifiers::{ByPlan, Plan};
 
@@ -31,7 +31,7 @@ pub fn columns(own: &CurveExplorer) -> Vec<String> {
 pub fn rows(own: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_between;
-        let mut cells = vec![price(point.price)];
+        let mut cells = vec![price_to_cents(point.price)];
         cells.extend([point.tenth, point.median, point.ninetieth].map(quality));
         if !own.is_truth() {
             cells.extend([least, most].map(quality));
@@ -86,12 +86,7 @@ pub fn with_ends(figure: &Expected, write: impl Fn(f64) -> String) -> String {
 /// A plan as leads see it: `A $12, quality 0.20, taken by 12.3%`.
 pub fn plan_in_words(plan: Plan, point: &PlanPoint, takers: Option<&ByPlan<f64>>) -> String {
     let taken = takers.map_or(String::new(), |all| format!(", taken by {}", percent(all[plan], 1)));
-    format!("{plan} {}, quality {}{taken}", price(point.list), quality(point.quality))
-}
-
-/// A price with the decimals it has.
-pub fn price(value: f64) -> String {
-    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+    format!("{plan} {}, quality {}{taken}", price_to_cents(point.list), quality(point.quality))
 }
 
 /// A quality; a dash where no quality is enough.
@@ -128,7 +123,7 @@ mod tests {
         let open = Expected { likely: 0.5, least: 0.1, most: 0.75 };
         assert_eq!(with_ends(&open, |value| percent(value, 1)), "50.0% (10.0% to 75.0%)");
         assert_eq!(
-            (price(12.0), price(12.5), quality(f64::INFINITY)),
+            (price_to_cents(12.0), price_to_cents(12.5), quality(f64::INFINITY)),
             ("$12".into(), "$12.50".into(), "–".into())
         );
     }

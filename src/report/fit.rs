@@ -2,7 +2,7 @@
 //! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
 
 use super::words::{range, whole};
-use crate::notation::{cents, dollars, percent};
+use crate::notation::{cents, dollars, percent, price_to_cents};
 use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
 use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
 
@@ -366,20 +366,15 @@ fn lack_in_words((concern, amount): (Concern, f64)) -> String {
 
 /// The list price, and what promotions leave of it.
 fn price_in_words(own: &PlanFit) -> String {
-    let list = price(own.list);
+    let list = price_to_cents(own.list);
     let mut less = Vec::new();
     if own.price < own.list {
-        less.push(format!("{} for leads", price(own.price)));
+        less.push(format!("{} for leads", price_to_cents(own.price)));
     }
     if own.billed < own.list {
-        less.push(format!("{} billed", price(own.billed)));
+        less.push(format!("{} billed", price_to_cents(own.billed)));
     }
     if less.is_empty() { list } else { format!("{list} ({})", less.join(", ")) }
-}
-
-/// A price with the decimals it has.
-fn price(value: f64) -> String {
-    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! cash lasts at that.
 
 use super::words::{count, money};
-use crate::notation::{cents, dollars, signed_dollars};
+use crate::notation::{dollars, price_to_cents, signed_dollars};
 use crate::session::{AlikePlans, Observation, Preview};
 
 /// Lines on the money of a company before its next week.
@@ -50,7 +50,7 @@ pub fn alike_lines(seen: &Observation) -> Vec<String> {
 fn alike_in_words(plans: &AlikePlans) -> String {
     let AlikePlans { cheap, dear, .. } = plans;
     let since = if plans.before { "still" } else { "now" };
-    let (low, high) = (price(plans.cheap_price), price(plans.dear_price));
+    let (low, high) = (price_to_cents(plans.cheap_price), price_to_cents(plans.dear_price));
     if low == high {
         return format!("{cheap} and {dear} {since} differ in nothing: both cost {low}");
     }
@@ -60,11 +60,6 @@ fn alike_in_words(plans: &AlikePlans) -> String {
         more => format!("{} have {dear}", count(more, "subscriber")),
     };
     format!("{cheap} and {dear} {since} differ in nothing but price ({low} against {high}); {payers}")
-}
-
-/// A price with the decimals it has.
-fn price(value: f64) -> String {
-    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
 }
 
 /// What a call costs and from when it acts, in a line; none where there is nothing to say.

@@ -6,9 +6,9 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use crate::database::text::aligned;
-use crate::notation::nearest;
+use crate::notation::{nearest, price_to_cents};
 use crate::report::curve::{
-    basis_in_words, columns, outcome_in_words, plan_in_words, price, quality, remarks, rows,
+    basis_in_words, columns, outcome_in_words, plan_in_words, quality, remarks, rows,
 };
 use crate::session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
 use crate::world::identifiers::{Group, Plan};
@@ -61,7 +61,7 @@ fn answer(own: &CurveExplorer, product: Option<(f64, f64)>) -> Answer {
             lines.push(format!(
                 "{}: one product at {} with quality {}, by {basis}",
                 own.group,
-                price(list),
+                price_to_cents(list),
                 quality(delivered)
             ));
             own.outcome_of(list, delivered)

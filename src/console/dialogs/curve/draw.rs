@@ -11,10 +11,8 @@ use crate::console::text::wrapped;
 use crate::console::theme::Role;
 use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use crate::console::widgets::scale::Unit;
-use crate::notation::dollars;
-use crate::report::curve::{
-    basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, price, quality,
-};
+use crate::notation::{dollars, price_to_cents};
+use crate::report::curve::{basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality};
 use crate::session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
 use crate::world::identifiers::Plan;
 
@@ -113,7 +111,7 @@ impl CurvePage {
 
     fn plans_in_few_words(&self, opened: &ExploredCurve) -> String {
         let words = |(plan, own): (Plan, &PlanPoint)| {
-            format!("{}{plan} {} {}", self.mark(plan), price(own.list), quality(own.quality))
+            format!("{}{plan} {} {}", self.mark(plan), price_to_cents(own.list), quality(own.quality))
         };
         opened.plans.pairs().map(words).collect::<Vec<_>>().join("  ")
     }
@@ -160,7 +158,7 @@ fn line_of(opened: &ExploredCurve, plan: Plan) -> String {
     let words = plan_in_words(plan, now, opened.outcome.takers.as_ref());
     let mut changes = Vec::new();
     if now.list != was.list {
-        changes.push(format!("set {}", price(was.list)));
+        changes.push(format!("set {}", price_to_cents(was.list)));
     }
     if now.quality != was.quality {
         changes.push(format!("delivered {}", quality(was.quality)));

@@ -11,7 +11,7 @@ use crate::console::screens::panes::{Border, Pane, Seat};
 use crate::console::screens::{Figure, Look};
 use crate::console::text::{number, wrapped};
 use crate::console::theme::Role;
-use crate::notation::{cents, compact, dollars, percent};
+use crate::notation::{compact, percent, price_to_cents};
 use crate::report::fit::{Beside, Concern, Fit, TruthRange};
 use crate::tools::ToolId;
 use crate::session::{WeekFigure, WeekQuantity};
@@ -98,7 +98,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines.extend(Plan::ALL.map(|plan| {
         let own = &fit.plans[plan];
         let name = if own.price < own.list { "lead" } else { "list" };
-        bar_line(fit, (plan, Concern::Price), (name, &price(own.price)), (fit.budget, &prices), width)
+        bar_line(fit, (plan, Concern::Price), (name, &price_to_cents(own.price)), (fit.budget, &prices), width)
     }));
     let smallest = if company { " (smallest)" } else { "" };
     lines.push(line(format!("quota    they use {}{smallest}", fit.usage.units()), Role::Header));
@@ -187,7 +187,7 @@ fn verdict(fit: &Fit, plan: Plan, concern: Concern) -> (String, Role) {
     }
     if let Some(missing) = fit.missing(plan, concern) {
         return match concern {
-            Concern::Price => (format!("over {}", price(missing)), Role::Bad),
+            Concern::Price => (format!("over {}", price_to_cents(missing)), Role::Bad),
             _ => (format!("short {missing:.4}"), Role::Bad),
         };
     }
@@ -197,10 +197,6 @@ fn verdict(fit: &Fit, plan: Plan, concern: Concern) -> (String, Role) {
         Some(_) if concern == Concern::Price => ("within budget".to_owned(), Role::Good),
         Some(_) => ("enough".to_owned(), Role::Good),
     }
-}
-
-fn price(value: f64) -> String {
-    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
 }
 
 #[cfg(test)]

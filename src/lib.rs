@@ -48,20 +48,22 @@
 
 pub mod cli;
 pub mod console;
-pub mod database;
 pub mod glossary;
 pub mod lab;
-pub(crate) mod notation;
 pub mod plain;
 pub mod report;
 pub mod rules;
 #[cfg(feature = "server")]
 pub mod server;
 pub mod session;
-pub(crate) mod shipped;
-pub(crate) mod statistics;
-pub mod tools;
-pub mod voice;
 
+use novamind_assets as shipped;
+use novamind_base::{notation, statistics};
+#[doc(inline)]
+pub use novamind_database as database;
+#[doc(inline)]
+pub use novamind_tools as tools;
+#[doc(inline)]
+pub use novamind_voice as voice;
 #[doc(inline)]
 pub use novamind_world as world;

@@ -9,8 +9,8 @@ use super::{Context, Failure, print};
 use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
-    Access, Cell, Library, Line, Record, Refusal, Rows, RunError, SealKey, Session, Trajectory,
-    connection_to_file, find_run_to_read, manifest_of, may_look_inside, rebuild_database, rows_as_json,
+    Access, Cell, Library, Line, Record, Rows, RunError, SealKey, Session, Trajectory, connection_to_file,
+    find_run_to_read, manifest_of, may_look_inside, query_refusal, rebuild_database, rows_as_json,
     with_the_way_to_hidden_tables,
 };
 
@@ -145,7 +145,7 @@ fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Fai
                 });
                 manifest_of(folder).is_ok_and(|manifest| may_look_inside(&manifest, ended, Some(folder)))
             };
-            return answer.map(Some).map_err(|error| match Refusal::from(error) {
+            return answer.map(Some).map_err(|error| match query_refusal(error) {
                 refusal if may_look() => with_the_way_to_hidden_tables(refusal).into(),
                 refusal => refusal.into(),
             });

@@ -26,7 +26,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         (Some(name), json) => {
             let table = table(name).ok_or_else(|| {
-                let near = crate::notation::nearest(name, tables().iter().map(|table| table.name.as_str()));
+                let near = novamind_base::nearest(name, tables().iter().map(|table| table.name.as_str()));
                 let help = if near.is_empty() {
                     "`novamind tables` lists them".to_owned()
                 } else {

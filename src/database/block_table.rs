@@ -24,8 +24,8 @@ use super::by_customer::{ByCustomer, Indexes};
 use super::day_table::number_of;
 use super::issues::{self, IssueRow, IssueRun};
 use super::packing::{PackedDay, Run};
-use crate::world::events::UsageRows;
-use crate::world::identifiers::Group;
+use novamind_world::events::UsageRows;
+use novamind_world::identifiers::Group;
 
 /// Registers the tables on a connection.
 pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
@@ -434,8 +434,8 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::events::AdsRevenueRow;
-    use crate::world::identifiers::Group;
+    use novamind_world::events::AdsRevenueRow;
+    use novamind_world::identifiers::Group;
 
     fn connection() -> Connection {
         seen_by(&Arc::new(Seen::default()))

@@ -8,8 +8,8 @@ use super::issues::IssueRun;
 use super::ledger::LedgerDay;
 use super::notices::Inbox;
 use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
-use crate::world::events::{AdsRevenueRow, UsageRows};
-use crate::world::identifiers::Group;
+use novamind_world::events::{AdsRevenueRow, UsageRows};
+use novamind_world::identifiers::Group;
 
 /// Ad revenue of customers of one group, in ascending order of their numbers.
 #[derive(Debug, Clone, PartialEq)]

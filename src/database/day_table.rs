@@ -449,7 +449,7 @@ mod tests {
     use super::super::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss};
     use super::super::packed_tables::register;
     use super::*;
-    use crate::world::events::LossCause;
+    use novamind_world::events::LossCause;
     use rusqlite::Connection;
 
     /// A connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.

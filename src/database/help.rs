@@ -6,7 +6,7 @@ use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
 use super::guard::is_unsafe_function;
 use super::mathematics::register_mathematics;
 use super::tokens::{Token, TokenKind, tokens};
-use crate::notation::nearest;
+use novamind_base::nearest;
 
 /// The message of the engine, with what is valid instead. What is proposed comes from the visible tables, the functions
 /// of the engine and the statement itself, and from nothing else.

@@ -5,8 +5,8 @@ use std::ffi::c_int;
 use std::sync::Arc;
 
 use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
-use crate::world::events::IssueOpened;
-use crate::world::identifiers::Group;
+use novamind_world::events::IssueOpened;
+use novamind_world::identifiers::Group;
 
 /// Issues with consecutive numbers.
 #[derive(Debug, Clone, PartialEq)]

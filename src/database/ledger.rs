@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::packing::{Kinds, PackedRows, Packer, Unpacker};
-use crate::world::events::Category;
+use novamind_world::events::Category;
 
 /// Categories in ascending order of their words.
 pub(super) const CATEGORIES: [&str; 12] = [

@@ -11,7 +11,7 @@ use super::issues::IssueRun;
 use super::ledger::LedgerDay;
 use super::notices::{Inbox, NoticeDay, RepeatedLoss};
 use super::packing::{PackedDay, Run};
-use crate::world::events::{LossCause, UsageRows};
+use novamind_world::events::{LossCause, UsageRows};
 
 /// Reads the days of one table; none where one of them is not whole.
 type Loader = fn(&Connection, &mut BlockStore) -> Option<()>;

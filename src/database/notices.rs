@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::packing::{Kinds, PackedRows, Packer, Unpacker};
-use crate::world::events::{LossCause, Notice};
+use novamind_world::events::{LossCause, Notice};
 
 /// Types as the table writes them, in ascending order.
 pub(super) const TYPES: [&str; 8] = [

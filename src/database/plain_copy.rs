@@ -14,7 +14,7 @@ use super::location::Location;
 use super::notices::{Inbox, Place, TYPES};
 use super::packing::PackedRows;
 use super::projector::{ProjectionError, Projector};
-use crate::world::events::UsageRows;
+use novamind_world::events::UsageRows;
 
 /// The tables that the program serves itself, as ordinary ones; of losses that repeat, only the days and the losses.
 const TABLES: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);

@@ -15,8 +15,8 @@ use super::loading::{BlockSource, load_store};
 use super::location::Location;
 use super::query::QueryConnection;
 use super::rows::{Entry, LAYOUT, RowWriter, create};
-use crate::world::events::Facts;
-use crate::world::params::Params;
+use novamind_world::events::Facts;
+use novamind_world::params::Params;
 
 /// Entries that may wait before the simulation has to; a bound on memory.
 const QUEUE: usize = 16;
@@ -180,7 +180,7 @@ impl Projector {
     }
 
     /// Leaves the database this many pages beside those it has, as a full disk does.
-    #[cfg(test)]
+    #[cfg(any(test, feature = "test-kit"))]
     pub fn bound_pages(&self, more: Option<u32>) {
         self.send(Job::Then(Box::new(move |connection| {
             let pages: u32 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).expect("pages");

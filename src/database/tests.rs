@@ -8,23 +8,23 @@ use super::query::Limits;
 use super::{
     Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, Scope, number_at, text_at,
 };
-use crate::world::day::step_day;
-use crate::world::events::{
+use novamind_world::day::step_day;
+use novamind_world::events::{
     EndCause, Facts, IssueOpened, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
 };
-use crate::world::identifiers::{Group, Plan};
-use crate::world::params::Params;
-use crate::world::random::Streams;
-use crate::world::state::World;
-use crate::world::test_kit::policy_p;
+use novamind_world::identifiers::{Group, Plan};
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
+use novamind_world::state::World;
+use novamind_world::test_kit::policy_p;
 
 const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps: None };
 
 fn entry(facts: Facts) -> Entry {
     Entry {
-        notices: facts.notices.iter().map(|notice| crate::voice::notice(notice, None)).collect(),
+        notices: facts.notices.iter().map(|notice| novamind_voice::notice(notice, None)).collect(),
         turns: facts.turns.iter().map(|_| String::new()).collect(),
-        readings: facts.readings.iter().map(crate::voice::reading).collect(),
+        readings: facts.readings.iter().map(novamind_voice::reading).collect(),
         addresses: facts
             .arrivals
             .iter()

@@ -2,8 +2,8 @@
 
 use super::{Term, term, terms};
 use crate::database::{self, Column, Table};
-use crate::notation::nearest;
 use crate::tools::{self, Argument, Spec};
+use novamind_base::nearest;
 
 /// Something that can be explained.
 #[derive(Debug, Clone, Copy)]

@@ -34,13 +34,13 @@ use super::lines::Lines;
 use super::next;
 use super::signals::{Phase, Watch};
 use crate::database::text::table;
-use crate::notation::nearest;
 use crate::report::research::late_in_words;
 use crate::session::record::{Help, Select};
 use crate::session::{
     Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
 };
 use crate::tools::{self, AnyTool, Kind, Module, ToolId};
+use novamind_base::nearest;
 
 /// Words that run a week: the command, and the tool as agents call it.
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];

@@ -10,7 +10,7 @@ pub use sentences::margin_sentences;
 
 use super::words::money;
 use crate::notation::{cents, compact, percent};
-use crate::session::{Cell, Refusal, Rows, Session, ToolId, number_at, text_at};
+use crate::session::{Cell, Refusal, Rows, Session, ToolId, number_at, query_refusal, text_at};
 use crate::world::identifiers::{ByPlan, Group, Plan};
 
 /// Active subscriptions by group and plan.
@@ -110,8 +110,8 @@ impl Sales {
         session.wait_for_database()?;
         let (connection, limits) = (session.open_connection()?, session.query_limits());
         let mut sales = Sales::default();
-        sales.take_subscribers(&connection.ask(SUBSCRIBERS, limits)?);
-        sales.take_usage(&connection.ask(USAGE, limits)?);
+        sales.take_subscribers(&connection.ask(SUBSCRIBERS, limits).map_err(query_refusal)?);
+        sales.take_usage(&connection.ask(USAGE, limits).map_err(query_refusal)?);
         Ok(sales)
     }
 

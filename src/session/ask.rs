@@ -63,7 +63,7 @@ impl Session {
     ) -> Result<Rows, Refusal> {
         let answer = self
             .connection()
-            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from));
+            .and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(query_refusal));
         answer.map_err(
             |refusal| {
                 if self.may_look_inside() { with_the_way_to_hidden_tables(refusal) } else { refusal }
@@ -78,7 +78,7 @@ impl Session {
     pub fn look_into_database(&mut self, sql: &str) -> Result<Rows, Refusal> {
         let ticket = self.interrupt()?.ticket();
         let limits = limits(self);
-        self.connection().and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(Refusal::from))
+        self.connection().and_then(|connection| connection.ask_as(ticket, sql, limits).map_err(query_refusal))
     }
 
     /// A handle that stops the running query.
@@ -180,14 +180,13 @@ fn limits(session: &Session) -> Limits {
     }
 }
 
-impl From<QueryError> for Refusal {
-    fn from(error: QueryError) -> Self {
-        let message = match error.position {
-            Some(at) => format!("{} (at character {})", error.message, at + 1),
-            None => error.message,
-        };
-        Refusal::new(error.code, message)
-    }
+/// Converts the error of a query into the refusal that the caller of a tool receives.
+pub fn query_refusal(error: QueryError) -> Refusal {
+    let message = match error.position {
+        Some(at) => format!("{} (at character {})", error.message, at + 1),
+        None => error.message,
+    };
+    Refusal::new(error.code, message)
 }
 
 /// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at. The key is

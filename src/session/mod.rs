@@ -28,7 +28,7 @@ mod why;
 mod xray;
 
 pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
-pub use ask::{connection_to_file, rows_as_json, with_the_way_to_hidden_tables};
+pub use ask::{connection_to_file, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
 pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
 pub use class::class_file::{Class, ToHandOut};
 pub use class::collected_class::CollectedClass;

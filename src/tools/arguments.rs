@@ -11,8 +11,8 @@ use super::numbers::Numbers;
 use super::refusal::Refusal;
 use super::spec::{ArgumentKind, Range, Spec};
 use super::view::View;
-use crate::world::identifiers::{Channel, Group, Plan};
-use crate::world::settings::{PerCustomer, PerGroup, PerPlan};
+use novamind_world::identifiers::{Channel, Group, Plan};
+use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
 /// Arguments of a call whose names are right: absent and null ones are left out.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::arguments::Arguments;
 use super::refusal::Refusal;
 use super::spec::{ArgumentKind, Spec};
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 /// Most dollars of a price, a discount or a daily budget.
 pub const MOST_DOLLARS: f64 = 1e9;

@@ -18,7 +18,7 @@ use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
 use super::{AnyTool, Arguments, Kind, Planned, Refusal, Spec, Tool, View};
-use crate::world::settings::Settings;
+use novamind_world::settings::Settings;
 
 /// One list makes the identifiers, the tools and their answers, in the order in which they are shown.
 macro_rules! tools {
@@ -160,7 +160,7 @@ pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
 
 /// Up to three names of tools that look like a name that does not exist.
 pub fn nearest(name: &str) -> Vec<&'static str> {
-    crate::notation::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
+    novamind_base::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::Numbers;
 use super::bounds::MOST_DOLLARS;
 use super::spec::{Argument, ArgumentKind, Module, Output, Spec};
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 impl ArgumentKind {
     /// The kind in words, for instance `map channel -> map group -> number, >= 0`.

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::refusal::Refusal;
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 /// Most scripts of a run, and most calculations.
 const MAX_ENTRIES: usize = 100;
@@ -173,7 +173,7 @@ impl Notebook {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::ToolId;
+    use crate::ToolId;
 
     #[test]
     fn quotas_bound_names_codes_counts_and_the_whole() {

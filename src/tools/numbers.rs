@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::notation::{capital, grouped};
-use crate::world::params::Params;
+use novamind_base::notation::{capital, grouped};
+use novamind_world::params::Params;
 
 /// Every number of the parameters, by its key.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -116,7 +116,7 @@ fn plain(value: f64) -> String {
 
 /// Names in braces that a text holds.
 #[cfg(test)]
-pub(crate) fn names_in(text: &str) -> Vec<String> {
+pub fn names_in(text: &str) -> Vec<String> {
     let pieces = text.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
     pieces.map(|(name, _)| name.to_owned()).filter(|name| name.contains('.') && !name.contains(' ')).collect()
 }
@@ -124,7 +124,7 @@ pub(crate) fn names_in(text: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::{CATALOGUE, Spec};
+    use crate::{CATALOGUE, Spec};
 
     #[test]
     fn names_become_the_values_in_force() {
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn texts_say_what_they_said_and_follow_their_parameters() {
-        let spec = |tool: &str| crate::tools::find(tool).expect("a tool").spec();
+        let spec = |tool: &str| crate::find(tool).expect("a tool").spec();
         let (study, find, post, week) =
             (spec("research_group"), spec("research_market"), spec("post_social_media"), spec("next_week"));
         let shipped = Numbers::shipped();

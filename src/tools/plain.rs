@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
-use crate::notation::plain_numbers;
+use novamind_base::notation::plain_numbers;
 
 /// Writes a field without a decimal point if its number is whole, where the release returns an integer.
 ///

@@ -5,8 +5,8 @@ use serde_json::Value;
 
 use super::notebook::NotebookChange;
 use super::refusal::Refusal;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::SettingsChange;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::settings::SettingsChange;
 
 /// An accepted call that has not happened yet.
 pub struct Planned<A> {

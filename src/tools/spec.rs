@@ -3,7 +3,7 @@
 
 use super::ToolId;
 use super::bounds::{MOST_DOLLARS, MOST_UNITS};
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 /// Everything there is to know about a tool but its code.
 #[derive(Debug)]

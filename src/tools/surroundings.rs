@@ -3,7 +3,7 @@
 //! The session brings them, for neither the words nor the database are a tool's business.
 
 use super::notebook::Notebook;
-use crate::world::events::Reading;
+use novamind_world::events::Reading;
 
 /// The surroundings of a company.
 pub trait Surroundings: Sync {

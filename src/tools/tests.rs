@@ -4,15 +4,15 @@ mod engine;
 mod market;
 mod order;
 
-use crate::world::command::ResolvedCommand;
+use novamind_world::command::ResolvedCommand;
 use serde_json::{Value, json};
 
 use super::{Arguments, Refusal, View, find};
-use crate::world::events::Facts;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::random::Streams;
-use crate::world::state::World;
+use novamind_world::events::Facts;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
+use novamind_world::state::World;
 
 /// A company that tools are called on.
 struct Company {
@@ -142,7 +142,10 @@ fn set_usage_quotas() {
     assert_eq!(data, json!({"quotas": {"A": 50000, "B": 200000, "C": 900000}}));
     let data = company.call("set_usage_quotas", json!({"A": 59.5, "B": 200000.0, "C": 0}));
     assert_eq!(data, json!({"quotas": {"A": 59.5, "B": 200000.0, "C": 0}}));
-    assert_eq!(company.world.settings.core.quotas.0.map(crate::world::quota::Quota::units), [59.5, 2e5, 0.0]);
+    assert_eq!(
+        company.world.settings.core.quotas.0.map(novamind_world::quota::Quota::units),
+        [59.5, 2e5, 0.0]
+    );
 }
 
 #[test]
@@ -422,9 +425,9 @@ fn set_capacity_tier() {
 
 /// A company with two leads (customers 2 and 3), a subscriber (4), an individual (5), a lost lead (6).
 fn with_companies() -> Company {
-    use crate::world::enterprise::Standing;
-    use crate::world::test_kit::company_of;
-    use crate::world::test_kit::subscriber;
+    use novamind_world::enterprise::Standing;
+    use novamind_world::test_kit::company_of;
+    use novamind_world::test_kit::subscriber;
     let mut company = Company::new();
     let (e1, s1) = (Group::parse("E1").expect("a group"), Group::parse("S1").expect("a group"));
     let world = &mut company.world;
@@ -433,7 +436,7 @@ fn with_companies() -> Company {
     world.customers.arrive(0, s1, 1);
     world.customers.arrive(0, e1, 1);
     let row =
-        |customer: u32, n| crate::world::customers::columns::Subscriber { customer, n, ..subscriber(n) };
+        |customer: u32, n| novamind_world::customers::columns::Subscriber { customer, n, ..subscriber(n) };
     for (customer, n) in [(2, 1), (3, 2)] {
         let lead = company_of(e1, n, customer, Standing::Lead(row(customer, n)));
         world.enterprise.open_lead(0, lead, &mut facts);

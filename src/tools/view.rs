@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use super::surroundings::{Nothing, Surroundings};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::settings::Settings;
-use crate::world::state::World;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::settings::Settings;
+use novamind_world::state::World;
 
 /// A read-only look at the company. A tool turns it into what a player may know, never more.
 #[derive(Clone, Copy)]

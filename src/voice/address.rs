@@ -2,7 +2,7 @@
 
 use md5::{Digest, Md5};
 
-use crate::world::params::EmailParts;
+use novamind_world::params::EmailParts;
 
 /// Positions in the word lists: first name, last name, company, suffix, and the form of the local part.
 fn picks(customer: u32) -> [u32; 5] {
@@ -36,7 +36,7 @@ pub fn address(customer: u32, parts: &EmailParts) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::params::Params;
+    use novamind_world::params::Params;
 
     #[test]
     fn picks_follow_the_digest_of_the_customer_number() {

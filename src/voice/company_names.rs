@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use serde::Deserialize;
 
 use super::address::company_word;
-use crate::world::params::EmailParts;
+use novamind_world::params::EmailParts;
 
 /// The words of names: `assets/voice/companies.toml`.
 #[derive(Debug, Deserialize)]
@@ -124,8 +124,8 @@ mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
-    use crate::voice::address;
-    use crate::world::params::Params;
+    use crate::address;
+    use novamind_world::params::Params;
 
     fn names(seed: u64) -> CompanyNames {
         CompanyNames::new(seed, &Params::shipped().personas.email)

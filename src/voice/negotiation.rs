@@ -10,10 +10,10 @@ mod phrases;
 
 use phrases::{ACCEPTANCE, APART, DOWNGRADE, ENDINGS, FAR, LATE, NEAR, Phrases, THREAT, UPGRADE};
 
-use crate::notation::grouped;
-use crate::world::events::{ThreadTurn, TurnContent};
-use crate::world::identifiers::Group;
-use crate::world::params::Personas;
+use novamind_base::notation::grouped;
+use novamind_world::events::{ThreadTurn, TurnContent};
+use novamind_world::identifiers::Group;
+use novamind_world::params::Personas;
 
 /// Step from one message to the next through the pairs of opening and core.
 const STRIDE: u32 = 31;
@@ -154,10 +154,10 @@ mod tests {
     use std::collections::{BTreeSet, VecDeque};
 
     use super::*;
-    use crate::world::customers::persona::PersonaPicks;
-    use crate::world::events::{Offering, Sender, ThreadKind};
-    use crate::world::identifiers::Plan;
-    use crate::world::params::Params;
+    use novamind_world::customers::persona::PersonaPicks;
+    use novamind_world::events::{Offering, Sender, ThreadKind};
+    use novamind_world::identifiers::Plan;
+    use novamind_world::params::Params;
 
     fn turn(message: u32, content: TurnContent) -> ThreadTurn {
         ThreadTurn {

@@ -1,9 +1,9 @@
 //! The inbox: one line per notice.
 
-use crate::notation::grouped;
-use crate::world::events::{Notice, Reaction};
-use crate::world::identifiers::Group;
-use crate::world::params::CeoPosts;
+use novamind_base::notation::grouped;
+use novamind_world::events::{Notice, Reaction};
+use novamind_world::identifiers::Group;
+use novamind_world::params::CeoPosts;
 
 /// The company that a notice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,15 +110,15 @@ fn times(count: u64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::events::{Phase, Reading, Trend};
+    use novamind_world::events::{Phase, Reading, Trend};
 
     #[test]
     fn studies_and_finds_name_group_level_and_accuracy() {
-        let group = crate::world::identifiers::Group::parse("D_S06").expect("a group");
+        let group = novamind_world::identifiers::Group::parse("D_S06").expect("a group");
         let found = notice(&Notice::GroupFound { group, attempt: 4 }, None);
         assert_eq!(found, "Market research found group D_S06 (attempt 4). It is known at level 1.");
         for (before, words) in [(1, "raised"), (2, "refreshed")] {
-            let study = crate::world::events::Study { group, target: 2, before, due_day: 31 };
+            let study = novamind_world::events::Study { group, target: 2, before, due_day: 31 };
             let text = notice(&Notice::StudyComplete { study, noise: 0.4 }, None);
             assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }
@@ -132,7 +132,7 @@ mod tests {
         let down = notice(&Notice::PlanWish { customer: 9, upgrade: false }, None);
         assert!(up.contains("Customer 9") && up.contains("higher") && down.contains("lower"));
         assert!(notice(&Notice::CounterOffer { customer: 12 }, None).contains("Customer 12"));
-        let group = crate::world::identifiers::Group::parse("E2").expect("a group");
+        let group = novamind_world::identifiers::Group::parse("E2").expect("a group");
         let party = Some(Party { customer: 4711, group, seats: 1_094 });
         assert_eq!(
             notice(&Notice::DealWon { price: 33.5 }, party),
@@ -161,8 +161,8 @@ mod tests {
 
     #[test]
     fn a_reaction_names_views_beginning_tone_and_groups() {
-        let law = crate::world::params::Params::shipped().ceo_posts;
-        let group = |id| crate::world::identifiers::Group::parse(id).expect("a group");
+        let law = novamind_world::params::Params::shipped().ceo_posts;
+        let group = |id| novamind_world::identifiers::Group::parse(id).expect("a group");
         let strongest = [Some((group("S3"), 0.87)), Some((group("S1"), -0.45)), Some((group("E1"), 0.02))];
         let mut reaction = Reaction { post: 1, views: 1840, mean: 0.2, strongest };
         assert_eq!(

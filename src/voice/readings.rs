@@ -1,6 +1,6 @@
 //! Published readings of the economy in three or four sentences.
 
-use crate::world::events::{Reading, Trend};
+use novamind_world::events::{Reading, Trend};
 
 /// Description of a reading.
 pub fn reading(reading: &Reading) -> String {
@@ -34,7 +34,7 @@ pub fn reading(reading: &Reading) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::events::Phase;
+    use novamind_world::events::Phase;
 
     #[test]
     fn every_band_says_value_movement_position_and_mood() {

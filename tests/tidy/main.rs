@@ -92,12 +92,12 @@ fn a_file_is_one_idea() {
 
 #[test]
 fn build_script_watches_every_folder_that_is_compiled_in() {
-    let script = fs::read_to_string(root().join("build.rs")).expect("a build script");
+    let script = fs::read_to_string(root().join("src/assets/build.rs")).expect("a build script");
     let sources = sources();
     let macros: Vec<&str> = sources
         .iter()
         .flat_map(Source::code)
-        .filter_map(|(_, line)| Some(line.split_once("include_dir!(\"$CARGO_MANIFEST_DIR/")?.1))
+        .filter_map(|(_, line)| Some(line.split_once("include_dir!(\"$CARGO_MANIFEST_DIR/../../")?.1))
         .collect();
     assert!(macros.len() > 5, "macros are found");
     let folders = macros.iter().filter_map(|path| path.split('/').next());
@@ -166,58 +166,6 @@ fn nothing_is_left_unfinished() {
     let complaint =
         |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
     let complaints: Vec<String> = sources().iter().flat_map(|file| file.complaints(complaint)).collect();
-    assert_none(&complaints);
-}
-
-/// Houses whose code a house may use.
-fn may_use(house: &str) -> &'static [&'static str] {
-    match house {
-        "main" | "lib" => &["cli"],
-        "shipped" | "statistics" => &[],
-        "notation" => &["world"],
-        "world" => &[],
-        "tools" | "database" | "voice" => &["world", "notation"],
-        "session" => &["tools", "database", "voice", "world", "notation"],
-        "report" => &["session", "glossary", "world", "notation"],
-        "rules" => &["session", "world", "notation"],
-        "glossary" => &["tools", "database", "notation"],
-        "lab" => &["report", "rules", "session", "tools", "database", "world", "notation"],
-        "console" | "plain" => {
-            &["report", "rules", "session", "glossary", "tools", "database", "world", "notation"]
-        }
-        "server" => &["session", "tools", "database", "notation"],
-        "cli" => &[
-            "console", "plain", "lab", "server", "report", "rules", "session", "glossary", "tools",
-            "database", "world", "notation",
-        ],
-        other => panic!("{other} has no floor yet: say in this test and in src/lib.rs where it stands"),
-    }
-}
-
-/// What of `world` the upper floors may use: plain identifiers. The laboratory works on debug runs and reads all.
-fn of_world(house: &str) -> Option<&'static str> {
-    matches!(house, "report" | "rules" | "console" | "plain" | "server" | "cli")
-        .then_some("crate::world::identifiers")
-}
-
-#[test]
-fn arrows_point_down() {
-    let mut complaints = Vec::new();
-    for file in sources() {
-        let house = file.house();
-        let allowed = may_use(&house);
-        complaints.extend(file.complaints(|line| {
-            line.match_indices("crate::").find_map(|(at, word)| {
-                let rest = &line[at + word.len()..];
-                let used = rest.split(|letter: char| !letter.is_ascii_lowercase() && letter != '_').next()?;
-                let known = root().join("src").join(used).is_dir();
-                let plain =
-                    of_world(&house).is_none_or(|path| used != "world" || line[at..].starts_with(path));
-                let fine = !known || used == house || (allowed.contains(&used) && plain);
-                (!fine).then(|| format!("{house} may not use {}", line[at..].trim()))
-            })
-        }));
-    }
     assert_none(&complaints);
 }
 

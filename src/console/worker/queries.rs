@@ -8,7 +8,9 @@ use super::answering::catch_defect;
 use crate::console::message::{Message, News};
 use crate::console::readings::Reading;
 use crate::database::query::Limits;
-use crate::session::{Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket};
+use crate::session::{
+    Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket, query_refusal,
+};
 
 /// A question for the database.
 pub struct Question {
@@ -141,7 +143,7 @@ fn ask((connection, limits): &Connection, question: &Question) -> Result<Rows, R
         AskedBy::Person(_, Some(ticket), _) => connection.ask_as(ticket, &question.sql, *limits),
         AskedBy::Person(..) | AskedBy::Screen(..) => connection.ask(&question.sql, *limits),
     };
-    rows.map_err(Refusal::from)
+    rows.map_err(query_refusal)
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 
 use rusqlite::Connection;
 
-use crate::world::events::{Category, Source};
+use novamind_world::events::{Category, Source};
 
 /// Number of the layout of the database. A file with another one is made anew: raise it with every change of
 /// `schema.sql` or of what is written into its tables.
-pub(in crate::database) const LAYOUT: u32 = 5;
+pub(crate) const LAYOUT: u32 = 5;
 
 /// Creates the tables and row 1 of `customers`: the market observer.
-pub(in crate::database) fn create(connection: &mut Connection) -> rusqlite::Result<()> {
+pub(crate) fn create(connection: &mut Connection) -> rusqlite::Result<()> {
     let transaction = connection.transaction()?;
     transaction.execute_batch(include_str!("../schema.sql"))?;
     transaction.pragma_update(None, "user_version", LAYOUT)?;

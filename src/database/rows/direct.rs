@@ -3,10 +3,10 @@
 use rusqlite::{Transaction, params};
 
 use super::{Entry, ForecastRow};
-use crate::notation::spaced_json;
-use crate::world::events::{Facts, ResearchChange};
-use crate::world::identifiers::{Group, Plan};
-use crate::world::settings::SettingsChange;
+use novamind_base::notation::spaced_json;
+use novamind_world::events::{Facts, ResearchChange};
+use novamind_world::identifiers::{Group, Plan};
+use novamind_world::settings::SettingsChange;
 
 pub(super) fn service(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let Some(service) = facts.service else { return Ok(()) };

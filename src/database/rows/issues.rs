@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use crate::database::blocks::BlockStore;
-use crate::database::issues::IssueRun;
-use crate::database::packing::PackedDay;
-use crate::world::events::Facts;
+use crate::blocks::BlockStore;
+use crate::issues::IssueRun;
+use crate::packing::PackedDay;
+use novamind_world::events::Facts;
 
 /// Collects issues until the next commit.
 pub(super) struct IssueWriter {

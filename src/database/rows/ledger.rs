@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use crate::database::ledger::{LedgerDay, Movements};
-use crate::database::packing::PackedRows;
-use crate::world::events::{Category, Facts, LedgerNote};
-use crate::world::params::Params;
+use crate::ledger::{LedgerDay, Movements};
+use crate::packing::PackedRows;
+use novamind_world::events::{Category, Facts, LedgerNote};
+use novamind_world::params::Params;
 
 /// Collects the ledger until the next commit.
 pub(super) struct LedgerWriter {

@@ -4,26 +4,26 @@ use rusqlite::Transaction;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 
 /// A value of a row.
-pub(in crate::database) type Value<'a> = ToSqlOutput<'a>;
+pub(crate) type Value<'a> = ToSqlOutput<'a>;
 
 /// Rows in one statement.
 const TOGETHER: usize = 24;
 
 /// No value.
-pub(in crate::database) const NOTHING: Value<'static> = ToSqlOutput::Borrowed(ValueRef::Null);
+pub(crate) const NOTHING: Value<'static> = ToSqlOutput::Borrowed(ValueRef::Null);
 
 /// A whole number.
-pub(in crate::database) fn whole(number: impl Into<i64>) -> Value<'static> {
+pub(crate) fn whole(number: impl Into<i64>) -> Value<'static> {
     ToSqlOutput::Borrowed(ValueRef::Integer(number.into()))
 }
 
 /// A number.
-pub(in crate::database) fn real(number: f64) -> Value<'static> {
+pub(crate) fn real(number: f64) -> Value<'static> {
     ToSqlOutput::Borrowed(ValueRef::Real(number))
 }
 
 /// A text.
-pub(in crate::database) fn text(text: &str) -> Value<'_> {
+pub(crate) fn text(text: &str) -> Value<'_> {
     ToSqlOutput::Borrowed(ValueRef::Text(text.as_bytes()))
 }
 
@@ -33,7 +33,7 @@ pub(super) fn or_nothing<'a, T>(value: Option<T>, write: impl FnOnce(T) -> Value
 }
 
 /// Inserts rows, in their order; `head` is the statement up to and with `VALUES`.
-pub(in crate::database) fn insert_rows<'a, const COLUMNS: usize>(
+pub(crate) fn insert_rows<'a, const COLUMNS: usize>(
     transaction: &Transaction<'_>,
     head: &str,
     rows: impl IntoIterator<Item = [Value<'a>; COLUMNS]>,

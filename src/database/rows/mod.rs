@@ -19,17 +19,17 @@ pub(super) use create::{LAYOUT, create};
 
 use super::blocks::{AdsRun, SharedStore};
 use super::packing::PackedDay;
-use crate::world::customers::persona::PersonaPicks;
-use crate::world::events::{
-    Arrival, Facts, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus, TermsChanged,
-};
-use crate::world::identifiers::Plan;
-use crate::world::params::Params;
 use issues::IssueWriter;
 use ledger::LedgerWriter;
 use many::or_nothing;
 pub(super) use many::{NOTHING, Value, insert_rows, real, text, whole};
 use notices::NoticeWriter;
+use novamind_world::customers::persona::PersonaPicks;
+use novamind_world::events::{
+    Arrival, Facts, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus, TermsChanged,
+};
+use novamind_world::identifiers::Plan;
+use novamind_world::params::Params;
 use words::WordWriter;
 
 /// What is to be written: the facts of a day or a call, and the words that belong to them.

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use rusqlite::{Transaction, params};
 
 use super::Entry;
-use crate::database::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
-use crate::database::packing::PackedRows;
-use crate::world::events::{Facts, LossCause};
+use crate::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
+use crate::packing::PackedRows;
+use novamind_world::events::{Facts, LossCause};
 
 /// Collects the inbox until the next commit.
 pub(super) struct NoticeWriter {

@@ -2,7 +2,7 @@
 
 use rusqlite::{Transaction, params};
 
-use crate::world::events::{Facts, Matter};
+use novamind_world::events::{Facts, Matter};
 
 /// Posts of others; `words` holds their texts.
 pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {

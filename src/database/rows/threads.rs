@@ -3,8 +3,8 @@
 use rusqlite::{Transaction, params};
 
 use super::Entry;
-use crate::notation::point_number;
-use crate::world::events::{Facts, Offering, Sender, ThreadTurn, TurnContent};
+use novamind_base::notation::point_number;
+use novamind_world::events::{Facts, Offering, Sender, ThreadTurn, TurnContent};
 
 /// Writes the turns of an entry, with their words.
 pub(super) fn turns(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
@@ -77,7 +77,7 @@ fn offer_json(content: &TurnContent) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::identifiers::Plan;
+    use novamind_world::identifiers::Plan;
 
     #[test]
     fn offers_are_json_with_blanks_and_prices_with_decimal_points() {

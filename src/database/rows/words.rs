@@ -3,9 +3,9 @@
 
 use rusqlite::{Transaction, params};
 
-use crate::world::events::Facts;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_world::events::Facts;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// Writes the words of groups as they become known.
 #[derive(Default)]

@@ -2,8 +2,9 @@
 
 use super::law::Law;
 use crate::world::identifiers::Group;
-use crate::world::params::{Params, nearest};
+use crate::world::params::Params;
 use crate::world::random::{Part, Streams};
+use novamind_base::nearest;
 
 /// What the world draws with.
 #[derive(Debug)]

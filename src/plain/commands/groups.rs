@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::notation::{cents, dollars, grouped, nearest};
+use crate::notation::{cents, dollars, grouped};
 use crate::report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
 use crate::report::insights::{insights_as_ranges, overview_with_ages};
 use crate::report::lead_costs::{AdSpell, PairCost, pair_costs};
@@ -14,6 +14,7 @@ use crate::report::research::projects_with_means;
 use crate::session::{GroupWeek, Session};
 use crate::tools;
 use crate::world::identifiers::{Group, Plan};
+use novamind_base::nearest;
 
 impl Interpreter {
     pub(super) fn fit(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {

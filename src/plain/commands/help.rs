@@ -7,9 +7,9 @@ use super::super::grammar::{Argument, Problem};
 use super::{COMMANDS, NEXT, inbox, parameters, problem, readings, rules, tool_called, words, xray};
 use crate::database;
 use crate::glossary;
-use crate::notation::nearest;
 use crate::session::{Bands, Numbers};
 use crate::tools::{self, Kind};
+use novamind_base::nearest;
 
 const NEEDS: &str = "\
 needs                     what costs money or is about to: each with the object, the amount and the call that addresses it

@@ -10,7 +10,7 @@ use super::super::seed_in_words;
 use super::help::not_there;
 use super::{Interpreter, problem, tool_called};
 use crate::database;
-use crate::notation::{dollars, grouped, nearest, signed_dollars};
+use crate::notation::{dollars, grouped, signed_dollars};
 use crate::report::cash_change_in_words;
 use crate::report::chapters::change_in_words;
 use crate::report::deals::deals_in_words;
@@ -22,6 +22,7 @@ use crate::report::review::{alike_lines, money_lines};
 use crate::session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
 use crate::tools;
 use crate::tools::describe::{self, ToolDocument, document};
+use novamind_base::nearest;
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> Answer {

@@ -14,8 +14,8 @@ use std::path::PathBuf;
 
 use super::configuration::Configuration;
 use super::durable::{create_folder, write_whole};
-use crate::notation::nearest;
 use crate::session::error::RunError;
+use novamind_base::nearest;
 
 /// Folder of a person's own queries.
 const FOLDER: &str = "queries";

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::surroundings::Calculated;
 use crate::database::query::SQL_CANCELLED;
 use crate::database::{self, text};
+use crate::session::ask::query_refusal;
 use crate::session::python::refuse_unless_played;
 use crate::session::state::Session;
 use crate::session::trajectory::record::Via;
@@ -105,7 +106,7 @@ impl Session {
         match connection.run_script(code, limits, time, |rows| said.add(&rows)) {
             Ok(()) => Ok(said),
             Err(stopped) => {
-                let refusal = Refusal::from(stopped.error);
+                let refusal = query_refusal(stopped.error);
                 let was_stopped = ["sql_timeout", SQL_CANCELLED].contains(&refusal.code);
                 let kind = if was_stopped { "script_timeout" } else { "script_failed" };
                 let (number, why) = (stopped.statement, refusal.message);

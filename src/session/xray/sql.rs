@@ -2,6 +2,7 @@
 
 use super::hidden_tables::{CUSTOMERS, HiddenTables, ShownCustomers, THREADS};
 use crate::database::{Interrupt, Rows, Scope, Table, Ticket};
+use crate::session::ask::query_refusal;
 use crate::session::state::Session;
 use crate::tools::Refusal;
 
@@ -36,7 +37,7 @@ impl Session {
         let limits = self.query_limits();
         let answer = tables.connection().ask_as(ticket, sql, limits);
         self.hidden_tables = Some(tables);
-        Ok(answer?)
+        answer.map_err(query_refusal)
     }
 
     /// A handle that stops the running statement on hidden tables.
@@ -78,11 +79,11 @@ impl Session {
         if tables.shows(wanted) {
             return Ok(());
         }
-        match is_now {
-            true => tables.show(ticket, table, wanted, now)?,
-            false => tables.show(ticket, table, wanted, &self.world_on(day)?)?,
-        }
-        Ok(())
+        let shown = match is_now {
+            true => tables.show(ticket, table, wanted, now),
+            false => tables.show(ticket, table, wanted, &self.world_on(day)?),
+        };
+        shown.map_err(query_refusal)
     }
 
     fn add_days(
@@ -97,7 +98,7 @@ impl Session {
             return Ok(());
         }
         let diary = self.diary_of_all_days(keeps_threads)?;
-        Ok(tables.continue_to(day, ticket, table, &diary)?)
+        tables.continue_to(day, ticket, table, &diary).map_err(query_refusal)
     }
 }
 

@@ -7,7 +7,7 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, PublicPost, Range, Refusal, Spec, Tool, ToolId,
     View, When,
 };
-use crate::world::identifiers::Group;
+use novamind_world::identifiers::Group;
 
 /// Reads the newest posts of others.
 pub struct GetSocialPosts;

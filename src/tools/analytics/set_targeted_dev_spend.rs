@@ -9,8 +9,8 @@ use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
 };
-use crate::world::identifiers::Group;
-use crate::world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
+use novamind_world::identifiers::Group;
+use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
 
 /// Aims development.
 pub struct SetTargetedDevSpend;

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::arguments::{Arguments, wrong_type};
 use super::refusal::Refusal;
-use crate::notation::nearest;
+use novamind_base::nearest;
 
 /// What a call asks for: some names, or all.
 pub enum Choice {

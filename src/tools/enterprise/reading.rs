@@ -4,8 +4,8 @@ use serde_json::Value;
 
 use super::super::arguments::{integer, wrong_type};
 use super::{Failure, Refusal};
-use crate::world::events::Offering;
-use crate::world::identifiers::Plan;
+use novamind_world::events::Offering;
+use novamind_world::identifiers::Plan;
 
 /// The elements of the argument; anything but a list is taken as one element.
 ///

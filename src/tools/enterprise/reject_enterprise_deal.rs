@@ -5,7 +5,7 @@ use super::super::deal_results::DealResults;
 use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed};
 use super::{Failure, Fate, RESULTS, unless_all_failed};
-use crate::world::command::Command;
+use novamind_world::command::Command;
 
 /// Ends talks with companies.
 pub struct RejectEnterpriseDeal;

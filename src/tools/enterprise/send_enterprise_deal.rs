@@ -5,11 +5,11 @@ use super::super::deal_results::DealResults;
 use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed, offerings};
 use super::{Failure, Fate, RESULTS, unless_all_failed};
-use crate::world::command::Command;
-use crate::world::customers::FIRST_CUSTOMER;
-use crate::world::enterprise::OpenThreads;
-use crate::world::enterprise::letters::Proposal;
-use crate::world::events::Offering;
+use novamind_world::command::Command;
+use novamind_world::customers::FIRST_CUSTOMER;
+use novamind_world::enterprise::OpenThreads;
+use novamind_world::enterprise::letters::Proposal;
+use novamind_world::events::Offering;
 
 /// Offers companies plans at prices.
 pub struct SendEnterpriseDeal;

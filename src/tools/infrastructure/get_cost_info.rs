@@ -3,7 +3,7 @@ use serde::Serialize;
 
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Planned, REMARK, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::params::Params;
+use novamind_world::params::Params;
 
 /// Shows the price list.
 pub struct GetCostInfo;

@@ -5,7 +5,7 @@ use super::super::arguments::Arguments;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::settings::{CoreSettings, Settings, SettingsChange};
+use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
 /// Rents capacity.
 pub struct SetCapacityTier;

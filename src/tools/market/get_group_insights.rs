@@ -6,9 +6,9 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::{group_argument, noise_label, not_discovered, segment};
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::Group;
-use crate::world::market::insights::Insights;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::identifiers::Group;
+use novamind_world::market::insights::Insights;
 
 /// Tells what is known of a group.
 pub struct GetGroupInsights;

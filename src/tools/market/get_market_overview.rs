@@ -3,8 +3,8 @@ use serde::Serialize;
 use super::super::arguments::Arguments;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::{noise_label, segment};
-use crate::world::events::{Phase, Reading, Trend};
-use crate::world::identifiers::Group;
+use novamind_world::events::{Phase, Reading, Trend};
+use novamind_world::identifiers::Group;
 
 /// Shows the known groups and the economy.
 pub struct GetMarketOverview;

@@ -15,7 +15,7 @@ pub use research_market::{DiscoveryAttempt, ResearchMarket};
 use super::arguments::{Arguments, wrong_type};
 use super::refusal::Refusal;
 use super::view::View;
-use crate::world::identifiers::Group;
+use novamind_world::identifiers::Group;
 
 /// The known group that the argument `group_id` names.
 fn group_argument(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {

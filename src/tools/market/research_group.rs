@@ -6,9 +6,9 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::group_argument;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::Group;
-use crate::world::market::studies::default_target;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::identifiers::Group;
+use novamind_world::market::studies::default_target;
 
 /// Orders a study of a group.
 pub struct ResearchGroup;

@@ -3,8 +3,8 @@ use serde::Serialize;
 use super::super::arguments::Arguments;
 use super::super::research::affordable;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::Group;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::identifiers::Group;
 
 /// Pays for an attempt to find a group.
 pub struct ResearchMarket;

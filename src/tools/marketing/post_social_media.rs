@@ -5,7 +5,7 @@ use super::super::arguments::{Arguments, integer, wrong_type};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::world::command::{Command, Draft, ResolvedCommand};
+use novamind_world::command::{Command, Draft, ResolvedCommand};
 
 /// Publishes a post of the company.
 pub struct PostSocialMedia;

@@ -6,8 +6,8 @@ use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
 };
-use crate::notation::json_number;
-use crate::world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
 /// Sets the strength of in-app advertising.
 pub struct SetAdsStrength;

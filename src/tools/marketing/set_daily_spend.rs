@@ -7,8 +7,8 @@ use super::super::arguments::{Arguments, Sent, wrong_type};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
-use crate::notation::json_number;
-use crate::world::settings::{Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::settings::{Settings, SettingsChange};
 
 /// Sets the general daily budgets.
 pub struct SetDailySpend;

@@ -8,9 +8,9 @@ use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,
 };
-use crate::notation::json_number;
-use crate::world::identifiers::Channel;
-use crate::world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::identifiers::Channel;
+use novamind_world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
 /// Grants discounts to new leads.
 pub struct SetLeadPromotion;

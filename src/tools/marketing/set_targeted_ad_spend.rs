@@ -11,8 +11,8 @@ use super::super::{
     When,
 };
 use super::BUDGET;
-use crate::world::identifiers::{Channel, Group};
-use crate::world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
+use novamind_world::identifiers::{Channel, Group};
+use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
 /// Sets the advertising budgets.
 pub struct SetTargetedAdSpend;

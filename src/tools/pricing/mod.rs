@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 use super::arguments::{Amount, Arguments, number, plan};
 use super::refusal::Refusal;
 use super::spec::Range;
-use crate::world::identifiers::Plan;
+use novamind_world::identifiers::Plan;
 
 /// What a call set, and what holds then, for tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]

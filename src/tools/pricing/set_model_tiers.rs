@@ -6,8 +6,8 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::{PlanUpdate, by_plan, per_named_plan, plan_map};
-use crate::world::identifiers::Plan;
-use crate::world::settings::{Settings, SettingsChange};
+use novamind_world::identifiers::Plan;
+use novamind_world::settings::{Settings, SettingsChange};
 
 /// Chooses the model behind each plan.
 pub struct SetModelTiers;

@@ -6,9 +6,9 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::{PlanUpdate, by_plan, per_named_plan, plan_map};
-use crate::notation::json_number;
-use crate::world::identifiers::Plan;
-use crate::world::settings::{Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::identifiers::Plan;
+use novamind_world::settings::{Settings, SettingsChange};
 
 /// Sets monthly list prices.
 pub struct SetPrices;

@@ -8,9 +8,9 @@ use super::super::{
     When,
 };
 use super::{DISCOUNT, global_discount};
-use crate::notation::json_number;
-use crate::world::identifiers::Group;
-use crate::world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::identifiers::Group;
+use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
 
 /// Grants standing discounts.
 pub struct SetPromotion;

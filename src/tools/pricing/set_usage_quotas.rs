@@ -8,10 +8,10 @@ use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::plan_map;
-use crate::notation::json_number;
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::quota::Quota;
-use crate::world::settings::{CoreSettings, Settings, SettingsChange};
+use novamind_base::notation::json_number;
+use novamind_world::identifiers::{ByPlan, Plan};
+use novamind_world::quota::Quota;
+use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
 /// Caps usage.
 pub struct SetUsageQuotas;

@@ -3,8 +3,8 @@ use serde::Serialize;
 use super::super::arguments::Arguments;
 use super::super::plain::plain;
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use crate::world::market::economy::round_to;
-use crate::world::params::ResearchTier;
+use novamind_world::market::economy::round_to;
+use novamind_world::params::ResearchTier;
 
 /// Lists the R&D tiers.
 pub struct ListResearchProjects;

@@ -8,7 +8,7 @@ pub use start_research_project::StartResearchProject;
 
 use super::refusal::Refusal;
 use super::view::View;
-use crate::notation::dollars;
+use novamind_base::notation::dollars;
 
 /// Refuses a purchase that cash does not cover; cash may reach exactly zero.
 pub(super) fn affordable(cost: f64, view: &View<'_>) -> Result<(), Refusal> {

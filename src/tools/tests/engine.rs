@@ -6,11 +6,11 @@ use super::super::{
     Arguments, ColumnDocument, Kept, Notebook, Numbers, Refusal, Reply, Script, Surroundings, TableDocument,
     View, find,
 };
-use crate::world::command::ResolvedCommand;
-use crate::world::events::Facts;
-use crate::world::events::Reading;
-use crate::world::params::Params;
-use crate::world::state::World;
+use novamind_world::command::ResolvedCommand;
+use novamind_world::events::Facts;
+use novamind_world::events::Reading;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 /// A run with a notebook and two tables.
 #[derive(Default)]

@@ -3,8 +3,8 @@
 use serde_json::json;
 
 use super::Company;
-use crate::world::events::{Phase, Reading, Trend};
-use crate::world::identifiers::Group;
+use novamind_world::events::{Phase, Reading, Trend};
+use novamind_world::identifiers::Group;
 
 fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")

@@ -2,14 +2,14 @@
 //! (docs/mechanics/market/social/judge.md#circumstances). The judge never sees more.
 
 use super::lexicon::Lexicon;
-use crate::world::events::Severity;
-use crate::world::events::Trend;
-use crate::world::identifiers::{ByGroup, Group, Plan};
-use crate::world::market::competitors::severity;
-use crate::world::market::social::chronicle::Page;
-use crate::world::params::Params;
-use crate::world::product::quality::{quota_demand, quota_factor};
-use crate::world::state::World;
+use novamind_world::events::Severity;
+use novamind_world::events::Trend;
+use novamind_world::identifiers::{ByGroup, Group, Plan};
+use novamind_world::market::competitors::severity;
+use novamind_world::market::social::chronicle::Page;
+use novamind_world::params::Params;
+use novamind_world::product::quality::{quota_demand, quota_factor};
+use novamind_world::state::World;
 
 /// The facts behind a judgement.
 #[derive(Debug, Clone, PartialEq)]
@@ -210,17 +210,17 @@ fn live(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::day::step_day;
-    use crate::world::events::Facts;
-    use crate::world::quota::Quota;
-    use crate::world::random::Streams;
+    use novamind_world::day::step_day;
+    use novamind_world::events::Facts;
+    use novamind_world::quota::Quota;
+    use novamind_world::random::Streams;
 
     #[test]
     fn a_company_that_changes_its_prices_is_remembered() {
         let (params, streams) = (Params::shipped(), Streams::new(2));
         let mut facts = Facts::default();
         let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
-        crate::world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::policy_p(&mut world);
         let (mut at_day, mut latencies) = (Vec::new(), Vec::new());
         for day in 1..=60 {
             match day {

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
 use super::text::Entry;
-use crate::world::identifiers::Group;
+use novamind_world::identifiers::Group;
 
 /// A list of entries.
 pub type List = Vec<Entry>;

@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 pub use circumstances::Circumstances;
 pub use lexicon::Lexicon;
 
-use crate::voice::model::scoring::ModelScore;
-use crate::world::identifiers::Group;
+use crate::model::scoring::ModelScore;
 use features::Features;
+use novamind_world::identifiers::Group;
 use std::borrow::Cow;
 use text::{Reading, pair_overlap};
 

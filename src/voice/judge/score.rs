@@ -5,7 +5,7 @@ use super::claims::{Claim, claims};
 use super::features::{Features, flag};
 use super::lexicon::Profile;
 use super::{Case, Judgement, Term};
-use crate::world::identifiers::Group;
+use novamind_world::identifiers::Group;
 
 /// A post in the eyes of one group.
 struct Eyes<'a> {

@@ -3,8 +3,8 @@
 use super::circumstances::{LiveEvent, Readers};
 use super::text::Entry;
 use super::*;
-use crate::world::identifiers::ByGroup;
-use crate::world::random::{Part, Streams};
+use novamind_world::identifiers::ByGroup;
+use novamind_world::random::{Part, Streams};
 
 const D: &str = "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms. Benchmarks and docs \
                  published today.";

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use unicode_width::UnicodeWidthChar;
 
-use crate::notation::printable;
+use novamind_base::notation::printable;
 
 /// Letters without a width of their own, at most: accents of a text that is written apart.
 const MOST_MARKS: usize = 20;

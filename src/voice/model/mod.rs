@@ -3,9 +3,9 @@
 //! Text goes in and comes out. Whoever asks owns the connection, the clock and the record.
 
 mod answer;
-pub(crate) mod scoring;
-pub(crate) mod settings;
-pub(crate) mod wording;
+pub mod scoring;
+pub mod settings;
+pub mod wording;
 
 /// What is sent to the model.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::ModelPrompt;
 use super::answer::{array, check_text};
-use crate::notation::json_number;
-use crate::world::identifiers::Group;
+use novamind_base::notation::json_number;
+use novamind_world::identifiers::Group;
 
 /// Days from which earlier posts are shown.
 const DAYS_SHOWN: u32 = 14;

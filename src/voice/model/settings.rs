@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::notation::printable;
-use crate::world::params::ParameterError;
+use novamind_base::notation::printable;
+use novamind_world::params::ParameterError;
 
 /// Seconds that a week may wait where nothing is said.
 const SECONDS_A_WEEK: u32 = 30;

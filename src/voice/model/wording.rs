@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::ModelPrompt;
 use super::answer::{array, check_text};
-use crate::world::identifiers::Group;
+use novamind_world::identifiers::Group;
 
 /// Posts that are put into other words in a week, at most.
 pub const MOST_POSTS: usize = 40;

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use super::words::Register;
-use crate::voice::grammar::{Chooser, Context, Grammar};
-use crate::voice::judge::Judgement;
-use crate::world::identifiers::Group;
+use crate::grammar::{Chooser, Context, Grammar};
+use crate::judge::Judgement;
+use novamind_world::identifiers::Group;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::read(include_str!("../../../assets/voice/comments.toml"))
@@ -56,7 +56,7 @@ fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::voice::judge::{Lexicon, Term};
+    use crate::judge::{Lexicon, Term};
 
     #[test]
     fn every_reason_has_its_words() {

@@ -3,10 +3,10 @@
 use std::sync::LazyLock;
 
 use super::words::{self, Register};
-use crate::voice::grammar::{Chooser, Context, Grammar};
-use crate::world::events::{Cause, Opinion, PostAuthor, Theme};
-use crate::world::market::social::sentiment::Sentiment;
-use crate::world::params::Params;
+use crate::grammar::{Chooser, Context, Grammar};
+use novamind_world::events::{Cause, Opinion, PostAuthor, Theme};
+use novamind_world::market::social::sentiment::Sentiment;
+use novamind_world::params::Params;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     let sources = [
@@ -134,15 +134,15 @@ fn theme_id(theme: Theme) -> &'static str {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::world::customers::persona::PersonaPicks;
-    use crate::world::events::{ThreadKind, Troubles};
-    use crate::world::identifiers::{Group, Plan};
+    use novamind_world::customers::persona::PersonaPicks;
+    use novamind_world::events::{ThreadKind, Troubles};
+    use novamind_world::identifiers::{Group, Plan};
 
-    pub(in crate::voice::posts) fn author(group: Group) -> PostAuthor {
+    pub(in crate::posts) fn author(group: Group) -> PostAuthor {
         PostAuthor { customer: 9, group, n: 4, persona: PersonaPicks::default(), company: 0 }
     }
 
-    pub(in crate::voice::posts) fn opinion(cause: Cause, theme: Theme) -> Opinion {
+    pub(in crate::posts) fn opinion(cause: Cause, theme: Theme) -> Opinion {
         Opinion {
             cause,
             troubles: Troubles::default(),
@@ -170,7 +170,7 @@ pub(super) mod tests {
     const TONES: [Sentiment; 3] = [Sentiment::Positive, Sentiment::Neutral, Sentiment::Negative];
 
     /// Every situation that can occur, with its tones.
-    pub(in crate::voice::posts) fn situations() -> Vec<(Opinion, Sentiment)> {
+    pub(in crate::posts) fn situations() -> Vec<(Opinion, Sentiment)> {
         let mut list = Vec::new();
         for tone in TONES {
             for cause in [Cause::Overload, Cause::Outage, Cause::Issue, Cause::Quota] {

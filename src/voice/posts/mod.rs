@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 use fresh::Recent;
 
 use super::judge::Judgement;
-use crate::world::events::{Matter, Post};
-use crate::world::params::Params;
-use crate::world::random::{Part, Streams};
+use novamind_world::events::{Matter, Post};
+use novamind_world::params::Params;
+use novamind_world::random::{Part, Streams};
 
 /// Puts posts into words, one after the other: it remembers the last ones so as not to repeat them.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! Names of profiles: some customers of the initial groups are known by one.
 
-use crate::world::events::PostAuthor;
-use crate::world::random::{Part, Streams};
+use novamind_world::events::PostAuthor;
+use novamind_world::random::{Part, Streams};
 
 const S1: [&str; 3] = ["Mina Okoye", "Theo Lindgren", "Pilar Santos"];
 const S2: [&str; 3] = ["Dr. Anselm Richter", "Judith Marlowe", "Kenji Watanabe"];
@@ -29,7 +29,7 @@ pub fn profile_name(author: &PostAuthor, streams: &Streams) -> Option<&'static s
 mod tests {
     use super::super::customers::tests::author;
     use super::*;
-    use crate::world::identifiers::Group;
+    use novamind_world::identifiers::Group;
 
     #[test]
     fn names_stay_with_their_customer() {

@@ -2,9 +2,9 @@
 
 use std::sync::LazyLock;
 
-use crate::voice::grammar::{Chooser, Context, Grammar};
-use crate::world::events::Severity;
-use crate::world::events::{Reading, Trend};
+use crate::grammar::{Chooser, Context, Grammar};
+use novamind_world::events::Severity;
+use novamind_world::events::{Reading, Trend};
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::read(include_str!("../../../assets/voice/press.toml")).expect("the shipped grammars are tested")
@@ -127,7 +127,7 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % count
         };
-        let law = crate::world::params::Params::shipped().economy;
+        let law = novamind_world::params::Params::shipped().economy;
         let mut with_number = 0;
         for round in 0..400u32 {
             let estimate = 0.0131 + f64::from(round) / 3000.0;
@@ -149,7 +149,7 @@ mod tests {
                 value: pmi,
                 change: f64::from(round % 5) - 2.0,
                 trend: Trend::of(pmi, &law),
-                phase: crate::world::events::Phase::Peak,
+                phase: novamind_world::events::Phase::Peak,
             };
             let text = about_reading(&reading, &mut choose);
             let change = format!("{:.1}", reading.change.abs());

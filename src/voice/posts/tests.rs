@@ -2,12 +2,12 @@
 
 use super::customers::tests::{author, situations};
 use super::*;
-use crate::world::events::Cause;
-use crate::world::events::Severity;
-use crate::world::events::Trend;
-use crate::world::identifiers::Group;
-use crate::world::market::social::engagement::Engagement;
-use crate::world::market::social::sentiment::Sentiment;
+use novamind_world::events::Cause;
+use novamind_world::events::Severity;
+use novamind_world::events::Trend;
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::engagement::Engagement;
+use novamind_world::market::social::sentiment::Sentiment;
 
 const NOBODY: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
 

@@ -1,9 +1,9 @@
 //! Numbers and profiles as people say them.
 
-use crate::notation::{cents, dollars};
-use crate::world::events::PostAuthor;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_base::notation::{cents, dollars};
+use novamind_world::events::PostAuthor;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// How people of a group talk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,6 @@ mod enterprise;
 mod load;
 mod market;
 mod names;
-mod nearest;
 mod product;
 mod retention;
 mod run;
@@ -30,7 +29,6 @@ pub use load::{ParameterError, ParameterSource, line_of_key, override_table, shi
 pub use market::*;
 #[cfg(test)]
 pub(crate) use names::keys;
-pub use nearest::nearest;
 pub use product::*;
 pub use retention::*;
 pub use run::*;

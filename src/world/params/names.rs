@@ -4,7 +4,7 @@
 use toml::{Table, Value};
 
 use super::super::identifiers::Group;
-use super::nearest;
+use novamind_base::nearest;
 
 /// Fields that name the entries of a list.
 pub(super) const NAMING: [&str; 3] = ["id", "tier", "level"];

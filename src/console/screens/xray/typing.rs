@@ -3,7 +3,7 @@
 
 use super::view::{Choices, View};
 use crate::console::widgets::Field;
-use crate::notation::nearest;
+use novamind_base::nearest;
 use crate::report::xray::AskedWords;
 use crate::session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use crate::world::identifiers::Group;

@@ -4,8 +4,8 @@ use std::str::FromStr;
 
 use super::condition::{Condition, Direction, Relation, WorldEvent};
 use super::measure::{Measure, MeasureKind, NoQuantity, Quantity};
-use crate::notation::nearest;
 use crate::world::identifiers::Group;
+use novamind_base::nearest;
 
 /// What is wrong with a text, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,14 +1,14 @@
 //! Words for facts: posts, notices, readings of the economy, letters of companies, addresses; and the judge of the
 //! player's posts. Facts go in, text comes out (or text in, scores out); nothing here touches a number of the world.
 
-pub(crate) mod address;
+pub mod address;
 mod company_names;
 mod grammar;
-pub(crate) mod judge;
-pub(crate) mod model;
+pub mod judge;
+pub mod model;
 mod negotiation;
-pub(crate) mod notices;
-pub(crate) mod posts;
+pub mod notices;
+pub mod posts;
 mod readings;
 
 pub use address::address;

@@ -8,8 +8,6 @@ use std::borrow::Cow;
 
 use serde_json::{Number, Value, json};
 
-pub use crate::world::params::nearest;
-
 /// Largest number that is written in full: no tool takes a larger amount. What is above it is written in powers of ten.
 const LARGEST_IN_FULL: f64 = 1e15;
 

@@ -6,13 +6,13 @@ use include_dir::{Dir, include_dir};
 /// Name and text of a file.
 pub type Shipped = (&'static str, &'static str);
 
-static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/scenarios");
-static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/themes");
-static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/policies");
+static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/scenarios");
+static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/themes");
+static POLICIES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/policies");
 
-static GRIDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/grids");
-static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/configs/lessons");
-static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/lessons");
+static GRIDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/grids");
+static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/lessons");
+static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../assets/lessons");
 
 /// The scenarios, by name.
 pub fn scenarios() -> Vec<Shipped> {
@@ -80,7 +80,7 @@ mod tests {
         for (folder, held) in
             [("scenarios", scenarios()), ("themes", themes()), ("policies", policies()), ("grids", grids())]
         {
-            let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs").join(folder);
+            let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs").join(folder);
             let entries = std::fs::read_dir(path).expect("a folder").flatten();
             let mut there: Vec<String> =
                 entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();

@@ -6,9 +6,9 @@
 //! no query, tool or editor can find it (docs/formats/database.md). The connection of the x-ray keeps it beside the file, in
 //! memory of its own (docs/formats/hidden-tables.md).
 
-pub(crate) mod catalogue;
+pub mod catalogue;
 pub mod query;
-pub(crate) mod text;
+pub mod text;
 
 mod answer;
 mod block_table;

@@ -5,6 +5,6 @@ const COMPILED_IN: [&str; 2] = ["assets", "configs"];
 
 fn main() {
     for folder in COMPILED_IN {
-        println!("cargo:rerun-if-changed={folder}");
+        println!("cargo:rerun-if-changed=../../{folder}");
     }
 }

@@ -6,10 +6,10 @@
 //! takes it from the `catalogue` as [`AnyTool`]. Adding a tool touches one file and the list in `catalogue`.
 
 mod arguments;
-pub(crate) mod bounds;
-pub(crate) mod catalogue;
+pub mod bounds;
+pub mod catalogue;
 mod deal_results;
-pub(crate) mod describe;
+pub mod describe;
 mod keeping;
 mod notebook;
 mod numbers;
@@ -59,7 +59,7 @@ pub use surroundings::{ColumnDocument, Surroundings, TableDocument};
 pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
 pub use view::{PublicPost, View};
 
-use crate::world::settings::Settings;
+use novamind_world::settings::Settings;
 
 /// An action or reading of the player.
 pub trait Tool: Sync {

@@ -48,19 +48,21 @@
 
 pub mod cli;
 pub mod console;
-pub mod glossary;
 pub mod lab;
 pub mod plain;
 pub mod report;
 pub mod rules;
 #[cfg(feature = "server")]
 pub mod server;
-pub mod session;
 
 use novamind_assets as shipped;
 use novamind_base::{notation, statistics};
 #[doc(inline)]
 pub use novamind_database as database;
+#[doc(inline)]
+pub use novamind_glossary as glossary;
+#[doc(inline)]
+pub use novamind_session as session;
 #[doc(inline)]
 pub use novamind_tools as tools;
 #[doc(inline)]

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Subject, Term, subject, term};
-use crate::database::{Column, Table};
-use crate::tools::{Argument, Numbers, Spec};
+use novamind_database::{Column, Table};
+use novamind_tools::{Argument, Numbers, Spec};
 
 /// A part of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -75,7 +75,7 @@ fn of_term(own: &'static Term) -> Parts {
     ];
     let terms = own.see.iter().filter_map(|id| term(id)).map(Subject::Term);
     let tools = own.tools.iter().filter_map(|name| subject(name));
-    let tables = own.tables.iter().filter_map(|name| crate::database::table(name)).map(Subject::Table);
+    let tables = own.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
     (own.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &own.places)
 }
 
@@ -93,7 +93,7 @@ fn of_tool(spec: &'static Spec) -> Parts {
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
-    let tables = spec.writes.iter().filter_map(|name| crate::database::table(name)).map(Subject::Table);
+    let tables = spec.writes.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
     let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
     (format!("tool · {}", spec.module.id()), sections, related, &[])
 }
@@ -101,7 +101,7 @@ fn of_tool(spec: &'static Spec) -> Parts {
 fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
     let default = match (argument.required, spec.kind) {
         (true, _) => "must be given",
-        (false, crate::tools::Kind::Setting) => "may be left out: then what holds stays",
+        (false, novamind_tools::Kind::Setting) => "may be left out: then what holds stays",
         (false, _) => "may be left out",
     };
     let sections = vec![
@@ -194,8 +194,8 @@ mod tests {
 
     #[test]
     fn everything_can_be_explained_in_words() {
-        let specs = || crate::tools::CATALOGUE.iter().map(|tool| tool.spec());
-        let tables = || crate::database::tables().iter();
+        let specs = || novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
+        let tables = || novamind_database::tables().iter();
         let subjects = super::super::terms()
             .iter()
             .map(Subject::Term)

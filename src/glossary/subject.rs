@@ -1,9 +1,9 @@
 //! What can be explained, and how it is found by a name or by words.
 
 use super::{Term, term, terms};
-use crate::database::{self, Column, Table};
-use crate::tools::{self, Argument, Spec};
 use novamind_base::nearest;
+use novamind_database::{Column, Table};
+use novamind_tools::{Argument, Spec};
 
 /// Something that can be explained.
 #[derive(Debug, Clone, Copy)]
@@ -58,18 +58,18 @@ pub fn subject(name: &str) -> Option<Subject> {
     if let Some(term) = term(name) {
         return Some(Subject::Term(term));
     }
-    if let Some(tool) = tools::find(name) {
+    if let Some(tool) = novamind_tools::find(name) {
         return Some(Subject::Tool(tool.spec()));
     }
-    if let Some(table) = database::table(name) {
+    if let Some(table) = novamind_database::table(name) {
         return Some(Subject::Table(table));
     }
     let (whole, part) = name.rsplit_once('.')?;
-    if let Some(table) = database::table(whole) {
+    if let Some(table) = novamind_database::table(whole) {
         let column = table.columns.iter().find(|column| column.name.eq_ignore_ascii_case(part))?;
         return Some(Subject::Column(table, column));
     }
-    let spec = tools::find(whole)?.spec();
+    let spec = novamind_tools::find(whole)?.spec();
     let argument = spec.arguments.iter().find(|own| own.name == part || own.alias == Some(part));
     Some(argument.map_or(Subject::Tool(spec), |argument| Subject::Argument(spec, argument)))
 }
@@ -104,11 +104,12 @@ fn answered(field: &str) -> Option<Subject> {
     }
     let names = |kind: &'static str| kind.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
     let answers = |spec: &&'static Spec| {
-        let fields =
-            |output: &tools::Output| output.name == field || names(output.kind).any(|name| name == field);
+        let fields = |output: &novamind_tools::Output| {
+            output.name == field || names(output.kind).any(|name| name == field)
+        };
         spec.returns.iter().any(fields)
     };
-    tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
+    novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
 }
 
 /// Words without a remark in brackets at their end, as in `Overload (peak)`.
@@ -125,8 +126,8 @@ fn near(typed: &str) -> Vec<&'static str> {
         terms().iter().filter(|term| holds(term, typed)).map(|term| term.id.as_str()).take(5).collect()
     };
     if found.is_empty() {
-        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name());
-        let tables = database::tables().iter().map(|table| table.name.as_str());
+        let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
+        let tables = novamind_database::tables().iter().map(|table| table.name.as_str());
         found = nearest(&typed.replace(' ', "-"), names());
         found.extend(nearest(&typed.replace(' ', "_"), tools.chain(tables)));
         found.truncate(5);
@@ -168,14 +169,14 @@ mod tests {
 
     #[test]
     fn every_name_comes_back() {
-        let tools = tools::CATALOGUE.iter().map(|tool| tool.spec());
+        let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
         for spec in tools {
             for argument in spec.arguments {
                 let name = Subject::Argument(spec, argument).name();
                 assert_eq!(subject(&name).map(|found| found.name()), Some(name));
             }
         }
-        for table in database::tables() {
+        for table in novamind_database::tables() {
             for column in &table.columns {
                 let name = Subject::Column(table, column).name();
                 assert_eq!(subject(&name).map(|found| found.kind()), Some("column"), "{name}");

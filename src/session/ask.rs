@@ -5,17 +5,17 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-use crate::database::query::{Limits, SQL_CANCELLED};
-use crate::database::{
+use crate::resume::integrity::is_as_left;
+use crate::resume::sealing::SealKey;
+use crate::state::Session;
+use crate::trajectory::Record;
+use crate::trajectory::record::{Query, QuerySource};
+use novamind_base::notation::json_number;
+use novamind_database::query::{Limits, SQL_CANCELLED};
+use novamind_database::{
     Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Scope, Ticket, query_connection,
 };
-use crate::notation::json_number;
-use crate::session::resume::integrity::is_as_left;
-use crate::session::resume::sealing::SealKey;
-use crate::session::state::Session;
-use crate::session::trajectory::Record;
-use crate::session::trajectory::record::{Query, QuerySource};
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 impl Session {
     /// Answers one guarded statement and records that it was asked.
@@ -55,7 +55,7 @@ impl Session {
     ///
     /// # Errors
     /// The `sql_` codes.
-    pub(in crate::session) fn answer_within(
+    pub(crate) fn answer_within(
         &mut self,
         ticket: Ticket,
         sql: &str,
@@ -197,7 +197,7 @@ pub fn query_refusal(error: QueryError) -> Refusal {
 pub fn connection_to_file(
     folder: &Path,
     key: &SealKey,
-) -> Result<(QueryConnection, crate::database::Position), Refusal> {
+) -> Result<(QueryConnection, novamind_database::Position), Refusal> {
     if !is_as_left(folder, key) {
         return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
     }

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::session::folder::consent::ConsentText;
+use crate::folder::consent::ConsentText;
 
-use crate::database::ProjectionError;
-use crate::world::params::ParameterError;
+use novamind_database::ProjectionError;
+use novamind_world::params::ParameterError;
 
 /// Why a run cannot be created, opened or read.
 #[derive(Debug, Error)]

@@ -12,7 +12,7 @@ use super::lesson::lesson_file::Lesson;
 use super::state::Session;
 use super::study::rules::SessionRules;
 use super::why::{Sight, not_readable, sight};
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 /// The world of a run.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ fn begins_played(folder: &Path, manifest: &Manifest) -> Result<bool, RunError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::counterfactual::test_kit::played;
+    use crate::counterfactual::test_kit::played;
 
     #[test]
     fn it_is_the_world_before_the_first_decision() {

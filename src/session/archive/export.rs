@@ -10,19 +10,19 @@ use flate2::write::GzEncoder;
 use super::lab_key::LabKey;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
-use crate::session::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::durable::{folder_of, sync_folder};
-use crate::session::folder::manifest::Manifest;
-use crate::session::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
-use crate::session::play::afterwards::{AFTERWARDS, lines_afterwards};
-use crate::session::play::memo::notes_file;
-use crate::session::resume::integrity::Integrity;
-use crate::session::resume::open::{Access, check_start};
-use crate::session::resume::sealing::SealKey;
-use crate::session::state::Session;
-use crate::session::trajectory::{Line, Trajectory};
+use crate::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::durable::{folder_of, sync_folder};
+use crate::folder::manifest::Manifest;
+use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
+use crate::play::afterwards::{AFTERWARDS, lines_afterwards};
+use crate::play::memo::notes_file;
+use crate::resume::integrity::Integrity;
+use crate::resume::open::{Access, check_start};
+use crate::resume::sealing::SealKey;
+use crate::state::Session;
+use crate::trajectory::{Line, Trajectory};
 
 /// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
 ///

@@ -10,15 +10,13 @@ use flate2::read::MultiGzDecoder;
 use super::lab_key::{LabPublicKey, signer_of};
 use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
 use super::workshop::Workshop;
-use crate::session::archive::{
-    DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused,
-};
-use crate::session::error::RunError;
-use crate::session::folder::durable::sync_folder;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
-use crate::session::resume::open::check_start;
-use crate::session::trajectory::{Line, Record, Trajectory};
+use crate::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused};
+use crate::error::RunError;
+use crate::folder::durable::sync_folder;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
+use crate::resume::open::check_start;
+use crate::trajectory::{Line, Record, Trajectory};
 
 /// What became of an archive.
 #[derive(Debug, Clone, PartialEq, Eq)]

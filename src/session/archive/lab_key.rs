@@ -7,8 +7,8 @@ use std::path::Path;
 use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 
-use crate::session::error::RunError;
-use crate::session::folder::durable::{folder_of, sync_folder};
+use crate::error::RunError;
+use crate::folder::durable::{folder_of, sync_folder};
 
 /// First line of the file of a private key.
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
@@ -68,7 +68,7 @@ impl LabKey {
     }
 
     /// The secret that seals the snapshots of a study; it does not lead back to the key.
-    pub(in crate::session) fn seal_secret(&self) -> [u8; 32] {
+    pub(crate) fn seal_secret(&self) -> [u8; 32] {
         blake3::derive_key(SEAL_CONTEXT, &self.0.to_bytes())
     }
 
@@ -134,12 +134,12 @@ pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, Str
 }
 
 /// Reads `seal.key`.
-pub(in crate::session) fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
+pub(crate) fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
     read_key(file, SEAL)
 }
 
 /// Writes `seal.key` into a new file that only its owner can read.
-pub(in crate::session) fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
+pub(crate) fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
     write_secret(file, &key_text(SEAL, secret))
 }
 

@@ -29,13 +29,13 @@ use std::path::Path;
 pub use export::Export;
 pub use import::{Imported, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
-pub(in crate::session) use lab_key::{read_seal_key, write_seal_key};
+pub(crate) use lab_key::{read_seal_key, write_seal_key};
 pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 
-use crate::session::error::RunError;
-use crate::session::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
-use crate::session::play::afterwards::AFTERWARDS;
+use crate::error::RunError;
+use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
+use crate::play::afterwards::AFTERWARDS;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
 const FILES: [(&str, u64); 9] = [
@@ -64,12 +64,12 @@ fn is_compressed(archive: &Path) -> bool {
 }
 
 /// Whether a file with this name is taken for an archive.
-pub(in crate::session) fn is_archive_name(name: &str) -> bool {
+pub(crate) fn is_archive_name(name: &str) -> bool {
     [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
 }
 
 /// Whether this can be the name of a run: eight hexadecimal digits.
-pub(in crate::session) fn is_run_name(name: &str) -> bool {
+pub(crate) fn is_run_name(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::{AuditFinding, AuditKind};
-use crate::session::archive::{LabPublicKey, Workshop, import_run, is_archive_name};
-use crate::session::error::RunError;
-use crate::session::folder::manifest::Manifest;
-use crate::session::study::definition::Study;
-use crate::session::study::keys::lab_public_key_of;
+use crate::archive::{LabPublicKey, Workshop, import_run, is_archive_name};
+use crate::error::RunError;
+use crate::folder::manifest::Manifest;
+use crate::study::definition::Study;
+use crate::study::keys::lab_public_key_of;
 
 /// Archives of the study in folders that the lab has not signed, or that are damaged. Without a public key nothing is
 /// asked.

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::session::figures::attendance::Attendance;
-use crate::session::figures::sitting_count::SittingCount;
-use crate::session::folder::manifest::Manifest;
-use crate::session::trajectory::record::{Activity, Outcome};
-use crate::session::trajectory::{Record, Trajectory};
+use crate::figures::attendance::Attendance;
+use crate::figures::sitting_count::SittingCount;
+use crate::folder::manifest::Manifest;
+use crate::trajectory::record::{Activity, Outcome};
+use crate::trajectory::{Record, Trajectory};
 
 /// How a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,12 +2,12 @@
 
 use super::run_record::RunRecord;
 use super::{AuditFinding, AuditKind};
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::play::afterwards::lines_afterwards;
-use crate::session::study::definition::Study;
-use crate::session::trajectory::record::Activity;
-use crate::session::trajectory::{Line, Record, seconds};
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::play::afterwards::lines_afterwards;
+use crate::study::definition::Study;
+use crate::trajectory::record::Activity;
+use crate::trajectory::{Line, Record, seconds};
 
 /// The first moment at which a run showed hidden state.
 struct HiddenView {

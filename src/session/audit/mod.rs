@@ -19,16 +19,16 @@ use serde::Serialize;
 pub use facts::RunFacts;
 pub use finding::{AuditFinding, AuditKind};
 
-use crate::session::error::RunError;
-use crate::session::folder::derived::departures_of_file;
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::afterwards::lines_afterwards;
-use crate::session::resume::integrity::Integrity;
-use crate::session::resume::verify::verify_sealed;
-use crate::session::study::definition::{Study, shortened};
-use crate::session::study::rules::SessionRules;
-use crate::session::study::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
-use crate::session::trajectory::{Line, Trajectory, seconds};
+use crate::error::RunError;
+use crate::folder::derived::departures_of_file;
+use crate::folder::manifest::Manifest;
+use crate::play::afterwards::lines_afterwards;
+use crate::resume::integrity::Integrity;
+use crate::resume::verify::verify_sealed;
+use crate::study::definition::{Study, shortened};
+use crate::study::rules::SessionRules;
+use crate::study::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
+use crate::trajectory::{Line, Trajectory, seconds};
 use run_record::{RunRecord, runs_in};
 
 /// What an audit of a study says.

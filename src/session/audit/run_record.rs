@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::session::error::RunError;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::all_run_folders;
-use crate::session::study::definition::Study;
-use crate::session::study::stamp::StudyStamp;
-use crate::session::trajectory::Trajectory;
+use crate::error::RunError;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::all_run_folders;
+use crate::study::definition::Study;
+use crate::study::stamp::StudyStamp;
+use crate::trajectory::Trajectory;
 
 /// A run as its folder records it.
 pub(super) struct RunRecord {

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::handed_run::HandedPast;
 use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
 use super::stamp::HandoutStamp;
-use crate::session::error::RunError;
-use crate::session::folder::create::new_id;
-use crate::session::folder::durable::{create_folder, write_whole};
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::trajectory::now;
+use crate::error::RunError;
+use crate::folder::create::new_id;
+use crate::folder::durable::{create_folder, write_whole};
+use crate::lesson::lesson_file::Lesson;
+use crate::trajectory::now;
 
 /// Name of the file in the folder of the class.
 const CLASS_FILE: &str = "class.toml";

@@ -11,14 +11,14 @@ use super::evidence::{ClassRun, Evidence, RunVerdict, examine};
 use super::finding::ClassFinding;
 use super::handout::{ENDING, HandedOut, Handout};
 use super::reference::{ClassReference, references};
-use crate::session::archive::Workshop;
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::durable::write_whole;
-use crate::session::folder::manifest::Manifest;
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::state::AnswersCompanies;
-use crate::session::study::gather::{CollectNote, FoundRun, gather};
+use crate::archive::Workshop;
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::durable::write_whole;
+use crate::folder::manifest::Manifest;
+use crate::lesson::lesson_file::Lesson;
+use crate::state::AnswersCompanies;
+use crate::study::gather::{CollectNote, FoundRun, gather};
 
 /// Name of the file in the folder of the class.
 const COLLECTED_FILE: &str = "collected.json";

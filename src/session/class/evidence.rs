@@ -6,20 +6,20 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::database::{Location, Projector};
-use crate::session::error::RunError;
-use crate::session::figures::setting::values;
-use crate::session::lesson::definition::GuessForm;
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::lesson::measurement::Measurement;
-use crate::session::lesson::standing::LessonStanding;
-use crate::session::playback::{Origin, read};
-use crate::session::resume::integrity::Integrity;
-use crate::session::resume::sealing::SealKey;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote};
-use crate::session::trajectory::{Line, Record};
-use crate::session::why::WeekFigure;
+use crate::error::RunError;
+use crate::figures::setting::values;
+use crate::lesson::definition::GuessForm;
+use crate::lesson::lesson_file::Lesson;
+use crate::lesson::measurement::Measurement;
+use crate::lesson::standing::LessonStanding;
+use crate::playback::{Origin, read};
+use crate::resume::integrity::Integrity;
+use crate::resume::sealing::SealKey;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::trajectory::{Line, Record};
+use crate::why::WeekFigure;
+use novamind_database::{Location, Projector};
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use super::handout::HandedRun;
 use super::stamp::HandoutStamp;
-use crate::session::archive::Workshop;
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::{FORMAT, Manifest};
-use crate::session::folder::mode::Mode;
-use crate::session::resume::branch::write_past;
-use crate::session::resume::verify::verify;
-use crate::session::study::rules::SessionRules;
-use crate::session::trajectory::record::Parent;
-use crate::session::trajectory::{Line, Record, Trajectory, now};
+use crate::archive::Workshop;
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::{FORMAT, Manifest};
+use crate::folder::mode::Mode;
+use crate::resume::branch::write_past;
+use crate::resume::verify::verify;
+use crate::study::rules::SessionRules;
+use crate::trajectory::record::Parent;
+use crate::trajectory::{Line, Record, Trajectory, now};
 
 /// A run that can be handed out.
 pub(super) struct HandedPast {

@@ -6,19 +6,19 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::stamp::{HandoutEntry, HandoutStamp};
-use crate::session::archive::is_run_name;
-use crate::session::error::RunError;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::derived::Derived;
-use crate::session::folder::durable::{create_folder, write_whole};
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::folder::runs::{list_runs, participant_folder};
-use crate::session::lesson::conduct::LessonEntry;
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::state::Session;
-use crate::world::params::ParameterSource;
+use crate::archive::is_run_name;
+use crate::error::RunError;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::derived::Derived;
+use crate::folder::durable::{create_folder, write_whole};
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::folder::runs::{list_runs, participant_folder};
+use crate::lesson::conduct::LessonEntry;
+use crate::lesson::lesson_file::Lesson;
+use crate::state::Session;
+use novamind_world::params::ParameterSource;
 
 /// Format of hand-outs that this program writes.
 pub(super) const HANDOUT_FORMAT: u32 = 1;

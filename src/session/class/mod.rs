@@ -4,12 +4,12 @@
 //! begins. Runs that began with it carry the stamp of the class, so that what comes back from any number of machines is
 //! told apart.
 
-pub(in crate::session) mod class_file;
-pub(in crate::session) mod collected_class;
-pub(in crate::session) mod collecting;
-pub(in crate::session) mod evidence;
-pub(in crate::session) mod finding;
-pub(in crate::session) mod handed_run;
-pub(in crate::session) mod handout;
-pub(in crate::session) mod reference;
-pub(in crate::session) mod stamp;
+pub(crate) mod class_file;
+pub(crate) mod collected_class;
+pub(crate) mod collecting;
+pub(crate) mod evidence;
+pub(crate) mod finding;
+pub(crate) mod handed_run;
+pub(crate) mod handout;
+pub(crate) mod reference;
+pub(crate) mod stamp;

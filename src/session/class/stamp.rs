@@ -28,7 +28,7 @@ impl HandoutEntry {
     }
 
     /// For a run that follows the one that the hand-out begins.
-    pub(in crate::session) fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
+    pub(crate) fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { stamp, run: None }
     }
 }

@@ -9,24 +9,24 @@ use super::companies::{CallHere, in_other_numbers};
 use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
-use crate::session::figures::groups::{self, GroupWeek};
-use crate::session::figures::week::WeekFigures;
-use crate::session::play::facts_chain::StateHash;
-use crate::session::play::overrides::{ParameterChange, Taken, value_of_json};
-use crate::session::play::parameters::not_allowed;
-use crate::session::play::projection::Projection;
-use crate::session::play::simulation::Simulation;
-use crate::session::xray::measured_group::MeasuredGroup;
-use crate::tools::bounds;
-use crate::tools::{Arguments, Numbers, Refusal, ToolId, View};
-use crate::world::command::Command;
-use crate::world::events::{DayFigures, LedgerEntry};
-use crate::world::identifiers::ByGroup;
-use crate::world::market::surges::week_end;
-use crate::world::state::World;
+use crate::figures::groups::{self, GroupWeek};
+use crate::figures::week::WeekFigures;
+use crate::play::facts_chain::StateHash;
+use crate::play::overrides::{ParameterChange, Taken, value_of_json};
+use crate::play::parameters::not_allowed;
+use crate::play::projection::Projection;
+use crate::play::simulation::Simulation;
+use crate::xray::measured_group::MeasuredGroup;
+use novamind_tools::bounds;
+use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View};
+use novamind_world::command::Command;
+use novamind_world::events::{DayFigures, LedgerEntry};
+use novamind_world::identifiers::ByGroup;
+use novamind_world::market::surges::week_end;
+use novamind_world::state::World;
 
 /// What came of days that were simulated again.
-pub(in crate::session) struct BranchOutcome {
+pub(crate) struct BranchOutcome {
     /// Figures of the weeks that ended.
     pub weeks: Vec<WeekFigures>,
     /// Figures of every day.
@@ -54,7 +54,7 @@ pub(in crate::session) struct BranchOutcome {
 
 /// A call that is refused when days are simulated again.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct RefusedCall {
+pub(crate) struct RefusedCall {
     /// Its line; none for one that was added.
     pub seq: Option<u64>,
     /// Decision day.
@@ -67,7 +67,7 @@ pub(in crate::session) struct RefusedCall {
 
 /// Simulates the days after a moment again, up to one of them: the moves of the run under some edits; days that the moves do
 /// not reach pass under the settings in force. None if it was stopped: `progress` is told each day.
-pub(in crate::session) fn counterfactual(
+pub(crate) fn counterfactual(
     start: &KeptState,
     moves: &[Move],
     edits: &Edits,
@@ -81,7 +81,7 @@ pub(in crate::session) fn counterfactual(
 
 /// The same, with the hash of every state that the moves name.
 #[cfg(test)]
-pub(in crate::session) fn counterfactual_with_hashes(
+pub(crate) fn counterfactual_with_hashes(
     start: &KeptState,
     moves: &[Move],
     edits: &Edits,
@@ -94,7 +94,7 @@ pub(in crate::session) fn counterfactual_with_hashes(
 
 /// The first day at whose end two edits of the same moves have led to different companies, or that there is none up to a day.
 /// None if it was stopped: `progress` is told each day.
-pub(in crate::session) fn first_difference(
+pub(crate) fn first_difference(
     start: &KeptState,
     moves: &[Move],
     (one, other): (&Edits, &Edits),

@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::tools::{Refusal, ToolId, readdressed};
-use crate::world::customers::numbers::CustomerNumbers;
+use novamind_tools::{Refusal, ToolId, readdressed};
+use novamind_world::customers::numbers::CustomerNumbers;
 
 /// A call as a branch can make it.
-pub(in crate::session) struct CallHere {
+pub(crate) struct CallHere {
     /// Its arguments with the numbers of the branch; none where no company of the call has come.
     pub args: Option<Value>,
     /// Why it does not reach companies that it names.
@@ -34,13 +34,13 @@ impl CallHere {
 }
 
 /// A refusal that names customers by the numbers of the branch.
-pub(in crate::session) fn in_other_numbers(refusal: Refusal) -> Refusal {
+pub(crate) fn in_other_numbers(refusal: Refusal) -> Refusal {
     let message = format!("{}; numbers are those of the branch", refusal.message);
     Refusal { message, ..refusal }
 }
 
 /// The highest number of a customer that a call names.
-pub(in crate::session) fn highest_named(tool: ToolId, args: &Value) -> Option<u32> {
+pub(crate) fn highest_named(tool: ToolId, args: &Value) -> Option<u32> {
     let mut highest = None;
     readdressed(tool, args, &mut |customer| {
         highest = highest.max(Some(customer));

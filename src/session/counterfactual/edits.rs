@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use crate::session::figures::capacity_by_usage::UsageRule;
-use crate::session::figures::week::WeekFigures;
-use crate::tools::ToolId;
-use crate::world::customers::numbers::CustomerNumbers;
-use crate::world::held::Held;
-use crate::world::params::Params;
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::figures::week::WeekFigures;
+use novamind_tools::ToolId;
+use novamind_world::customers::numbers::CustomerNumbers;
+use novamind_world::held::Held;
+use novamind_world::params::Params;
 
 /// Changes to the days of a run. Without any, they lead to the state they led to.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct Edits {
+pub(crate) struct Edits {
     /// Calls that are made before everything else.
     pub opening: Vec<(ToolId, Value)>,
     /// Lines of calls that are not made, and of parameters that are not set.
@@ -41,14 +41,14 @@ pub(in crate::session) struct Edits {
 
 /// By which rule the capacity follows usage, and from which day on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) struct FollowedUsage {
+pub(crate) struct FollowedUsage {
     pub rule: UsageRule,
     pub from: u32,
 }
 
 /// Luck that is redrawn after a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) struct Redrawn {
+pub(crate) struct Redrawn {
     /// The last day with the luck of the run.
     pub after: u32,
     /// Equal salts give equal luck.
@@ -57,7 +57,7 @@ pub(in crate::session) struct Redrawn {
 
 /// A call that was not made in the run.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct AddedCall {
+pub(crate) struct AddedCall {
     /// Decision day; it is made after the calls of the run on that day.
     pub day: u32,
     /// Tool.
@@ -68,7 +68,7 @@ pub(in crate::session) struct AddedCall {
 
 /// A parameter that was not set in the run.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct AddedSetting {
+pub(crate) struct AddedSetting {
     /// Decision day; it is set after the calls of the run on that day.
     pub day: u32,
     /// Full key.

@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::feed::Feed;
-use crate::session::play::overrides::Overrides;
-use crate::session::play::simulation::Simulation;
-use crate::voice::CompanyNames;
-use crate::world::params::Params;
-use crate::world::random::Streams;
-use crate::world::state::World;
+use crate::folder::manifest::Manifest;
+use crate::play::feed::Feed;
+use crate::play::overrides::Overrides;
+use crate::play::simulation::Simulation;
+use novamind_voice::CompanyNames;
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
+use novamind_world::state::World;
 
 /// A company at the end of a day, before anything is decided on it.
 #[derive(Clone)]
-pub(in crate::session) struct KeptState {
+pub(crate) struct KeptState {
     /// Parameters in force.
     pub params: Arc<Params>,
     /// What was set of them, and what waits for its day.
@@ -30,12 +30,12 @@ pub(in crate::session) struct KeptState {
 
 impl KeptState {
     /// Day 0 of a run.
-    pub(in crate::session) fn opening(manifest: &Manifest, params: Arc<Params>) -> KeptState {
+    pub(crate) fn opening(manifest: &Manifest, params: Arc<Params>) -> KeptState {
         KeptState::of(Simulation::open(manifest, params))
     }
 
     /// The moment a simulation has come to.
-    pub(in crate::session) fn of(simulation: Simulation) -> KeptState {
+    pub(crate) fn of(simulation: Simulation) -> KeptState {
         let Simulation { params, overrides, streams, names, world, feed, .. } = simulation;
         KeptState { params, overrides, streams, names, world, feed }
     }

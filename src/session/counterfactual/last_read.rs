@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 /// What answers questions about a record.
 pub trait OfRecord: Sized {

@@ -4,15 +4,15 @@
 //! trajectory, no notices: a [`KeptState`](kept_state::KeptState) of the run, the [`Move`](script::Move)s that follow it, some
 //! [`Edits`](edits::Edits), and the figures that come out.
 
-pub(in crate::session) mod branch;
-pub(in crate::session) mod companies;
-pub(in crate::session) mod edits;
-pub(in crate::session) mod kept_state;
-pub(in crate::session) mod last_read;
-pub(in crate::session) mod one_each;
-pub(in crate::session) mod past;
-pub(in crate::session) mod script;
+pub(crate) mod branch;
+pub(crate) mod companies;
+pub(crate) mod edits;
+pub(crate) mod kept_state;
+pub(crate) mod last_read;
+pub(crate) mod one_each;
+pub(crate) mod past;
+pub(crate) mod script;
 #[cfg(test)]
-pub(in crate::session) mod test_kit;
+pub(crate) mod test_kit;
 #[cfg(test)]
 mod tests;

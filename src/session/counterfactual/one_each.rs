@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::ThreadPoolBuilder;
 
 /// Says whether another simulation was stopped: then none of them is wanted any more.
-pub(in crate::session) struct Stopped(AtomicBool);
+pub(crate) struct Stopped(AtomicBool);
 
 impl Stopped {
-    pub(in crate::session) fn is_set(&self) -> bool {
+    pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
@@ -26,7 +26,7 @@ pub fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
 ///
 /// Each processor simulates one after the other: no two of them wait for each other, and there are never more companies in
 /// memory than processors.
-pub(in crate::session) fn one_each<T: Sync, R: Send>(
+pub(crate) fn one_each<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T, &Stopped) -> Option<R> + Sync,
 ) -> Option<Vec<R>> {

@@ -9,26 +9,26 @@ use super::branch::counterfactual;
 use super::edits::Edits;
 use super::kept_state::KeptState;
 use super::script::{Move, between, moves};
-use crate::session::error::RunError;
-use crate::session::folder::manifest::Manifest;
-use crate::session::lesson::over::is_lesson_over;
-use crate::session::playback::{Origin, read};
+use crate::error::RunError;
+use crate::folder::manifest::Manifest;
+use crate::lesson::over::is_lesson_over;
+use crate::playback::{Origin, read};
 
 /// Moments that are kept in memory besides the first: a moment is as large as its company.
 const KEPT: usize = 4;
 
 /// The moves of a run, and moments from which they can be made again.
-pub(in crate::session) struct Past {
+pub(crate) struct Past {
     /// The file they were read from.
     path: PathBuf,
     /// How long it was then, in bytes.
     length: u64,
     /// What the run is.
-    pub(in crate::session) manifest: Manifest,
+    pub(crate) manifest: Manifest,
     /// Everything that moved it on.
     moves: Vec<Move>,
     /// Whether it is over, and the lesson that it belongs to with it.
-    pub(in crate::session) ended: bool,
+    pub(crate) ended: bool,
     /// Moments by day.
     kept: BTreeMap<u32, Arc<KeptState>>,
 }
@@ -38,7 +38,7 @@ impl Past {
     ///
     /// # Errors
     /// It is missing, damaged or of another version.
-    pub(in crate::session) fn read(path: &Path) -> Result<Past, RunError> {
+    pub(crate) fn read(path: &Path) -> Result<Past, RunError> {
         let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
         let length = trajectory.length;
         let ended = trajectory.end().is_some() && is_lesson_over(path.parent(), &manifest);
@@ -57,7 +57,7 @@ impl Past {
     ///
     /// # Errors
     /// As [`Past::read`].
-    pub(in crate::session) fn renew(&mut self) -> Result<(), RunError> {
+    pub(crate) fn renew(&mut self) -> Result<(), RunError> {
         let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
         if length == self.length {
             return Ok(());
@@ -70,27 +70,27 @@ impl Past {
     }
 
     /// The moves that follow a day and lead no further than another.
-    pub(in crate::session) fn between(&self, from: u32, until: u32) -> &[Move] {
+    pub(crate) fn between(&self, from: u32, until: u32) -> &[Move] {
         between(&self.moves, from, until)
     }
 
     /// The last day that was simulated.
-    pub(in crate::session) fn last_day(&self) -> u32 {
+    pub(crate) fn last_day(&self) -> u32 {
         self.last_end(u32::MAX)
     }
 
     /// Days of a week.
-    pub(in crate::session) fn days_per_week(&self) -> u32 {
+    pub(crate) fn days_per_week(&self) -> u32 {
         self.kept[&0].params.run.days_per_week
     }
 
     /// Whether days of the record end on a day.
-    pub(in crate::session) fn ends_on(&self, day: u32) -> bool {
+    pub(crate) fn ends_on(&self, day: u32) -> bool {
         day == 0 || self.moves.iter().any(|step| matches!(step, Move::Days(days) if days.until == day))
     }
 
     /// The last day up to another on which days of the record end.
-    pub(in crate::session) fn last_end(&self, until: u32) -> u32 {
+    pub(crate) fn last_end(&self, until: u32) -> u32 {
         let ends = self.moves.iter().filter_map(|step| match step {
             Move::Days(days) => Some(days.until),
             Move::Call(_) | Move::Parameter(_) => None,
@@ -103,7 +103,7 @@ impl Past {
     ///
     /// # Errors
     /// The record does not lead to the state it names.
-    pub(in crate::session) fn moment(
+    pub(crate) fn moment(
         &mut self,
         day: u32,
         progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
@@ -130,7 +130,7 @@ impl Past {
     ///
     /// # Errors
     /// It is another.
-    pub(in crate::session) fn compare(&self, day: u32, reached: &KeptState) -> Result<(), RunError> {
+    pub(crate) fn compare(&self, day: u32, reached: &KeptState) -> Result<(), RunError> {
         let recorded = self.moves.iter().find_map(|step| match step {
             Move::Days(days) if days.until == day => Some(&days.parts),
             _ => None,

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::session::play::overrides::{ParameterChange, json_of_value};
-use crate::session::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
-use crate::session::trajectory::{Line, Record};
-use crate::tools::{Kind, ToolId};
+use crate::play::overrides::{ParameterChange, json_of_value};
+use crate::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
+use crate::trajectory::{Line, Record};
+use novamind_tools::{Kind, ToolId};
 
 /// Something that moved the company on.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) enum Move {
+pub(crate) enum Move {
     /// A call that could act on the company.
     Call(PastCall),
     /// A parameter was set.
@@ -98,7 +98,7 @@ impl PastDecision {
     }
 
     /// What a move decided; none where days passed.
-    pub(in crate::session) fn of(step: &Move) -> Option<PastDecision> {
+    pub(crate) fn of(step: &Move) -> Option<PastDecision> {
         match step {
             Move::Call(call) => Some(PastDecision::Call(call.clone())),
             Move::Parameter(PastSetting { day, change }) => Some(PastDecision::Parameter {
@@ -115,7 +115,7 @@ impl PastDecision {
 
 /// A parameter that was set in the past.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct PastSetting {
+pub(crate) struct PastSetting {
     /// Day on which it was set.
     pub day: u32,
     /// What was set.
@@ -124,7 +124,7 @@ pub(in crate::session) struct PastSetting {
 
 /// Days of the past.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct PastDays {
+pub(crate) struct PastDays {
     /// The last of them.
     pub until: u32,
     /// Hash of the state they led to.
@@ -136,7 +136,7 @@ pub(in crate::session) struct PastDays {
 }
 
 /// The moves of some lines, in their order.
-pub(in crate::session) fn moves(lines: &[Line]) -> Vec<Move> {
+pub(crate) fn moves(lines: &[Line]) -> Vec<Move> {
     let mut scores = Vec::new();
     lines.iter().filter_map(|line| move_of(line, &mut scores)).collect()
 }
@@ -171,7 +171,7 @@ fn move_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<Move> {
 }
 
 /// Those moves that follow a day and lead no further than another; what is decided on a day follows it.
-pub(in crate::session) fn between(moves: &[Move], from: u32, until: u32) -> &[Move] {
+pub(crate) fn between(moves: &[Move], from: u32, until: u32) -> &[Move] {
     let after = |day: u32| {
         let before = |step: &Move| match step {
             Move::Call(call) => call.day < day,
@@ -185,7 +185,7 @@ pub(in crate::session) fn between(moves: &[Move], from: u32, until: u32) -> &[Mo
 }
 
 /// Whether an accepted call answers a post of somebody else: then the words of posts matter.
-pub(in crate::session) fn has_replies(moves: &[Move]) -> bool {
+pub(crate) fn has_replies(moves: &[Move]) -> bool {
     moves.iter().any(|step| match step {
         Move::Call(call) => {
             call.accepted && call.tool == ToolId::PostSocialMedia && !call.args["reply_to_post_id"].is_null()

@@ -4,22 +4,17 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::trajectory::record::Via;
 
 /// Weeks that are played before a change.
-pub(in crate::session) const WEEKS: u32 = 7;
+pub(crate) const WEEKS: u32 = 7;
 
 /// A company that has customers, plays some weeks, and then one under a change.
-pub(in crate::session) fn played(
-    runs: &Path,
-    mode: Mode,
-    seed: u64,
-    change: Option<(&str, Value)>,
-) -> Session {
+pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
     let new = NewRun {
         seed: Some(seed),
         days: Some(120),

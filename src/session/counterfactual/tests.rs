@@ -12,17 +12,17 @@ use super::kept_state::KeptState;
 use super::last_read::OfRecord;
 use super::past::Past;
 use super::script::{Move, moves};
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::mode::Mode;
-use crate::session::playback::{Origin, read};
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
-use crate::tools::ToolId;
-use crate::world::held::Held;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::mode::Mode;
+use crate::playback::{Origin, read};
+use crate::state::Session;
+use crate::trajectory::record::Via;
+use novamind_tools::ToolId;
+use novamind_world::held::Held;
 
 fn recorded(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded").join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded").join(name)
 }
 
 fn on(_: u32) -> ControlFlow<()> {
@@ -205,18 +205,17 @@ fn a_run_whose_settings_of_parameters_are_dropped_is_the_run_without_them() {
 fn a_parameter_that_was_set_is_a_cause_like_others() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = with_parameters(folder.path(), true);
-    let mut causes =
-        crate::session::why::Causes::read(session.folder().expect("a folder")).expect("a debug run");
-    let asked = |text: &str| text.parse::<crate::session::WeekQuestion>().expect("a question");
+    let mut causes = crate::why::Causes::read(session.folder().expect("a folder")).expect("a debug run");
+    let asked = |text: &str| text.parse::<crate::WeekQuestion>().expect("a question");
     let why = causes
         .why(asked("individual leads 6"), &|_| ControlFlow::Continue(()))
         .expect("causes")
         .expect("an answer");
-    let part = why.parts.iter().find(|part| part.cause == crate::session::Cause::Parameters);
+    let part = why.parts.iter().find(|part| part.cause == crate::Cause::Parameters);
     assert!(part.is_some_and(|part| part.amount > 1_000.0), "{why:?}");
     let plain = causes
         .why(asked("individual leads 2"), &|_| ControlFlow::Continue(()))
         .expect("causes")
         .expect("an answer");
-    assert!(plain.parts.iter().all(|part| part.cause != crate::session::Cause::Parameters));
+    assert!(plain.parts.iter().all(|part| part.cause != crate::Cause::Parameters));
 }

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::assumed::{Reading, market_of};
 use super::explorer::{CurveBasis, CurveExplorer, OnOffer, PlanPoint};
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::{ByPlan, Group, Plan};
-use crate::world::market::drift::Expectation;
-use crate::world::retention::renewal::ongoing_discount;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::{ByPlan, Group, Plan};
+use novamind_world::market::drift::Expectation;
+use novamind_world::retention::renewal::ongoing_discount;
 
 /// No customer has the number 0: promotions of single customers are left out.
 const NOBODY: u32 = 0;

@@ -1,8 +1,8 @@
 //! A group as studies tell of it. They name means within an error and say nothing of how widely a group spreads or how far its
 //! curve rises; that is assumed alike for every group, and no number of the run goes into it.
 
-use crate::session::figures::estimates::Estimates;
-use crate::world::params::Params;
+use crate::figures::estimates::Estimates;
+use novamind_world::params::Params;
 
 /// Spread of budgets, as a share of their mean.
 const BUDGET_SPREAD: f64 = 0.4;

@@ -1,7 +1,7 @@
 //! The curve of one customer, as an example in explanations: a made-up individual, and no customer of any run.
 
-use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::params::Params;
+use novamind_world::customers::curve::{Curve, required_quality};
+use novamind_world::params::Params;
 
 /// The customer of the check values in docs/mechanics/customers/participation.md.
 const EXAMPLE: Curve =

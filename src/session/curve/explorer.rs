@@ -3,12 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::world::customers::choice::Offer;
-use crate::world::identifiers::{ByPlan, Group, Plan};
-use crate::world::market::drift::Expectation;
-use crate::world::market::lead_sample::{FirstChoices, LeadSample};
-use crate::world::params::Params;
-use crate::world::random::Streams;
+use novamind_world::customers::choice::Offer;
+use novamind_world::identifiers::{ByPlan, Group, Plan};
+use novamind_world::market::drift::Expectation;
+use novamind_world::market::lead_sample::{FirstChoices, LeadSample};
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
 
 /// Leads that are asked.
 pub const SAMPLED_LEADS: u32 = 2000;

@@ -4,10 +4,10 @@
 //! In debug runs and in runs that are over it is drawn from the traits of the group itself, and each look is recorded; in all
 //! others from what studies have told, so that nothing hidden can be read off it.
 
-pub(in crate::session) mod access;
-pub(in crate::session) mod assumed;
-pub(in crate::session) mod example;
-pub(in crate::session) mod explorer;
+pub(crate) mod access;
+pub(crate) mod assumed;
+pub(crate) mod example;
+pub(crate) mod explorer;
 
 #[cfg(test)]
 mod tests;

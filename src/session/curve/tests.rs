@@ -3,12 +3,12 @@
 use serde_json::json;
 
 use super::explorer::{CurveBasis, CurveExplorer};
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
-use crate::world::identifiers::{ByPlan, Group};
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::trajectory::record::Via;
+use novamind_world::identifiers::{ByPlan, Group};
 
 fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
     let new = NewRun {

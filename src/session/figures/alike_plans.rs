@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::session::state::Session;
-use crate::world::identifiers::{ByPlan, Group, Plan};
-use crate::world::settings::{PerPlan, Settings};
+use crate::state::Session;
+use novamind_world::identifiers::{ByPlan, Group, Plan};
+use novamind_world::settings::{PerPlan, Settings};
 
 /// Two plans whose model tier, quota, promotions and targeted operations are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -77,7 +77,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::{Configuration, NewRun, Storage, Via};
+    use crate::{Configuration, NewRun, Storage, Via};
 
     #[test]
     fn every_setting_of_a_plan_tells_plans_apart() {

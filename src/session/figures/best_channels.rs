@@ -1,8 +1,8 @@
 //! Which advertising channel truly is the best for a group, by the yields that no player sees.
 
-use crate::session::state::Session;
-use crate::world::identifiers::{Channel, Group};
-use crate::world::params::Params;
+use crate::state::Session;
+use novamind_world::identifiers::{Channel, Group};
+use novamind_world::params::Params;
 
 /// The channel with the highest starting yield for a group; the first in channel order on a tie.
 pub fn best_starting_channel(group: Group, params: &Params) -> Channel {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::world::events::Category;
+use novamind_world::events::Category;
 
 /// Dollars booked by category; costs are negative. Their sum is the change of cash.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -10,7 +10,7 @@ pub struct Booked([f64; Category::ALL.len()]);
 
 impl Booked {
     /// Books an amount.
-    pub(in crate::session) fn add(&mut self, category: Category, dollars: f64) {
+    pub(crate) fn add(&mut self, category: Category, dollars: f64) {
         self.0[category as usize] += dollars;
     }
 

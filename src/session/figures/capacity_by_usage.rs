@@ -1,15 +1,15 @@
 //! Rules by which the capacity follows usage: what is set at the start of a week.
 
-use crate::session::figures::week::WeekFigures;
-use crate::session::state::Session;
-use crate::world::params::{CapacityTier, Params};
+use crate::figures::week::WeekFigures;
+use crate::state::Session;
+use novamind_world::params::{CapacityTier, Params};
 
 /// Share of the capacity that mean use is to take.
 const UTILISATION: f64 = 0.8;
 
 /// A rule by which the capacity follows usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) enum UsageRule {
+pub(crate) enum UsageRule {
     /// The smallest tier that serves the busiest day of the week before without overload; the largest where none does. Nothing
     /// moves before the first week.
     BusiestDay,
@@ -20,7 +20,7 @@ pub(in crate::session) enum UsageRule {
 
 impl UsageRule {
     /// The tier that the rule sets after a week, given the one in force.
-    pub(in crate::session) fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
+    pub(crate) fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
         match self {
             UsageRule::BusiestDay => {
                 before.map_or(now, |week| covering(week.busiest_day as f64, now, params))
@@ -48,7 +48,7 @@ impl Session {
     }
 
     /// The capacity tier that a rule sets now.
-    pub(in crate::session) fn tier_by(&self, rule: UsageRule) -> u8 {
+    pub(crate) fn tier_by(&self, rule: UsageRule) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
         rule.tier(now, self.history.weeks.last(), &self.simulation.params)
     }

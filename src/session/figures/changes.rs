@@ -4,7 +4,7 @@ use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::setting::{SettingId, values};
-use crate::world::settings::Settings;
+use novamind_world::settings::Settings;
 
 /// A setting that differs between two states.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,8 +93,8 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::world::identifiers::{Channel, Group, Plan};
-    use crate::world::params::Params;
+    use novamind_world::identifiers::{Channel, Group, Plan};
+    use novamind_world::params::Params;
 
     #[test]
     fn changes_name_what_differs_in_both_directions() {

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use super::week::{WeekFigures, week_of};
-use crate::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
-use crate::session::play::surroundings::Calculated;
-use crate::world::identifiers::{ByPlan, Group, Plan};
-use crate::world::market::social::own::OwnPost;
-use crate::world::params::Params;
-use crate::world::state::World;
+use crate::play::surroundings::Calculated;
+use novamind_base::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
+use novamind_world::identifiers::{ByPlan, Group, Plan};
+use novamind_world::market::social::own::OwnPost;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 /// Quality delivered to a known group.
 #[derive(Debug, Clone, PartialEq)]
@@ -231,7 +231,7 @@ fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::events::Facts;
+    use novamind_world::events::Facts;
 
     fn world() -> (World, Params) {
         let params = Params::shipped();

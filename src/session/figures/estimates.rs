@@ -1,9 +1,9 @@
 //! What studies say of a group, as numbers: what get_group_insights answers, without its words.
 
 use super::truth::truth_behind;
-use crate::session::state::Session;
-use crate::tools::GetGroupInsights;
-use crate::world::identifiers::Group;
+use crate::state::Session;
+use novamind_tools::GetGroupInsights;
+use novamind_world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,8 +71,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
 
     #[test]
     fn the_truth_lies_inside_the_range_whatever_the_noise_was() {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::dashboard::delivered_quality;
 use super::truth::floor_of;
-use crate::session::play::simulation::Simulation;
-use crate::world::canonical::canonical;
-use crate::world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
-use crate::world::identifiers::{ByChannel, ByGroup, ByPlan, Group};
-use crate::world::state::World;
+use crate::play::simulation::Simulation;
+use novamind_world::canonical::canonical;
+use novamind_world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
+use novamind_world::identifiers::{ByChannel, ByGroup, ByPlan, Group};
+use novamind_world::state::World;
 
 /// What advertising of a group through a channel brought.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,12 +74,7 @@ impl GroupWeek {
 }
 
 /// Adds a day to the figures of its week.
-pub(in crate::session) fn count(
-    week: &mut ByGroup<GroupWeek>,
-    figures: &DayFigures,
-    facts: &Facts,
-    world: &World,
-) {
+pub(crate) fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
     let came: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
     for arrival in came.values() {
@@ -127,7 +122,7 @@ pub(in crate::session) fn count(
 }
 
 /// Settles what is counted at the end of a week.
-pub(in crate::session) fn settle(week: &mut ByGroup<GroupWeek>, simulation: &Simulation) {
+pub(crate) fn settle(week: &mut ByGroup<GroupWeek>, simulation: &Simulation) {
     let world = &simulation.world;
     for own in delivered_quality(world, &simulation.params) {
         week[own.group].quality = Some(own.by_plan);

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::week::WeekFigures;
-use crate::session::trajectory::record::Reversal;
-use crate::tools::{Forecast, ToolId};
+use crate::trajectory::record::Reversal;
+use novamind_tools::{Forecast, ToolId};
 
 /// A confirmed action or week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::pace::Pace;
 use super::week::{Forecasts, WeekFigures};
-use crate::session::state::Session;
-use crate::tools::Forecast;
-use crate::world::events::Category;
+use crate::state::Session;
+use novamind_tools::Forecast;
+use novamind_world::events::Category;
 
 /// Weeks of a young company.
 const YOUNG: usize = 4;
@@ -164,7 +164,7 @@ impl Bands {
         };
         format!(
             "{share} of {} such intervals held in back-tests of {} policies",
-            crate::notation::grouped(count as f64, 0),
+            novamind_base::notation::grouped(count as f64, 0),
             self.policies
         )
     }
@@ -287,7 +287,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::figures::booked::Booked;
+    use crate::figures::booked::Booked;
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 

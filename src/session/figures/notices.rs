@@ -1,13 +1,13 @@
 //! The inbox in words: each notice names its company where the day's facts tell which it is.
 
-use crate::session::state::Session;
-use crate::voice::{self, notices::Party};
-use crate::world::events::{EndCause, Notice, SubscriptionStatus};
+use crate::state::Session;
+use novamind_voice::notices::Party;
+use novamind_world::events::{EndCause, Notice, SubscriptionStatus};
 
 impl Session {
     /// Texts of the notices of the last day, or of the last call; empty ones for losses that are only repeated: the
     /// database keeps those as one fact.
-    pub(in crate::session) fn notice_texts(&self) -> Vec<String> {
+    pub(crate) fn notice_texts(&self) -> Vec<String> {
         let mut parties = Parties::of(self);
         self.simulation
             .facts
@@ -18,10 +18,12 @@ impl Session {
     }
 
     fn notice_text(&self, notice: &Notice, party: Option<Party>) -> String {
-        let Notice::OwnPostSeen(reaction) = notice else { return voice::notices::notice(notice, party) };
+        let Notice::OwnPostSeen(reaction) = notice else {
+            return novamind_voice::notices::notice(notice, party);
+        };
         let own = self.simulation.world.market.social.own.get(reaction.post as usize - 1);
         let content = own.map_or("", |post| post.content.as_str());
-        voice::notices::reaction_to(content, reaction, &self.simulation.params.ceo_posts)
+        novamind_voice::notices::reaction_to(content, reaction, &self.simulation.params.ceo_posts)
     }
 }
 

@@ -9,13 +9,13 @@ use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
 use super::pace::Pace;
 use super::research_outlook::LateProject;
 use super::week::{WeekFigures, week_of};
-use crate::session::folder::mode::Mode;
-use crate::session::play::irrevocable::Irrevocable;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Ended;
-use crate::voice::model::settings::ModelStamp;
-use crate::world::day::closing_figures;
-use crate::world::identifiers::{Group, Plan};
+use crate::folder::mode::Mode;
+use crate::play::irrevocable::Irrevocable;
+use crate::state::Session;
+use crate::trajectory::record::Ended;
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::day::closing_figures;
+use novamind_world::identifiers::{Group, Plan};
 
 /// The company at a glance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -177,7 +177,7 @@ impl Session {
     }
 
     /// The dashboard of the company as it is.
-    pub(in crate::session) fn build_dashboard(&self, open_issues: u32) -> String {
+    pub(crate) fn build_dashboard(&self, open_issues: u32) -> String {
         let closing = closing_figures(self.world());
         let stocks = WeekFigures {
             cash: closing.cash,
@@ -217,7 +217,7 @@ impl Session {
     }
 
     /// Active subscribers with an open issue.
-    pub(in crate::session) fn open_issues(&self) -> u32 {
+    pub(crate) fn open_issues(&self) -> u32 {
         self.simulation.open_issues()
     }
 

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::scored_forecast::{ForecastScore, filed_forecasts};
 use super::week::WeekFigures;
-use crate::session::state::Session;
-use crate::world::events::Category;
+use crate::state::Session;
+use novamind_world::events::Category;
 
 /// Weeks that are recent.
 const RECENT: usize = 4;
@@ -77,7 +77,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::figures::booked::Booked;
+    use crate::figures::booked::Booked;
 
     fn week(income: f64, compute: f64) -> WeekFigures {
         let mut booked = Booked::default();

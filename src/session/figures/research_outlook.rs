@@ -3,10 +3,10 @@
 
 use serde::Serialize;
 
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::world::params::ResearchTier;
-use crate::world::product::research_spread::{
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use novamind_world::params::ResearchTier;
+use novamind_world::product::research_spread::{
     days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,
 };
 
@@ -110,11 +110,11 @@ impl Session {
     }
 
     /// Projects whose day of completion, which the answer to their start told, lies beyond the last day.
-    pub(in crate::session) fn late_projects(&self) -> Vec<LateProject> {
+    pub(crate) fn late_projects(&self) -> Vec<LateProject> {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let projects = self.simulation.world.product.research.iter();
         let late = projects.filter(|project| project.completed_day.is_none() && project.due_day > last_day);
-        let told = |project: &crate::world::events::Project| LateProject {
+        let told = |project: &novamind_world::events::Project| LateProject {
             id: project.id(),
             due_day: project.due_day,
             is_new: project.started_day == today,

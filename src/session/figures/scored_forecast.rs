@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 use super::journal::JournalEntry;
-use crate::notation::percent;
-use crate::tools::Forecast;
+use novamind_base::notation::percent;
+use novamind_tools::Forecast;
 
 /// A forecast of cash that was filed, and what came if its day has come.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -4,9 +4,9 @@ use std::fmt::{self, Display, Formatter};
 
 use serde::{Deserialize, Serialize};
 
-use crate::tools::ToolId;
-use crate::world::identifiers::{Channel, Group, Plan};
-use crate::world::settings::Settings;
+use novamind_tools::ToolId;
+use novamind_world::identifiers::{Channel, Group, Plan};
+use novamind_world::settings::Settings;
 
 /// A number that a player can set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -142,7 +142,7 @@ impl Display for Audience {
 }
 
 /// Every number that is set, in the order of the tools.
-pub(in crate::session) fn values(settings: &Settings) -> Vec<(SettingId, f64)> {
+pub(crate) fn values(settings: &Settings) -> Vec<(SettingId, f64)> {
     let core = &settings.core;
     let mut all: Vec<(SettingId, f64)> = Vec::new();
     all.extend(Plan::ALL.map(|plan| (SettingId::Price(plan), core.prices[plan])));

@@ -1,9 +1,9 @@
 //! ToolLimits that the documentation of the tools tells everybody: prices, delays, errors and limits.
 
-use crate::session::state::Session;
-use crate::world::identifiers::Group;
-use crate::world::product::development::targeted_development_gain;
-use crate::world::product::service::outage_probability;
+use crate::state::Session;
+use novamind_world::identifiers::Group;
+use novamind_world::product::development::targeted_development_gain;
+use novamind_world::product::service::outage_probability;
 
 /// A level that a study of a group can reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl Session {
     /// ToolLimits of the tools in this run.
     pub fn terms(&self) -> ToolLimits {
         let params = &self.simulation.params;
-        let level = |level: &crate::world::params::InfoLevel| StudyLevel {
+        let level = |level: &novamind_world::params::InfoLevel| StudyLevel {
             level: level.level,
             cost: level.cost,
             days: level.delay_days,
@@ -138,7 +138,7 @@ impl Session {
 
     /// Studies that run, in the order they were ordered.
     pub fn running_studies(&self) -> Vec<RunningStudy> {
-        let of = |study: &crate::world::events::Study| RunningStudy {
+        let of = |study: &novamind_world::events::Study| RunningStudy {
             group: study.group,
             target: study.target,
             due_day: study.due_day,

@@ -1,8 +1,8 @@
 //! What the truth behind an estimate can be.
 
-use crate::session::play::simulation::Simulation;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::identifiers::Group;
+use crate::play::simulation::Simulation;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::identifiers::Group;
 
 /// Least and greatest truth behind an estimate that is off by at most a share: it is the truth times 1 ± share.
 pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {

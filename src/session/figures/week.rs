@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::booked::Booked;
-use crate::notation::json_number;
-use crate::session::trajectory::record::FiledForecast;
-use crate::tools::{FORECAST_KEYS, Forecast};
-use crate::world::events::{
+use crate::trajectory::record::FiledForecast;
+use novamind_base::notation::json_number;
+use novamind_tools::{FORECAST_KEYS, Forecast};
+use novamind_world::events::{
     Category, DayFigures, Facts, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
 };
-use crate::world::params::Params;
+use novamind_world::params::Params;
 
 /// Figures of a week, or of the part of it that ran.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -93,7 +93,7 @@ impl WeekFigures {
     }
 
     /// Counts a day that was simulated: its figures, what happened on it, and the money that calls moved before it.
-    pub(in crate::session) fn count(
+    pub(crate) fn count(
         &mut self,
         figures: &DayFigures,
         facts: &Facts,
@@ -219,7 +219,7 @@ pub fn naively(filled: &[bool]) -> Option<String> {
 
 impl Forecasts {
     /// The forecasts of a line; none unless there is one for each horizon.
-    pub(in crate::session) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
+    pub(crate) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
         let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
         Some(Forecasts {
             all: filed.map(|forecast| forecast.said()),
@@ -228,7 +228,7 @@ impl Forecasts {
     }
 
     /// As a line has them.
-    pub(in crate::session) fn filed(&self) -> Vec<FiledForecast> {
+    pub(crate) fn filed(&self) -> Vec<FiledForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
             FiledForecast { horizon_days, point, lower, upper, filled_naively }

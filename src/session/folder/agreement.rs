@@ -7,8 +7,8 @@ use super::consent::{Consent, ConsentGiven, ConsentText};
 use super::create::{NewRun, Storage};
 use super::derived::Derived;
 use super::runs::all_run_folders;
-use crate::session::error::RunError;
-use crate::session::trajectory::now;
+use crate::error::RunError;
+use crate::trajectory::now;
 
 /// An agreement that no run records yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Configuration {
 ///
 /// # Errors
 /// `ConsentNeeded` with the text, if neither is the case; the file cannot be read.
-pub(in crate::session) fn agreed(
+pub(crate) fn agreed(
     new: &NewRun,
     participant: Option<&str>,
     configuration: &Configuration,
@@ -81,9 +81,9 @@ fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Conse
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::mode::Mode;
-    use crate::session::resume::open::Access;
-    use crate::session::state::Session;
+    use crate::folder::mode::Mode;
+    use crate::resume::open::Access;
+    use crate::state::Session;
 
     fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
         let agreed = agreed.then(|| ConsentGiven::on_paper().now());

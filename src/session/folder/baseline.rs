@@ -4,8 +4,8 @@ use super::configuration::{Configuration, DEFAULT_SCENARIO};
 use super::create::{NewRun, Storage};
 use super::mode::Mode;
 use super::runs::label_of;
-use crate::notation::{dollars, grouped};
-use crate::session::error::RunError;
+use crate::error::RunError;
+use novamind_base::notation::{dollars, grouped};
 
 impl NewRun {
     /// Checks that a person's baseline run has a label, and scenario, days and cash of the defaults. A study lays down its

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Table;
 
-use crate::session::error::RunError;
-use crate::shipped;
-use crate::voice::model::settings::ModelSettings;
-use crate::world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
+use crate::error::RunError;
+use novamind_voice::model::settings::ModelSettings;
+use novamind_world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
 
 /// Folders of this person on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -109,7 +108,7 @@ impl Configuration {
     /// Names of all scenarios: the shipped ones, then this person's.
     pub fn scenarios(&self) -> Vec<String> {
         let mut names: Vec<String> =
-            shipped::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
+            novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
         // The standard scenario stands first.
         names.sort_by_key(|name| name != DEFAULT_SCENARIO);
         let own = self.names("scenarios").into_iter().filter(|own| !names.contains(own));
@@ -126,7 +125,7 @@ impl Configuration {
         if let Some(source) = self.file(format!("scenarios/{name}.toml"))? {
             return Ok(read_scenario(name, source, false)?);
         }
-        match shipped::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/scenarios/{name}.toml");
                 Ok(read_scenario(name, ParameterSource { name: file, text: text.to_owned() }, true)?)
@@ -177,7 +176,7 @@ impl Scenario {
     }
 
     /// Days and starting cash, with the parameters it leads to.
-    pub(crate) fn terms(&self, params: &Params) -> (u32, f64) {
+    pub fn terms(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
 
@@ -270,7 +269,7 @@ mod tests {
         digests.sort_unstable();
         digests.dedup();
         // `default` and `short` differ only in their days.
-        assert_eq!(digests.len(), shipped::scenarios().len() - 1);
+        assert_eq!(digests.len(), novamind_assets::scenarios().len() - 1);
     }
 
     #[test]

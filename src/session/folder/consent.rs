@@ -63,7 +63,7 @@ pub struct ConsentText {
 
 impl ConsentText {
     /// The text, and how to agree without a screen.
-    pub(in crate::session) fn explained(&self) -> String {
+    pub(crate) fn explained(&self) -> String {
         format!(
             "a baseline session needs the participant's agreement to {}: read it, then start with --consent. \
              Nothing was recorded",
@@ -71,7 +71,7 @@ impl ConsentText {
         )
     }
 
-    pub(in crate::session) fn digest(&self) -> String {
+    pub(crate) fn digest(&self) -> String {
         blake3::hash(self.text.as_bytes()).to_hex().to_string()
     }
 }

@@ -11,31 +11,31 @@ use super::durable::create_folder;
 use super::manifest::{FORMAT, Manifest, differences, same_world};
 use super::mode::Mode;
 use super::runs::{earlier_runs_of, label_of};
-use crate::database::{Location, Position, Projector};
-use crate::session::class::stamp::HandoutEntry;
-use crate::session::error::RunError;
-use crate::session::lesson::conduct::LessonEntry;
-use crate::session::model_voice::joining::model_of;
-use crate::session::model_voice::speaker::{ModelVoice, Speaker};
-use crate::session::play::advance::DayReport;
-use crate::session::play::history::History;
-use crate::session::play::personal_clock::PersonalClock;
-use crate::session::play::projection::Projection;
-use crate::session::play::recorder::Recorder;
-use crate::session::play::simulation::Simulation;
-use crate::session::play::surroundings::RunSurroundings;
-use crate::session::resume::sealing::SealKey;
-use crate::session::resume::unnamed::remove_leftovers;
-use crate::session::state::Session;
-use crate::session::study::answer_book::AnswerBook;
-use crate::session::study::rules::SessionRules;
-use crate::session::study::stamp::StudyStamp;
-use crate::session::trajectory::now;
-use crate::session::xray::breakpoint::list::Breakpoints;
-use crate::voice::model::settings::ModelSettings;
-use crate::world::MECHANICS;
-use crate::world::fault::Fault;
-use crate::world::params::Params;
+use crate::class::stamp::HandoutEntry;
+use crate::error::RunError;
+use crate::lesson::conduct::LessonEntry;
+use crate::model_voice::joining::model_of;
+use crate::model_voice::speaker::{ModelVoice, Speaker};
+use crate::play::advance::DayReport;
+use crate::play::history::History;
+use crate::play::personal_clock::PersonalClock;
+use crate::play::projection::Projection;
+use crate::play::recorder::Recorder;
+use crate::play::simulation::Simulation;
+use crate::play::surroundings::RunSurroundings;
+use crate::resume::sealing::SealKey;
+use crate::resume::unnamed::remove_leftovers;
+use crate::state::Session;
+use crate::study::answer_book::AnswerBook;
+use crate::study::rules::SessionRules;
+use crate::study::stamp::StudyStamp;
+use crate::trajectory::now;
+use crate::xray::breakpoint::list::Breakpoints;
+use novamind_database::{Location, Position, Projector};
+use novamind_voice::model::settings::ModelSettings;
+use novamind_world::MECHANICS;
+use novamind_world::fault::Fault;
+use novamind_world::params::Params;
 
 /// What a new run is to be. What is left out comes from the scenario, then from the defaults.
 #[derive(Debug, Clone, PartialEq)]
@@ -176,7 +176,7 @@ impl Session {
         }
     }
 
-    pub(in crate::session) fn begin(
+    pub(crate) fn begin(
         manifest: Manifest,
         params: Params,
         folder: Option<PathBuf>,
@@ -202,7 +202,7 @@ impl Session {
     }
 
     /// A session that nothing writes, and in which nothing has happened.
-    pub(in crate::session) fn assemble(
+    pub(crate) fn assemble(
         manifest: Manifest,
         folder: Option<PathBuf>,
         simulation: Simulation,
@@ -237,7 +237,7 @@ impl Session {
     }
 
     /// Hands the set-up of day 0 to the database.
-    pub(in crate::session) fn project_opening(&self) {
+    pub(crate) fn project_opening(&self) {
         self.projection.entries().write(|| self.entry());
         self.projection.commit(&self.position);
     }
@@ -338,7 +338,7 @@ fn no_model(problem: String) -> RunError {
 }
 
 /// Eight hexadecimal digits that no other run has, as good as certainly.
-pub(in crate::session) fn new_id() -> String {
+pub(crate) fn new_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     let moment =

@@ -7,14 +7,14 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::manifest::Manifest;
-use crate::session::error::RunError;
-use crate::session::trajectory::{Line, open_regular_file};
+use crate::error::RunError;
+use crate::trajectory::{Line, open_regular_file};
 
 /// What a run is, and what is wrong with its `run.toml`.
-pub(in crate::session) struct Derived {
-    pub(in crate::session) manifest: Manifest,
+pub(crate) struct Derived {
+    pub(crate) manifest: Manifest,
     /// Why `run.toml` has to be made anew; none where it says what the first line says.
-    pub(in crate::session) problem: Option<String>,
+    pub(crate) problem: Option<String>,
 }
 
 impl Derived {
@@ -23,7 +23,7 @@ impl Derived {
     ///
     /// # Errors
     /// The run is of another format or other mechanics; neither file can be read.
-    pub(in crate::session) fn of(folder: &Path) -> Result<Derived, RunError> {
+    pub(crate) fn of(folder: &Path) -> Result<Derived, RunError> {
         let path = folder.join("trajectory.jsonl");
         let own = Manifest::read(folder);
         let Some(line) = first_line(&path) else {
@@ -47,7 +47,7 @@ impl Derived {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub(in crate::session) fn restore(&self, folder: &Path) -> Result<Option<String>, RunError> {
+    pub(crate) fn restore(&self, folder: &Path) -> Result<Option<String>, RunError> {
         let Some(problem) = &self.problem else { return Ok(None) };
         self.manifest.write(folder)?;
         Ok(Some(format!("{problem} and was made anew from the first line of the trajectory.")))
@@ -99,7 +99,7 @@ fn unusable(error: &RunError) -> String {
 }
 
 /// What `run.toml` says otherwise than the first line, a sentence each; `told` is what the line says.
-pub(in crate::session) fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
+pub(crate) fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
     let own = match Manifest::read(folder) {
         Ok(own) => own,
         Err(error) => return vec![unusable(&error)],
@@ -136,12 +136,12 @@ fn differences(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::mode::Mode;
-    use crate::session::folder::runs::{find_run, list_runs};
-    use crate::session::playback::tests::recorded;
-    use crate::session::resume::open::Access;
-    use crate::session::resume::verify::verify;
-    use crate::session::state::Session;
+    use crate::folder::mode::Mode;
+    use crate::folder::runs::{find_run, list_runs};
+    use crate::playback::tests::recorded;
+    use crate::resume::open::Access;
+    use crate::resume::verify::verify;
+    use crate::state::Session;
 
     /// Opens a run whose `run.toml` holds a text, or is missing; returns what the person is told.
     fn opened(folder: &Path, text: Option<&str>) -> String {

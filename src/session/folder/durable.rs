@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-use crate::session::error::RunError;
-use crate::session::trajectory::append_to_regular_file;
+use crate::error::RunError;
+use crate::trajectory::append_to_regular_file;
 
 /// Writes a file so that after a crash it is the old one or the new one, never a part of it.
 ///
@@ -27,7 +27,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 ///
 /// # Errors
 /// The path is not a regular file, or the disk refuses.
-pub(in crate::session) fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+pub(crate) fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let is_new = !path.exists();
     let mut file = append_to_regular_file(path).map_err(RunError::io(path))?;
     file.write_all(bytes).and_then(|()| file.sync_all()).map_err(RunError::io(path))?;
@@ -38,7 +38,7 @@ pub(in crate::session) fn append_synced(path: &Path, bytes: &[u8]) -> Result<(),
 ///
 /// # Errors
 /// The disk refuses. The new folders are removed again, so that the next attempt creates and syncs them.
-pub(in crate::session) fn create_folder(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn create_folder(folder: &Path) -> Result<(), RunError> {
     let missing: Vec<&Path> =
         folder.ancestors().take_while(|own| !own.as_os_str().is_empty() && !own.exists()).collect();
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
@@ -56,7 +56,7 @@ pub fn folder_of(path: &Path) -> &Path {
 ///
 /// # Errors
 /// The disk refuses.
-pub(in crate::session) fn sync_folder(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn sync_folder(folder: &Path) -> Result<(), RunError> {
     #[cfg(test)]
     probe::note(folder).map_err(RunError::io(folder))?;
     if cfg!(unix) {
@@ -67,7 +67,7 @@ pub(in crate::session) fn sync_folder(folder: &Path) -> Result<(), RunError> {
 
 /// What tests see of folder syncs of their thread, and how they let them fail.
 #[cfg(test)]
-pub(in crate::session) mod probe {
+pub(crate) mod probe {
     use std::cell::{Cell, RefCell};
     use std::io;
     use std::path::{Path, PathBuf};
@@ -91,14 +91,14 @@ pub(in crate::session) mod probe {
     }
 
     /// Whether this thread has synced a directory entry after it was created.
-    pub(in crate::session) fn has_synced(path: &Path) -> bool {
+    pub(crate) fn has_synced(path: &Path) -> bool {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let folder = super::folder_of(path);
         SYNCED.with_borrow(|synced| synced.iter().any(|(own, names)| own == folder && names.contains(&name)))
     }
 
     /// Forgets the syncs of this thread, and lets those to come fail or succeed.
-    pub(in crate::session) fn reset(fails: bool) {
+    pub(crate) fn reset(fails: bool) {
         SYNCED.with_borrow_mut(Vec::clear);
         FAILS.set(fails);
     }

@@ -1,11 +1,11 @@
 //! The first line of a trajectory.
 
 use super::manifest::Manifest;
-use crate::session::trajectory::Record;
-use crate::session::trajectory::record::Start;
+use crate::trajectory::Record;
+use crate::trajectory::record::Start;
 
 /// The first line: what the manifest says.
-pub(in crate::session) fn start_of(manifest: &Manifest) -> Record {
+pub(crate) fn start_of(manifest: &Manifest) -> Record {
     let manifest = manifest.clone();
     Record::Start(Box::new(Start {
         format: manifest.format,

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use super::configuration::Configuration;
 use super::durable::{create_folder, write_whole};
-use crate::session::error::RunError;
+use crate::error::RunError;
 use novamind_base::nearest;
 
 /// Folder of a person's own queries.
@@ -255,9 +255,9 @@ pub fn save(configuration: &Configuration, name: &str, title: &str, sql: &str) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::create::NewRun;
-    use crate::session::state::Session;
-    use crate::session::trajectory::record::Via;
+    use crate::folder::create::NewRun;
+    use crate::state::Session;
+    use crate::trajectory::record::Via;
     use serde_json::json;
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::session::error::RunError;
+use crate::error::RunError;
 
 /// Whether a program plays the run at this moment.
 pub fn is_being_played(folder: &Path) -> bool {
@@ -18,12 +18,12 @@ pub fn is_being_played(folder: &Path) -> bool {
 pub const SERVER_FILE: &str = "server.json";
 
 /// Whether a server plays the run for a program at this moment; one that was killed leaves only its file.
-pub(in crate::session) fn is_served(folder: &Path) -> bool {
+pub(crate) fn is_served(folder: &Path) -> bool {
     folder.join(SERVER_FILE).exists() && is_being_played(folder)
 }
 
 /// Claims a run for writing; the claim ends with the program, however it ends.
-pub(in crate::session) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
+pub(crate) fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
     let path = folder.join("lock");
     let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
     let mut file = open.map_err(|error| match error.kind() {

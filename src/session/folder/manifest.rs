@@ -9,17 +9,17 @@ use super::configuration::Configuration;
 use super::consent::Consent;
 use super::durable::write_whole;
 use super::mode::Mode;
-use crate::session::class::stamp::HandoutStamp;
-use crate::session::error::RunError;
-use crate::session::lesson::stamp::LessonStamp;
-use crate::session::study::rules::{ResultsShown, SessionRules};
-use crate::session::study::stamp::{EarlierRun, StudyStamp};
-use crate::session::trajectory::record::Parent;
-use crate::session::trajectory::{Line, Record};
-use crate::voice::model::settings::ModelStamp;
-use crate::world::MECHANICS;
-use crate::world::fault::Fault;
-use crate::world::params::{ParameterError, ParameterSource, Params, shipped_sources};
+use crate::class::stamp::HandoutStamp;
+use crate::error::RunError;
+use crate::lesson::stamp::LessonStamp;
+use crate::study::rules::{ResultsShown, SessionRules};
+use crate::study::stamp::{EarlierRun, StudyStamp};
+use crate::trajectory::record::Parent;
+use crate::trajectory::{Line, Record};
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::MECHANICS;
+use novamind_world::fault::Fault;
+use novamind_world::params::{ParameterError, ParameterSource, Params, shipped_sources};
 
 /// Format of trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 2;
@@ -94,7 +94,7 @@ fn first_mechanics() -> u32 {
 
 impl Manifest {
     /// The name of the run as a number; 0 for a name that is none.
-    pub(in crate::session) fn number(&self) -> u32 {
+    pub(crate) fn number(&self) -> u32 {
         u32::from_str_radix(&self.id, 16).unwrap_or(0)
     }
 
@@ -210,7 +210,7 @@ impl Manifest {
     }
 
     /// The rules that the start of the run records; those of its mode, where it records none.
-    pub(in crate::session) fn recorded_rules(&self) -> SessionRules {
+    pub(crate) fn recorded_rules(&self) -> SessionRules {
         self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
     }
 
@@ -220,7 +220,7 @@ impl Manifest {
     }
 
     /// Whether the run is played by other rules than the shipped scenario whose name it has: parameters, or a fault.
-    pub(in crate::session) fn has_own_parameters(&self) -> bool {
+    pub(crate) fn has_own_parameters(&self) -> bool {
         let shipped = Configuration::shipped();
         let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
@@ -255,7 +255,7 @@ impl Manifest {
 }
 
 /// How many of a person's runs were in this world with this luck.
-pub(in crate::session) fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
+pub(crate) fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
     earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
@@ -283,7 +283,7 @@ fn differing(own: &Table, shipped: &Table) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
+    use crate::folder::configuration::Configuration;
 
     fn manifest(params: &Params) -> Manifest {
         Manifest {

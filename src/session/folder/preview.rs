@@ -9,8 +9,8 @@ use serde_json::Value;
 
 use super::derived::Derived;
 use super::runs::run_folder;
-use crate::session::error::RunError;
-use crate::session::trajectory::{Line, Record, open_regular_file};
+use crate::error::RunError;
+use crate::trajectory::{Line, Record, open_regular_file};
 
 /// The preview of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -76,10 +76,10 @@ impl RunPreview {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::state::Session;
-    use crate::session::trajectory::record::Via;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
+    use crate::state::Session;
+    use crate::trajectory::record::Via;
     use serde_json::json;
 
     #[test]

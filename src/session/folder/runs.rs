@@ -9,13 +9,13 @@ use super::derived::Derived;
 use super::lock::{is_served, lock_run};
 use super::manifest::Manifest;
 use super::mode::Mode;
-use crate::session::error::RunError;
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
-use crate::session::study::stamp::EarlierRun;
-use crate::session::trajectory::record::Ended;
-use crate::session::trajectory::{Line, Record};
-use crate::session::trajectory::{open_regular_file, policy_of, read_regular_file};
+use crate::error::RunError;
+use crate::resume::open::Access;
+use crate::state::Session;
+use crate::study::stamp::EarlierRun;
+use crate::trajectory::record::Ended;
+use crate::trajectory::{Line, Record};
+use crate::trajectory::{open_regular_file, policy_of, read_regular_file};
 
 /// A run in the list.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -70,7 +70,7 @@ pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
 }
 
 /// Folder, below that of all runs, in which participants have folders of their own.
-pub(in crate::session) const PARTICIPANTS: &str = "participants";
+pub(crate) const PARTICIPANTS: &str = "participants";
 
 /// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
 ///
@@ -88,15 +88,15 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
 }
 
 /// What the folder of a branch begins with that is not whole yet.
-pub(in crate::session) const UNNAMED: &str = ".branch-";
+pub(crate) const UNNAMED: &str = ".branch-";
 
 /// Whether a folder holds a branch that is not whole yet, or what is left of one: it is no run.
-pub(in crate::session) fn is_unnamed(folder: &Path) -> bool {
+pub(crate) fn is_unnamed(folder: &Path) -> bool {
     folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNNAMED))
 }
 
 /// Whose runs a folder holds, if it is a participant's own.
-pub(in crate::session) fn label_of(runs: &Path) -> Option<String> {
+pub(crate) fn label_of(runs: &Path) -> Option<String> {
     let own = runs.parent()?.file_name()? == PARTICIPANTS;
     runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
 }
@@ -229,7 +229,7 @@ fn unreadable(id: String, problem: String) -> RunSummary {
 ///
 /// # Errors
 /// The file cannot be read, or holds no line: then nobody knows how far the run has come.
-pub(in crate::session) fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
+pub(crate) fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
         let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -319,7 +319,7 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
 
 /// What a person has played before: runs of their label in the folder of runs and in those of its participants; of
 /// somebody without a label those in this very folder.
-pub(in crate::session) fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
+pub(crate) fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let whole = entries.map(|entry| entry.path()).filter(|folder| !is_unnamed(folder));
@@ -342,8 +342,8 @@ pub(in crate::session) fn earlier_runs_of(runs: &Path, participant: Option<&str>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
 
     #[test]
     fn participants_have_folders_and_labels_of_their_own() {

@@ -1,15 +1,15 @@
 //! Trying a step of a lesson again, from its beginning, in a run of its own.
 
 use super::conduct::LessonEntry;
-use crate::session::class::stamp::HandoutEntry;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::mode::Mode;
-use crate::session::resume::branch::branch_of_lesson;
-use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
-use crate::session::trajectory::record::{LessonEvent, LessonNote};
-use crate::tools::Refusal;
+use crate::class::stamp::HandoutEntry;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::mode::Mode;
+use crate::resume::branch::branch_of_lesson;
+use crate::state::Session;
+use crate::trajectory::Trajectory;
+use crate::trajectory::record::{LessonEvent, LessonNote};
+use novamind_tools::Refusal;
 
 impl Session {
     /// Tries a step again from its beginning, counted from 0: a run of its own, which counts the try.
@@ -27,7 +27,7 @@ impl Session {
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be tried again"));
         };
-        let refused = |error: crate::session::error::RunError| Refusal::new("not_saved", error.to_string());
+        let refused = |error: crate::error::RunError| Refusal::new("not_saved", error.to_string());
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(refused)?;
         let begun = standing.own_part().weeks_of(step).0 * self.simulation.params.run.days_per_week;
         let mut again = branch_of_lesson(folder, &self.manifest, &trajectory, begun)?;

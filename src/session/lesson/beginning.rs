@@ -8,20 +8,20 @@ use super::conduct::LessonEntry;
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
-use crate::session::error::RunError;
-use crate::session::play::act::not_saved;
-use crate::session::play::advance::DayReport;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
-use crate::session::trajectory::{Line, Record, Trajectory};
-use crate::tools::Refusal;
+use crate::error::RunError;
+use crate::play::act::not_saved;
+use crate::play::advance::DayReport;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
+use crate::trajectory::{Line, Record, Trajectory};
+use novamind_tools::Refusal;
 
 impl Session {
     /// Plays the start of a lesson, up to the moment at which the student sees the company; tells each day of it.
     ///
     /// # Errors
     /// A call of the start is refused.
-    pub(in crate::session) fn begin_lesson(
+    pub(crate) fn begin_lesson(
         &mut self,
         entry: &LessonEntry,
         tell: &mut dyn FnMut(&DayReport<'_>),
@@ -92,11 +92,7 @@ impl Session {
     ///
     /// # Errors
     /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
-    pub(in crate::session) fn resume_lesson(
-        &mut self,
-        folder: &Path,
-        lines: &[Line],
-    ) -> Result<(), RunError> {
+    pub(crate) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
         let Some(stamp) = self.manifest.lesson.clone() else { return Ok(()) };
         let lesson = Lesson::of_run(folder, &stamp.name)?;
         let part = stamp.part as usize;
@@ -128,7 +124,7 @@ impl Session {
     ///
     /// # Errors
     /// The start of the lesson is refused.
-    pub(in crate::session) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
+    pub(crate) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
         let is_open = self.recorder.is_some() && self.history.ended.is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
         let Some(step) = self.lesson_step().filter(|step| !standing.has_begun(*step)) else { return Ok(()) };

@@ -11,13 +11,13 @@ use super::definition::{
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
 use super::standing::LessonStanding;
-use crate::session::error::RunError;
-use crate::session::folder::create::NewRun;
-use crate::session::play::act::not_saved;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
-use crate::session::trajectory::{Durability, Record};
-use crate::tools::{Refusal, ToolId};
+use crate::error::RunError;
+use crate::folder::create::NewRun;
+use crate::play::act::not_saved;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
+use crate::trajectory::{Durability, Record};
+use novamind_tools::{Refusal, ToolId};
 
 /// Which lesson a new run is to be a part of.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +32,13 @@ pub struct LessonEntry {
 
 impl LessonEntry {
     /// What the first line says of it.
-    pub(in crate::session) fn stamp(&self) -> LessonStamp {
+    pub(crate) fn stamp(&self) -> LessonStamp {
         let (name, digest) = (self.lesson.name.clone(), self.lesson.digest.clone());
         LessonStamp { name, digest, part: self.part as u32 + 1 }
     }
 
     /// A new run with the company of the lesson.
-    pub(in crate::session) fn terms_of(&self, new: NewRun) -> NewRun {
+    pub(crate) fn terms_of(&self, new: NewRun) -> NewRun {
         let part = &self.lesson.plan.parts[self.part];
         let quiet = (!part.surges).then(|| ("demand_surge.probability".to_owned(), "0.0".to_owned()));
         let own = part.parameters.iter().map(|(key, value)| (key.clone(), value.to_string()));
@@ -66,12 +66,12 @@ impl Session {
     }
 
     /// Whole weeks that have passed.
-    pub(in crate::session) fn weeks_passed(&self) -> u32 {
+    pub(crate) fn weeks_passed(&self) -> u32 {
         self.simulation.world.day / self.simulation.params.run.days_per_week
     }
 
     /// Refuses a tool that the lesson does not have.
-    pub(in crate::session) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
+    pub(crate) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
         let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
         standing.map_or(Ok(()), |standing| standing.refuse_tool(tool))
     }
@@ -91,7 +91,7 @@ impl Session {
     }
 
     /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
-    pub(in crate::session) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
+    pub(crate) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
         let Some(step) = self.lesson_step() else {
             return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
@@ -105,7 +105,7 @@ impl Session {
     }
 
     /// What the lesson does by itself before a week.
-    pub(in crate::session) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
+    pub(crate) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
         if !self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity()) {
             return Ok(());
         }
@@ -118,7 +118,7 @@ impl Session {
 
     /// Judges what a week came to, before the line that ends the run. A step that is over is measured and the next begins;
     /// after the last one the run is over. What is judged already stays as it is.
-    pub(in crate::session) fn settle_lesson(&mut self) {
+    pub(crate) fn settle_lesson(&mut self) {
         let is_open = self.history.ended.is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
         let is_over = self.simulation.world.is_over(&self.simulation.params);

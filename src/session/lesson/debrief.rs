@@ -12,15 +12,15 @@ use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
-use crate::session::counterfactual::companies::highest_named;
-use crate::session::figures::journal::JournalEntry;
-use crate::session::figures::week::WeekFigures;
-use crate::session::state::{AnswersCompanies, Session};
-use crate::session::trajectory::record::Ended;
-use crate::session::why::WeekFigure;
-use crate::tools::{Refusal, ToolId};
-use crate::voice::CompanyNames;
-use crate::world::params::Params;
+use crate::counterfactual::companies::highest_named;
+use crate::figures::journal::JournalEntry;
+use crate::figures::week::WeekFigures;
+use crate::state::{AnswersCompanies, Session};
+use crate::trajectory::record::Ended;
+use crate::why::WeekFigure;
+use novamind_tools::{Refusal, ToolId};
+use novamind_voice::CompanyNames;
+use novamind_world::params::Params;
 
 /// A part of a lesson that was played: what its debrief is found from.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value};
 
-use crate::session::figures::journal::JournalEntry;
-use crate::session::state::Session;
-use crate::tools::{Kind, ToolId};
+use crate::figures::journal::JournalEntry;
+use crate::state::Session;
+use novamind_tools::{Kind, ToolId};
 
 /// What holds in a week, and what was done at its start.
 #[derive(Debug, Clone, PartialEq)]

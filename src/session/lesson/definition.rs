@@ -7,7 +7,7 @@ use toml::Value;
 
 use super::lesson_call::LessonCall;
 use super::measurement::{Measurement, MeasurementFile};
-use crate::tools::ToolId;
+use novamind_tools::ToolId;
 
 /// What the file of a lesson says.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -129,7 +129,7 @@ pub enum CapacityMover {
 }
 
 fn default_scenario() -> String {
-    crate::session::folder::configuration::DEFAULT_SCENARIO.to_owned()
+    crate::folder::configuration::DEFAULT_SCENARIO.to_owned()
 }
 
 /// A step of a lesson: a task over some weeks.

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use crate::tools::{Language, ToolId, find};
+use novamind_tools::{Language, ToolId, find};
 
 /// A call as the file of a lesson writes it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use super::definition::LessonPlan;
 use super::soundness::unsound;
-use crate::notation::{cents, grouped, percent, short_dollars};
-use crate::session::error::RunError;
-use crate::session::folder::durable::write_whole;
-use crate::session::lesson::definition::MeasuredFigure;
-use crate::session::lesson::measurement::NumberSource;
-use crate::session::why::FigureUnit;
-use crate::world::params::{ParameterError, ParameterSource};
+use crate::error::RunError;
+use crate::folder::durable::write_whole;
+use crate::lesson::definition::MeasuredFigure;
+use crate::lesson::measurement::NumberSource;
+use crate::why::FigureUnit;
+use novamind_base::notation::{cents, grouped, percent, short_dollars};
+use novamind_world::params::{ParameterError, ParameterSource};
 
 /// Name of the plan in the folder of a run.
-pub(in crate::session) const PLAN_FILE: &str = "lesson.toml";
+pub(crate) const PLAN_FILE: &str = "lesson.toml";
 /// Name of the texts in the folder of a run.
-pub(in crate::session) const TEXTS_FILE: &str = "lesson.md";
+pub(crate) const TEXTS_FILE: &str = "lesson.md";
 
 /// A lesson.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +88,7 @@ impl Lesson {
     ///
     /// # Errors
     /// A file is missing or wrong.
-    pub(in crate::session) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+    pub(crate) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
         let text = |file| {
             let path = folder.join(file);
             std::fs::read_to_string(&path).map_err(RunError::io(&path))
@@ -102,16 +102,12 @@ impl Lesson {
     ///
     /// # Errors
     /// The first thing that is wrong, with line and key.
-    pub(in crate::session) fn of_texts(
-        name: &str,
-        plan: ParameterSource,
-        texts: String,
-    ) -> Result<Lesson, RunError> {
+    pub(crate) fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
         Ok(Lesson::read(name, plan, texts, false)?)
     }
 
     /// Its plan and its texts, as they were written.
-    pub(in crate::session) fn sources(&self) -> (&str, &str) {
+    pub(crate) fn sources(&self) -> (&str, &str) {
         (&self.plan_text, &self.texts)
     }
 
@@ -136,7 +132,7 @@ impl Lesson {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub(in crate::session) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
+    pub(crate) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
         write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
         write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }

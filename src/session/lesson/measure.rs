@@ -1,9 +1,9 @@
 //! Measuring: the value of a figure or a statement over weeks of a run.
 
 use super::measurement::{Measurement, NumberSource, Over};
-use crate::database::Cell;
-use crate::session::figures::week::WeekFigures;
-use crate::session::state::Session;
+use crate::figures::week::WeekFigures;
+use crate::state::Session;
+use novamind_database::Cell;
 
 impl Measurement {
     /// Its value over all weeks that a student could decide of, up to the present one.
@@ -19,7 +19,7 @@ impl Measurement {
     ///
     /// # Errors
     /// The statement is refused, or answers with something else than one number.
-    pub(in crate::session) fn of(&self, session: &mut Session, from_day: u32) -> Result<Option<f64>, String> {
+    pub(crate) fn of(&self, session: &mut Session, from_day: u32) -> Result<Option<f64>, String> {
         let weeks: Vec<WeekFigures> =
             session.weeks().iter().copied().filter(|week| week.day > from_day).collect();
         let value: Box<dyn Fn(&WeekFigures) -> f64> = match &self.source {

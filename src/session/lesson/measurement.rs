@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-use crate::session::figures::week::WeekFigures;
-use crate::session::why::{FigureUnit, WeekFigure};
+use crate::figures::week::WeekFigures;
+use crate::why::{FigureUnit, WeekFigure};
 
 /// What is measured over some weeks.
 #[derive(Debug, Clone, PartialEq)]

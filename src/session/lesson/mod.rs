@@ -6,20 +6,20 @@
 
 mod again;
 mod beginning;
-pub(in crate::session) mod conduct;
-pub(in crate::session) mod debrief;
-pub(in crate::session) mod decisions;
-pub(in crate::session) mod definition;
-pub(in crate::session) mod lesson_call;
-pub(in crate::session) mod lesson_file;
+pub(crate) mod conduct;
+pub(crate) mod debrief;
+pub(crate) mod decisions;
+pub(crate) mod definition;
+pub(crate) mod lesson_call;
+pub(crate) mod lesson_file;
 mod measure;
-pub(in crate::session) mod measurement;
-pub(in crate::session) mod over;
-pub(in crate::session) mod page;
-pub(in crate::session) mod reference;
-pub(in crate::session) mod shelf;
-pub(in crate::session) mod soundness;
-pub(in crate::session) mod stamp;
-pub(in crate::session) mod standing;
+pub(crate) mod measurement;
+pub(crate) mod over;
+pub(crate) mod page;
+pub(crate) mod reference;
+pub(crate) mod shelf;
+pub(crate) mod soundness;
+pub(crate) mod stamp;
+pub(crate) mod standing;
 #[cfg(test)]
 mod tests;

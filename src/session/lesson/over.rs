@@ -4,14 +4,14 @@ use std::path::Path;
 
 use super::lesson_file::Lesson;
 use super::stamp::LessonStamp;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::last_lines;
-use crate::session::trajectory::Record;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::last_lines;
+use crate::trajectory::Record;
 
 /// Whether the last part of the lesson that a run belongs to is over: in this run, or in another one that the same person has
 /// in the folder of runs. True of runs that belong to no lesson; false where the lesson that is kept with the run is another.
-pub(in crate::session) fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
+pub(crate) fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     let Some(stamp) = &manifest.lesson else { return true };
     let Some(folder) = folder else { return false };
     let lesson = Lesson::of_run(folder, &stamp.name).ok().filter(|lesson| lesson.digest == stamp.digest);

@@ -3,9 +3,9 @@
 use super::debrief::DebriefStep;
 use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
-use crate::session::state::Session;
-use crate::session::trajectory::record::LessonNote;
-use crate::tools::ToolId;
+use crate::state::Session;
+use crate::trajectory::record::LessonNote;
+use novamind_tools::ToolId;
 
 /// What a student sees of a lesson.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,13 +7,13 @@ use super::definition::{GoalBound, GuessForm, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
-use crate::session::error::RunError;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::NewRun;
-use crate::session::folder::mode::Mode;
-use crate::session::state::{AnswersCompanies, Session};
-use crate::session::trajectory::record::Via;
-use crate::tools::Refusal;
+use crate::error::RunError;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::NewRun;
+use crate::folder::mode::Mode;
+use crate::state::{AnswersCompanies, Session};
+use crate::trajectory::record::Via;
+use novamind_tools::Refusal;
 
 /// A play of a part that is done by its file.
 #[derive(Debug, Clone, PartialEq)]

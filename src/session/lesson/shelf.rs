@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use super::lesson_file::Lesson;
-use crate::session::error::RunError;
-use crate::session::folder::configuration::Configuration;
-use crate::shipped;
-use crate::world::params::ParameterSource;
+use crate::error::RunError;
+use crate::folder::configuration::Configuration;
+use novamind_world::params::ParameterSource;
 
 impl Configuration {
     /// The file of a lesson of this person's own; none where there is no folder of configuration.
@@ -17,7 +16,7 @@ impl Configuration {
     /// Names of all lessons: the shipped ones in the order of the course, then this person's.
     pub fn lessons(&self) -> Vec<String> {
         let mut names: Vec<String> =
-            shipped::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
+            novamind_assets::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
         let own: Vec<String> = self.names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
         names.extend(own);
         names
@@ -32,12 +31,12 @@ impl Configuration {
             let texts = self.file(format!("lessons/{name}.md"))?.map(|texts| texts.text).unwrap_or_default();
             return Ok(Lesson::read(name, plan, texts, false)?);
         }
-        let found = shipped::lessons().into_iter().find(|(shipped, _)| *shipped == name);
+        let found = novamind_assets::lessons().into_iter().find(|(shipped, _)| *shipped == name);
         let Some((_, plan)) = found else {
             return Err(RunError::NoLesson { name: name.to_owned(), known: self.lessons().join(", ") });
         };
         let plan = ParameterSource { name: format!("configs/lessons/{name}.toml"), text: plan.to_owned() };
-        let texts = shipped::lesson_texts(name).unwrap_or_default().to_owned();
+        let texts = novamind_assets::lesson_texts(name).unwrap_or_default().to_owned();
         Ok(Lesson::read(name, plan, texts, true)?)
     }
 }

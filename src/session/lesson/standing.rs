@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::definition::{GuessForm, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
-use crate::session::trajectory::record::{Activity, LessonEvent, LessonNote};
-use crate::session::trajectory::{Line, Record};
-use crate::tools::{Refusal, ToolId};
+use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::trajectory::{Line, Record};
+use novamind_tools::{Refusal, ToolId};
 
 /// A lesson that is played, and what happened in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,7 @@ pub struct LessonStanding {
     /// The part that this run is, counted from 0.
     pub part: usize,
     /// Whether goals and pitfalls are looked at.
-    pub(in crate::session) is_judged: bool,
+    pub(crate) is_judged: bool,
     /// What happened, in order, each with its day.
     pub notes: Vec<(u32, LessonNote)>,
 }
@@ -48,7 +48,7 @@ impl LessonPart {
 
 impl LessonStanding {
     /// A lesson whose record says this.
-    pub(in crate::session) fn of<'a>(
+    pub(crate) fn of<'a>(
         lesson: Arc<Lesson>,
         part: usize,
         lines: impl IntoIterator<Item = &'a Line>,
@@ -79,7 +79,7 @@ impl LessonStanding {
     ///
     /// # Errors
     /// `not_in_this_lesson`.
-    pub(in crate::session) fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
+    pub(crate) fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
         if self.own_part().moves_capacity() && tool == ToolId::SetCapacityTier {
             let message = "capacity follows usage by itself in this lesson";
             return Err(Refusal::new("not_in_this_lesson", message));
@@ -98,7 +98,7 @@ impl LessonStanding {
     ///
     /// # Errors
     /// `guess_first`.
-    pub(in crate::session) fn refuse_before_guess(&self, weeks: u32) -> Result<(), Refusal> {
+    pub(crate) fn refuse_before_guess(&self, weeks: u32) -> Result<(), Refusal> {
         let step = self.own_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
         let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
         match guess {

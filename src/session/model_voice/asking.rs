@@ -3,23 +3,23 @@
 
 use super::scores::is_of;
 use super::speaker::Reply;
-use crate::database::Entry;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{
+use crate::state::Session;
+use crate::trajectory::record::{
     AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts,
 };
-use crate::session::trajectory::{Durability, Record};
-use crate::tools::PublicPost;
-use crate::voice::model::ModelPrompt;
-use crate::voice::model::scoring::{self, PostForReaders};
-use crate::voice::model::wording::{self, BuiltInPost, MOST_POSTS};
-use crate::world::identifiers::Group;
-use crate::world::params::PostJudge;
+use crate::trajectory::{Durability, Record};
+use novamind_database::Entry;
+use novamind_tools::PublicPost;
+use novamind_voice::model::ModelPrompt;
+use novamind_voice::model::scoring::{self, PostForReaders};
+use novamind_voice::model::wording::{self, BuiltInPost, MOST_POSTS};
+use novamind_world::identifiers::Group;
+use novamind_world::params::PostJudge;
 
 impl Session {
     /// Asks for scores of the player's posts that are judged next and have none on record. What is not on the disk afterwards
     /// was never said: then the built-in judge judges.
-    pub(in crate::session) fn ask_readers(&mut self) {
+    pub(crate) fn ask_readers(&mut self) {
         let is_judged = self.simulation.params.fidelity.post_judge != PostJudge::None;
         let can_ask = self.voice.speaker.is_some() || !self.voice.inherited.is_empty();
         if self.recorder.is_none() || !is_judged || !can_ask {
@@ -99,7 +99,7 @@ impl Session {
     }
 
     /// Asks for the newest posts after a day in other words. Without an answer all of them keep the words they have.
-    pub(in crate::session) fn word_days_after(&mut self, day: u32) {
+    pub(crate) fn word_days_after(&mut self, day: u32) {
         let Some(speaker) = self.voice.speaker.as_mut().filter(|speaker| speaker.settings.words) else {
             return;
         };

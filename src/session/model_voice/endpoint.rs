@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::voice::model::ModelPrompt;
-use crate::voice::model::settings::ModelSettings;
+use novamind_voice::model::ModelPrompt;
+use novamind_voice::model::settings::ModelSettings;
 
 #[cfg(feature = "server")]
 pub(super) use over_http::Endpoint;
@@ -16,7 +16,7 @@ mod over_http {
     use ureq::{Agent, Error};
 
     use super::{Duration, ModelPrompt, ModelSettings};
-    use crate::notation::printable;
+    use novamind_base::notation::printable;
 
     /// Bytes of an answer.
     const MOST_BYTES: u64 = 1024 * 1024;
@@ -24,7 +24,7 @@ mod over_http {
     const TEMPERATURE: f64 = 0.3;
 
     /// Where a model answers.
-    pub(in crate::session) struct Endpoint {
+    pub(crate) struct Endpoint {
         agent: Agent,
         address: String,
         model: String,
@@ -36,7 +36,7 @@ mod over_http {
         ///
         /// # Errors
         /// The environment does not hold the key.
-        pub(in crate::session) fn open(settings: &ModelSettings) -> Result<Endpoint, String> {
+        pub(crate) fn open(settings: &ModelSettings) -> Result<Endpoint, String> {
             let key = settings.key_variable.as_deref().map(key_in).transpose()?;
             let configuration = Agent::config_builder()
                 .http_status_as_error(false)
@@ -55,11 +55,7 @@ mod over_http {
         ///
         /// # Errors
         /// Why there is no answer, in words.
-        pub(in crate::session) fn ask(
-            &self,
-            prompt: &ModelPrompt,
-            within: Duration,
-        ) -> Result<String, String> {
+        pub(crate) fn ask(&self, prompt: &ModelPrompt, within: Duration) -> Result<String, String> {
             let body = json!({
                 "model": self.model,
                 "messages": [
@@ -109,14 +105,14 @@ mod without {
     use super::{Duration, ModelPrompt, ModelSettings};
 
     /// Where a model would answer.
-    pub(in crate::session) struct Endpoint;
+    pub(crate) struct Endpoint;
 
     impl Endpoint {
         /// This build asks nobody.
         ///
         /// # Errors
         /// Always.
-        pub(in crate::session) fn open(_: &ModelSettings) -> Result<Endpoint, String> {
+        pub(crate) fn open(_: &ModelSettings) -> Result<Endpoint, String> {
             Err("this program was built without the feature server, and cannot ask a language model"
                 .to_owned())
         }
@@ -125,7 +121,7 @@ mod without {
         ///
         /// # Errors
         /// Always.
-        pub(in crate::session) fn ask(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
+        pub(crate) fn ask(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
             Err("this program cannot ask".to_owned())
         }
     }

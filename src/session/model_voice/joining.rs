@@ -3,19 +3,19 @@
 use std::path::Path;
 
 use super::speaker::Speaker;
-use crate::session::error::RunError;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::mode::Mode;
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
-use crate::voice::model::settings::ModelSettings;
+use crate::error::RunError;
+use crate::folder::configuration::Configuration;
+use crate::folder::mode::Mode;
+use crate::resume::open::Access;
+use crate::state::Session;
+use novamind_voice::model::settings::ModelSettings;
 
 /// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that
 /// was named.
 ///
 /// # Errors
 /// It must not have the one that was named.
-pub(in crate::session) fn model_of(
+pub(crate) fn model_of(
     mode: Mode,
     study: Option<Option<&ModelSettings>>,
     named: Option<&ModelSettings>,

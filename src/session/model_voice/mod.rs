@@ -6,9 +6,9 @@
 
 mod asking;
 mod endpoint;
-pub(in crate::session) mod joining;
-pub(in crate::session) mod scores;
-pub(in crate::session) mod speaker;
+pub(crate) mod joining;
+pub(crate) mod scores;
+pub(crate) mod speaker;
 #[cfg(all(test, feature = "server"))]
 mod stub;
 mod telling_again;

@@ -1,18 +1,18 @@
 //! What a language model made of the player's posts, as far as the record tells.
 
-use crate::session::trajectory::record::JudgedPost;
-use crate::voice::judge::Judgement;
-use crate::world::identifiers::Group;
-use crate::world::market::social::own::OwnPost;
+use crate::trajectory::record::JudgedPost;
+use novamind_voice::judge::Judgement;
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::own::OwnPost;
 
 /// Scores by post. A post is known by its day, its text and what it answers, so that scores belong to it in a branch, too,
 /// where posts have other numbers.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct RecordedScores(Vec<JudgedPost>);
+pub(crate) struct RecordedScores(Vec<JudgedPost>);
 
 impl RecordedScores {
     /// Takes in what a line says.
-    pub(in crate::session) fn take_in(&mut self, judged: JudgedPost) {
+    pub(crate) fn take_in(&mut self, judged: JudgedPost) {
         self.0.push(judged);
     }
 
@@ -29,7 +29,7 @@ impl RecordedScores {
     }
 
     /// Judgements of a post, with the scores that were recorded in place of those of the built-in judge.
-    pub(in crate::session) fn over(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
+    pub(crate) fn over(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
         let Some(judged) = self.of(post) else { return judgements };
         let scored = |own: Judgement| match judged.scores.iter().find(|score| score.group == own.group) {
             Some(score) => own.scored_by_model(score),

@@ -4,40 +4,40 @@
 use std::time::{Duration, Instant};
 
 use super::endpoint::Endpoint;
-use crate::session::trajectory::record::JudgedPost;
-use crate::voice::model::ModelPrompt;
-use crate::voice::model::settings::ModelSettings;
+use crate::trajectory::record::JudgedPost;
+use novamind_voice::model::ModelPrompt;
+use novamind_voice::model::settings::ModelSettings;
 
 /// With less time than this left nobody is asked.
 const LEAST: Duration = Duration::from_millis(50);
 
 /// What an open run has besides the built-in voice: nothing, as a rule.
 #[derive(Default)]
-pub(in crate::session) struct ModelVoice {
+pub(crate) struct ModelVoice {
     /// The model.
-    pub(in crate::session) speaker: Option<Speaker>,
+    pub(crate) speaker: Option<Speaker>,
     /// What a model said in another run of which this one takes over decisions.
-    pub(in crate::session) inherited: Vec<JudgedPost>,
+    pub(crate) inherited: Vec<JudgedPost>,
 }
 
 impl ModelVoice {
     /// A new week has all its time.
-    pub(in crate::session) fn begin_week(&mut self) {
+    pub(crate) fn begin_week(&mut self) {
         if let Some(speaker) = &mut self.speaker {
             speaker.left = Duration::from_secs(u64::from(speaker.settings.seconds_a_week));
         }
     }
 
     /// What the player has to know and was not told yet.
-    pub(in crate::session) fn take_notice(&mut self) -> Option<String> {
+    pub(crate) fn take_notice(&mut self) -> Option<String> {
         self.speaker.as_mut()?.notice.take()
     }
 }
 
 /// A model that can be asked.
-pub(in crate::session) struct Speaker {
+pub(crate) struct Speaker {
     /// Which, where, and what for.
-    pub(in crate::session) settings: ModelSettings,
+    pub(crate) settings: ModelSettings,
     endpoint: Endpoint,
     /// What this week may still wait.
     left: Duration,
@@ -59,7 +59,7 @@ impl Speaker {
     ///
     /// # Errors
     /// It cannot be asked: its key is missing, or this build asks nobody.
-    pub(in crate::session) fn open(settings: &ModelSettings) -> Result<Speaker, String> {
+    pub(crate) fn open(settings: &ModelSettings) -> Result<Speaker, String> {
         let endpoint = Endpoint::open(settings)?;
         let left = Duration::from_secs(u64::from(settings.seconds_a_week));
         Ok(Speaker { settings: settings.clone(), endpoint, left, is_failing: false, notice: None })

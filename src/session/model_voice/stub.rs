@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::session::folder::configuration::Configuration;
-use crate::voice::model::settings::ModelSettings;
+use crate::folder::configuration::Configuration;
+use novamind_voice::model::settings::ModelSettings;
 
 /// How it answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

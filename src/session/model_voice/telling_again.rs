@@ -1,16 +1,16 @@
 //! What a model said, taken from the record: nobody is asked again.
 
-use crate::session::state::Session;
-use crate::session::trajectory::record::VoiceAnswer;
-use crate::voice::model::scoring::ModelScore;
-use crate::voice::model::wording;
+use crate::state::Session;
+use crate::trajectory::record::VoiceAnswer;
+use novamind_voice::model::scoring::ModelScore;
+use novamind_voice::model::wording;
 
 impl Session {
     /// Applies a `voice` line again.
     ///
     /// # Errors
     /// The run has no model that could have said it, or none could have.
-    pub(in crate::session) fn replay_voice(&mut self, said: &VoiceAnswer) -> Result<(), String> {
+    pub(crate) fn replay_voice(&mut self, said: &VoiceAnswer) -> Result<(), String> {
         let Some(model) = &self.manifest.voice else {
             return Err("the run has no language model: the line was put in".to_owned());
         };

@@ -6,21 +6,21 @@ use serde_json::{Map, Value};
 
 use super::irrevocable::Irrevocable;
 use super::this_week::Step;
-use crate::notation::plain_numbers;
-use crate::session::error::RunError;
-use crate::session::figures::changes::{Change, changes, daily_cost};
-use crate::session::figures::journal::JournalEntry;
-use crate::session::figures::research_outlook::ResearchOutlook;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
-use crate::session::trajectory::{Durability, Record};
-use crate::tools::{
+use crate::error::RunError;
+use crate::figures::changes::{Change, changes, daily_cost};
+use crate::figures::journal::JournalEntry;
+use crate::figures::research_outlook::ResearchOutlook;
+use crate::state::Session;
+use crate::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
+use crate::trajectory::{Durability, Record};
+use novamind_base::notation::plain_numbers;
+use novamind_tools::{
     Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, Tool, ToolId, View,
     bounds, find,
 };
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::settings::Settings;
-use crate::world::state::World;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::settings::Settings;
+use novamind_world::state::World;
 
 /// What a call would do.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,11 +41,11 @@ pub struct Preview {
 
 /// What the line of a call says besides the call and its outcome.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Marks {
+pub(crate) struct Marks {
     /// What it does to an earlier call.
-    pub(in crate::session) reversal: Option<Reversal>,
+    pub(crate) reversal: Option<Reversal>,
     /// The id that the program gave it.
-    pub(in crate::session) request: Option<RequestId>,
+    pub(crate) request: Option<RequestId>,
 }
 
 /// An accepted call whose draws are known.
@@ -127,7 +127,7 @@ impl Session {
         self.call_recorded(tool.as_ref(), arguments, via, Marks::default())
     }
 
-    pub(in crate::session) fn call_recorded(
+    pub(crate) fn call_recorded(
         &mut self,
         name: &str,
         arguments: &Value,
@@ -234,19 +234,19 @@ impl Session {
     }
 
     /// Running costs that follow from settings alone, dollars a day.
-    pub(in crate::session) fn daily_cost(&self, settings: &Settings) -> f64 {
+    pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
         daily_cost(
             settings,
             f64::from(self.simulation.params.capacity(settings.core.capacity_tier).cost_per_day),
         )
     }
 
-    pub(in crate::session) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
+    pub(crate) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
         find(name).ok_or_else(|| {
             let message = match name {
                 "" => "the call names no tool; novamind tools lists them".to_owned(),
                 name => {
-                    let near = crate::tools::catalogue::nearest(name);
+                    let near = novamind_tools::catalogue::nearest(name);
                     let help = match near.is_empty() {
                         true => String::new(),
                         false => format!("; did you mean {}?", near.join(" or ")),
@@ -289,23 +289,23 @@ impl Session {
     }
 
     /// Refuses what acts once the run is over, and in a run that is only read.
-    pub(in crate::session) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
+    pub(crate) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
         if !kind.acts() {
             return Ok(());
         }
         if let Some(ended) = self.history.ended {
             let day = self.simulation.world.day;
             let how = match ended {
-                crate::session::trajectory::record::Ended::Horizon => {
+                crate::trajectory::record::Ended::Horizon => {
                     format!("it reached its last day, {day}")
                 }
-                crate::session::trajectory::record::Ended::Bankruptcy => {
+                crate::trajectory::record::Ended::Bankruptcy => {
                     format!("the company went bankrupt on day {day}")
                 }
-                crate::session::trajectory::record::Ended::Abandoned => {
+                crate::trajectory::record::Ended::Abandoned => {
                     format!("it was given up on day {day}")
                 }
-                crate::session::trajectory::record::Ended::Lesson => {
+                crate::trajectory::record::Ended::Lesson => {
                     format!("its lesson was over on day {day}")
                 }
             };
@@ -325,7 +325,7 @@ impl Session {
     }
 
     /// Records a refused call that no tool received, for instance a refused week.
-    pub(in crate::session) fn record_refusal(
+    pub(crate) fn record_refusal(
         &mut self,
         tool: &str,
         arguments: &Value,
@@ -362,7 +362,7 @@ impl Session {
 }
 
 /// A refusal that says the disk did not take a line.
-pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
+pub(crate) fn not_saved(error: RunError) -> Refusal {
     if matches!(error, RunError::Astray { .. }) {
         return Refusal::new("not_saved", error.to_string());
     }
@@ -395,7 +395,7 @@ impl Session {
     ///
     /// # Errors
     /// What speaks against it now: the line was changed, or the program is another.
-    pub(in crate::session) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
+    pub(crate) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.known().ok_or("the call names an unknown tool")?.tool();
         let (given, planned) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let Planned { command, change, row, reply } = planned;
@@ -413,7 +413,7 @@ impl Session {
     }
 
     /// The world, for the parts of the session that build readings from it.
-    pub(in crate::session) fn world(&self) -> &World {
+    pub(crate) fn world(&self) -> &World {
         &self.simulation.world
     }
 }

@@ -9,18 +9,18 @@ use super::facts_chain::StateHash;
 use super::recorder::Recorder;
 use super::simulation::Simulation;
 use super::week::Week;
-use crate::database::{Entry, ForecastRow, ProjectionError};
-use crate::session::figures::journal::JournalEntry;
-use crate::session::figures::week::{Forecasts, WeekFigures};
-use crate::session::resume::snapshot::WEEKS_BETWEEN;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
-use crate::session::trajectory::{Durability, Record, seconds};
-use crate::session::xray::last_day::Xray;
-use crate::tools::{self, Kind, Refusal, ToolId};
-use crate::world::events::DayFigures;
-use crate::world::held::Held;
-use crate::world::market::surges::week_end;
+use crate::figures::journal::JournalEntry;
+use crate::figures::week::{Forecasts, WeekFigures};
+use crate::resume::snapshot::WEEKS_BETWEEN;
+use crate::state::Session;
+use crate::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
+use crate::trajectory::{Durability, Record, seconds};
+use crate::xray::last_day::Xray;
+use novamind_database::{Entry, ForecastRow, ProjectionError};
+use novamind_tools::{Kind, Refusal, ToolId};
+use novamind_world::events::DayFigures;
+use novamind_world::held::Held;
+use novamind_world::market::surges::week_end;
 
 /// The rationale of a week in a lesson that asks for none.
 const UNASKED: &str = "(not asked for in this lesson)";
@@ -36,17 +36,17 @@ pub struct DayReport<'a> {
 }
 
 /// What is filed before a week, not yet checked.
-pub(in crate::session) struct Filing<'a> {
+pub(crate) struct Filing<'a> {
     /// Why.
-    pub(in crate::session) rationale: &'a Value,
+    pub(crate) rationale: &'a Value,
     /// Forecasts of four horizons.
-    pub(in crate::session) predictions: &'a Value,
+    pub(crate) predictions: &'a Value,
     /// Which of them the naive projection filled in.
-    pub(in crate::session) filled_naively: [bool; 4],
+    pub(crate) filled_naively: [bool; 4],
     /// The day on which the run must be; null if any will do.
-    pub(in crate::session) expected_day: &'a Value,
+    pub(crate) expected_day: &'a Value,
     /// The id that the program gave the request.
-    pub(in crate::session) request: Option<RequestId>,
+    pub(crate) request: Option<RequestId>,
 }
 
 impl Session {
@@ -83,7 +83,7 @@ impl Session {
         self.file_week(filing, via, progress)
     }
 
-    pub(in crate::session) fn file_week(
+    pub(crate) fn file_week(
         &mut self,
         filing: Filing<'_>,
         via: Via,
@@ -95,8 +95,11 @@ impl Session {
         let unasked = Value::from(UNASKED);
         let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
         let checked = allowed.and_then(|()| {
-            let text = tools::rationale(rationale)?;
-            let all = tools::forecasts(predictions, &self.simulation.params.limits.prediction_horizons_days)?;
+            let text = novamind_tools::rationale(rationale)?;
+            let all = novamind_tools::forecasts(
+                predictions,
+                &self.simulation.params.limits.prediction_horizons_days,
+            )?;
             self.simulation.refuse_crowded_day()?;
             Ok((text, Forecasts { all, filled_naively }))
         });
@@ -154,7 +157,7 @@ impl Session {
     ///
     /// # Errors
     /// The same.
-    pub(in crate::session) fn step_while(
+    pub(crate) fn step_while(
         &mut self,
         goes_on: &dyn Fn(u32) -> bool,
         days: u32,
@@ -173,8 +176,8 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`.
-    pub(in crate::session) fn refuse_to_step(&self) -> Result<(), Refusal> {
-        if self.manifest.mode != crate::session::folder::mode::Mode::Debug {
+    pub(crate) fn refuse_to_step(&self) -> Result<(), Refusal> {
+        if self.manifest.mode != crate::folder::mode::Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
         self.refuse_if_over(Kind::Time)
@@ -200,7 +203,7 @@ impl Session {
 
     /// Runs the week of an `advance` line and closes it. A week in which a day has no room for its leads ends before that day, as
     /// single days do.
-    pub(in crate::session) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
+    pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let (from, until) = (self.simulation.world.day, self.next_decision_day());
         let last_day = self.run_days_while(&has_room, until, progress);
         let Simulation { world, params, .. } = &self.simulation;
@@ -209,11 +212,7 @@ impl Session {
     }
 
     /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
-    pub(in crate::session) fn run_days(
-        &mut self,
-        until: u32,
-        progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> StateHash {
+    pub(crate) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let last_day = self.run_days_while(&|_| true, until, progress);
         self.simulation.end_days(self.projection.entries(), last_day)
     }
@@ -241,7 +240,7 @@ impl Session {
             self.simulation.judge_own_posts(self.projection.entries());
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
-            let debug = self.manifest.mode == crate::session::folder::mode::Mode::Debug;
+            let debug = self.manifest.mode == crate::folder::mode::Mode::Debug;
             let xray = (debug || self.is_shadow).then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();
@@ -265,7 +264,7 @@ impl Session {
     }
 
     /// Ends the figures of the days that ran, and the week if it is complete.
-    pub(in crate::session) fn settle_figures(&mut self) -> WeekFigures {
+    pub(crate) fn settle_figures(&mut self) -> WeekFigures {
         let open_issues = self.open_issues();
         let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
         self.history.last_dashboard = Some(self.build_dashboard(figures.open_issues));
@@ -317,7 +316,7 @@ impl Session {
     }
 
     /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
-    pub(in crate::session) fn close_if_over(&mut self) -> Option<String> {
+    pub(crate) fn close_if_over(&mut self) -> Option<String> {
         self.due_end().and_then(|ended| self.close_run(ended))
     }
 
@@ -350,7 +349,7 @@ impl Session {
         Some(format!("The database could not be written ({problem}): it lacks the newest rows. {recovery}"))
     }
 
-    pub(in crate::session) fn close_run(&mut self, ended: Ended) -> Option<String> {
+    pub(crate) fn close_run(&mut self, ended: Ended) -> Option<String> {
         self.history.ended = Some(ended);
         self.note_end(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
@@ -358,21 +357,21 @@ impl Session {
     }
 
     /// Keeps the answer to a week that a replay simulated, if its request carried an id.
-    pub(in crate::session) fn note_answered_week(&mut self) {
+    pub(crate) fn note_answered_week(&mut self) {
         let mut answers = std::mem::take(&mut self.history.first_answers);
         answers.note_week(|| self.report(None));
         self.history.first_answers = answers;
     }
 
     /// Adds the end of the run to the answer to its last week; a run that was given up did not end with it.
-    pub(in crate::session) fn note_end(&mut self, ended: Ended) {
+    pub(crate) fn note_end(&mut self, ended: Ended) {
         if ended != Ended::Abandoned {
             self.history.first_answers.note_end(self.simulation.world.day, ended);
         }
     }
 
     /// What a line says that closes days: what a replay has to arrive at.
-    pub(in crate::session) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
+    pub(crate) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
         let (state_hash, parts) = state.clone();
         Closing {
             days_run: self.simulation.world.day - from,
@@ -405,7 +404,7 @@ impl Session {
     }
 
     /// Files the rationale and forecasts of an `advance` line again.
-    pub(in crate::session) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
+    pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
         let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
         self.history.calculated.clone_from(&filed.calculations);
         self.file(filed.rationale.clone(), &forecasts, at);
@@ -414,7 +413,7 @@ impl Session {
 
     fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
         let submitted_at = seconds(at);
-        let row = |forecast: &crate::tools::Forecast| ForecastRow {
+        let row = |forecast: &novamind_tools::Forecast| ForecastRow {
             submit_day: self.simulation.world.day,
             horizon_days: forecast.horizon_days,
             point: forecast.point,
@@ -433,11 +432,7 @@ fn has_room(simulation: &Simulation) -> bool {
 }
 
 /// The arguments of a week as its refusal records them.
-pub(in crate::session) fn arguments_of_week(
-    rationale: &Value,
-    predictions: &Value,
-    expected_day: &Value,
-) -> Value {
+pub(crate) fn arguments_of_week(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
     let mut args = json!({ "rationale": rationale, "predictions": predictions });
     if !expected_day.is_null() {
         args["expected_day"] = expected_day.clone();

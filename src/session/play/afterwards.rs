@@ -5,14 +5,14 @@
 
 use std::path::Path;
 
-use crate::session::error::RunError;
-use crate::session::state::Session;
-use crate::session::study::answer_book::AnswerBook;
-use crate::session::trajectory::record::Outcome;
-use crate::session::trajectory::{Line, Record, Trajectory, read_regular_file};
+use crate::error::RunError;
+use crate::state::Session;
+use crate::study::answer_book::AnswerBook;
+use crate::trajectory::record::Outcome;
+use crate::trajectory::{Line, Record, Trajectory, read_regular_file};
 
 /// Name of the file in the folder of the run.
-pub(in crate::session) const AFTERWARDS: &str = "afterwards.jsonl";
+pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";
 
 /// Lines after the end of a run; none if nothing was done. They go on from the last line of the trajectory.
 ///
@@ -31,7 +31,7 @@ pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajec
 
 impl Session {
     /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
-    pub(in crate::session) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
+    pub(crate) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
         self.answers = AnswerBook::of(&trajectory.lines);
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
         match lines_afterwards(&folder, trajectory) {

@@ -1,10 +1,10 @@
 //! The clock of a person: stopping and starting it, and what limits say of the time they were active.
 
 use super::personal_clock::TimeLeft;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Clock, ClockEvent, Limit, LimitEvent, LimitScope};
-use crate::session::trajectory::{now, seconds};
-use crate::tools::Refusal;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Clock, ClockEvent, Limit, LimitEvent, LimitScope};
+use crate::trajectory::{now, seconds};
+use novamind_tools::Refusal;
 
 /// Rationale of a week that is filed because its time is over.
 pub const TIME_LIMIT: &str = "time limit";
@@ -46,7 +46,7 @@ impl Session {
     }
 
     /// Starts a clock that stood when the program left the run.
-    pub(in crate::session) fn start_forgotten_clock(&mut self) {
+    pub(crate) fn start_forgotten_clock(&mut self) {
         self.start_after(ClockEvent::Forgotten);
     }
 

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::folder::durable::write_whole;
-use crate::session::state::Session;
-use crate::tools::ToolId;
+use crate::folder::durable::write_whole;
+use crate::state::Session;
+use novamind_tools::ToolId;
 
 /// Name of the file in the folder of the run.
 const FILE: &str = "drafts.json";
@@ -94,8 +94,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
 
     #[test]
     fn texts_are_kept_whole_and_leave_no_file_when_there_are_none() {

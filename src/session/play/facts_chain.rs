@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::world::canonical::hash_of;
-use crate::world::events::Facts;
-use crate::world::state::{PartHash, combined_hash};
+use novamind_world::canonical::hash_of;
+use novamind_world::events::Facts;
+use novamind_world::state::{PartHash, combined_hash};
 
 /// Hash of the state and of the week's facts, with the hash of each part by its name.
-pub(in crate::session) type StateHash = (String, BTreeMap<String, String>);
+pub(crate) type StateHash = (String, BTreeMap<String, String>);
 
 /// Hash of a state with these parts and of the week's facts.
-pub(in crate::session) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
+pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
     parts.push(PartHash { part: "facts", hash: facts });
     let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
     let by_name = parts.iter().map(|part| (part.part.to_owned(), short(&part.hash))).collect();
@@ -18,7 +18,7 @@ pub(in crate::session) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Ha
 }
 
 /// The facts of a week, day by day and call by call, as one hash.
-pub(in crate::session) struct FactsChain {
+pub(crate) struct FactsChain {
     hash: blake3::Hash,
     /// The week is over: what comes next begins a new chain.
     closed: bool,
@@ -32,7 +32,7 @@ impl Default for FactsChain {
 
 impl FactsChain {
     /// Adds the facts of a day or call.
-    pub(in crate::session) fn add(&mut self, facts: &Facts) {
+    pub(crate) fn add(&mut self, facts: &Facts) {
         if self.closed {
             *self = FactsChain::default();
         }
@@ -43,22 +43,22 @@ impl FactsChain {
     }
 
     /// The chain with this hash, of a week that is over or still runs.
-    pub(in crate::session) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
+    pub(crate) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
         FactsChain { hash, closed }
     }
 
     /// Whether the week is over.
-    pub(in crate::session) fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
 
     /// Ends the week.
-    pub(in crate::session) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.closed = true;
     }
 
     /// Hash of the week so far, or of the one that just ended.
-    pub(in crate::session) fn hash(&self) -> blake3::Hash {
+    pub(crate) fn hash(&self) -> blake3::Hash {
         self.hash
     }
 }

@@ -8,19 +8,19 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::tools::PublicPost;
-use crate::voice::judge::{Judgement, Original};
-use crate::voice::posts::Writer;
-use crate::voice::posts::names::profile_name;
-use crate::world::events::{Facts, Matter, Post};
-use crate::world::identifiers::Group;
-use crate::world::market::social::sentiment::Sentiment;
-use crate::world::params::Params;
-use crate::world::random::Streams;
+use novamind_tools::PublicPost;
+use novamind_voice::judge::{Judgement, Original};
+use novamind_voice::posts::Writer;
+use novamind_voice::posts::names::profile_name;
+use novamind_world::events::{Facts, Matter, Post};
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::sentiment::Sentiment;
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
 #[derive(Clone, Default, Serialize, Deserialize)]
-pub(in crate::session) struct Feed {
+pub(crate) struct Feed {
     writer: Writer,
     /// Posts of others as the player sees them, in the order of their numbers.
     #[serde(with = "kept_posts")]
@@ -38,8 +38,8 @@ pub(in crate::session) struct Feed {
 mod kept_posts {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use crate::tools::PublicPost;
-    use crate::world::identifiers::Group;
+    use novamind_tools::PublicPost;
+    use novamind_world::identifiers::Group;
     use std::borrow::Cow;
 
     #[derive(Serialize, Deserialize)]
@@ -76,7 +76,7 @@ impl Feed {
     }
 
     /// Puts a day's posts into words and keeps them.
-    pub(in crate::session) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
+    pub(crate) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
         for post in &facts.posts {
             let judgement = match post.matter {
                 Matter::Comment { own_post, group, .. } => self.judgement(own_post, group).cloned(),
@@ -89,13 +89,13 @@ impl Feed {
     }
 
     /// Text of each post of these facts, the last ones that were put into words.
-    pub(in crate::session) fn words_of(&self, facts: &Facts) -> Vec<String> {
+    pub(crate) fn words_of(&self, facts: &Facts) -> Vec<String> {
         let first = self.posts.len().saturating_sub(facts.posts.len());
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
     }
 
     /// Shows a post in other words; one that is not there stays so.
-    pub(in crate::session) fn reword(&mut self, post: u32, text: &str) {
+    pub(crate) fn reword(&mut self, post: u32, text: &str) {
         let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
         let Some(own) = own else { return };
         let before = std::mem::replace(&mut own.content, text.to_owned());
@@ -104,7 +104,7 @@ impl Feed {
 
     /// The post with this number, as one that is answered: in the words of the built-in voice, whatever is shown, for what
     /// readers make of an answer is a fact of the world.
-    pub(in crate::session) fn original(&self, post: u32) -> Option<Original<'_>> {
+    pub(crate) fn original(&self, post: u32) -> Option<Original<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
         let content = self.built_in.get(&post).unwrap_or(&own.content);

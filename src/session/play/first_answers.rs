@@ -6,19 +6,19 @@
 use std::collections::BTreeMap;
 
 use super::week::Week;
-use crate::session::trajectory::record::{Call, Ended, Outcome, RequestId};
-use crate::tools::Refusal;
+use crate::trajectory::record::{Call, Ended, Outcome, RequestId};
+use novamind_tools::Refusal;
 
 /// The first answer to a request.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) enum FirstAnswer {
+pub(crate) enum FirstAnswer {
     Call(Outcome),
     Week(Box<Week>),
 }
 
 /// The first answers to the requests of a run that carried an id.
 #[derive(Debug, Default)]
-pub(in crate::session) struct FirstAnswers {
+pub(crate) struct FirstAnswers {
     /// By id, with the digest of the request.
     by_id: BTreeMap<String, (String, FirstAnswer)>,
     /// The request of the week that is being simulated.
@@ -27,7 +27,7 @@ pub(in crate::session) struct FirstAnswers {
 
 impl FirstAnswers {
     /// Restores the answers to weeks of a snapshot.
-    pub(in crate::session) fn of_weeks(weeks: Vec<(RequestId, Week)>) -> FirstAnswers {
+    pub(crate) fn of_weeks(weeks: Vec<(RequestId, Week)>) -> FirstAnswers {
         let one = |(request, week): (RequestId, Week)| {
             (request.id, (request.digest, FirstAnswer::Week(Box::new(week))))
         };
@@ -35,7 +35,7 @@ impl FirstAnswers {
     }
 
     /// Returns the answers to weeks, for a snapshot.
-    pub(in crate::session) fn weeks(&self) -> Vec<(RequestId, Week)> {
+    pub(crate) fn weeks(&self) -> Vec<(RequestId, Week)> {
         let week = |(id, (digest, answer)): (&String, &(String, FirstAnswer))| match answer {
             FirstAnswer::Week(week) => {
                 Some((RequestId { id: id.clone(), digest: digest.clone() }, Week::clone(week)))
@@ -46,26 +46,26 @@ impl FirstAnswers {
     }
 
     /// Keeps the outcome of a call that carries an id.
-    pub(in crate::session) fn note_call(&mut self, call: &Call) {
+    pub(crate) fn note_call(&mut self, call: &Call) {
         if let Some(RequestId { id, digest }) = &call.request {
             self.by_id.insert(id.clone(), (digest.clone(), FirstAnswer::Call(call.outcome.clone())));
         }
     }
 
     /// Begins the week of a request.
-    pub(in crate::session) fn begin_week(&mut self, request: Option<RequestId>) {
+    pub(crate) fn begin_week(&mut self, request: Option<RequestId>) {
         self.open = request;
     }
 
     /// Keeps the answer to the request whose week has passed, if one is open.
-    pub(in crate::session) fn note_week(&mut self, week: impl FnOnce() -> Week) {
+    pub(crate) fn note_week(&mut self, week: impl FnOnce() -> Week) {
         if let Some(RequestId { id, digest }) = self.open.take() {
             self.by_id.insert(id, (digest, FirstAnswer::Week(Box::new(week()))));
         }
     }
 
     /// Adds the end of the run to the answer to its last week.
-    pub(in crate::session) fn note_end(&mut self, day: u32, ended: Ended) {
+    pub(crate) fn note_end(&mut self, day: u32, ended: Ended) {
         for (_, answer) in self.by_id.values_mut() {
             if let FirstAnswer::Week(week) = answer
                 && week.figures.day == day
@@ -79,7 +79,7 @@ impl FirstAnswers {
     ///
     /// # Errors
     /// `request_id_payload_mismatch`: the id belongs to a request that asked something else.
-    pub(in crate::session) fn find(&self, request: &RequestId) -> Result<Option<&FirstAnswer>, Refusal> {
+    pub(crate) fn find(&self, request: &RequestId) -> Result<Option<&FirstAnswer>, Refusal> {
         match self.by_id.get(&request.id) {
             None => Ok(None),
             Some((digest, answer)) if *digest == request.digest => Ok(Some(answer)),
@@ -89,7 +89,7 @@ impl FirstAnswers {
 }
 
 /// The refusal of a request whose id belongs to another one.
-pub(in crate::session) fn mismatch() -> Refusal {
+pub(crate) fn mismatch() -> Refusal {
     let message = "this request_id belongs to an earlier request of this run that asked something else; nothing was \
                    changed. A new request needs a new id";
     Refusal::at("request_id", "request_id_payload_mismatch", message)

@@ -5,52 +5,52 @@ use super::irrevocable::Irrevocable;
 use super::simulation::Simulation;
 use super::surroundings::Calculated;
 use super::this_week::ThisWeek;
-use crate::session::figures::changes::{Change, Decisions, changes};
-use crate::session::figures::groups::{self, GroupWeek};
-use crate::session::figures::journal::JournalEntry;
-use crate::session::figures::week::WeekFigures;
-use crate::session::trajectory::record::Ended;
-use crate::world::events::{DayFigures, LedgerEntry, Notice};
-use crate::world::identifiers::ByGroup;
-use crate::world::state::World;
+use crate::figures::changes::{Change, Decisions, changes};
+use crate::figures::groups::{self, GroupWeek};
+use crate::figures::journal::JournalEntry;
+use crate::figures::week::WeekFigures;
+use crate::trajectory::record::Ended;
+use novamind_world::events::{DayFigures, LedgerEntry, Notice};
+use novamind_world::identifiers::ByGroup;
+use novamind_world::state::World;
 
 /// What has happened so far.
-pub(in crate::session) struct History {
+pub(crate) struct History {
     /// Cash at the end of each day, day 0 first.
-    pub(in crate::session) cash_by_day: Vec<f64>,
+    pub(crate) cash_by_day: Vec<f64>,
     /// Every full or shortened week that ran.
-    pub(in crate::session) weeks: Vec<WeekFigures>,
+    pub(crate) weeks: Vec<WeekFigures>,
     /// The week that has begun with single steps.
-    pub(in crate::session) running_week: WeekFigures,
+    pub(crate) running_week: WeekFigures,
     /// What every week that ran brought of each group.
-    pub(in crate::session) group_weeks: Vec<ByGroup<GroupWeek>>,
+    pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,
     /// The same of the week that has begun.
-    pub(in crate::session) running_groups: ByGroup<GroupWeek>,
+    pub(crate) running_groups: ByGroup<GroupWeek>,
     /// What was decided before each of them, or before single steps.
-    pub(in crate::session) decisions: Vec<Decisions>,
+    pub(crate) decisions: Vec<Decisions>,
     /// What the last days put into the inbox: day and text.
-    pub(in crate::session) notices: Vec<(u32, String)>,
+    pub(crate) notices: Vec<(u32, String)>,
     /// What has been set since the last week.
-    pub(in crate::session) this_week: ThisWeek,
+    pub(crate) this_week: ThisWeek,
     /// Everything that was done, in order.
-    pub(in crate::session) journal: Vec<JournalEntry>,
+    pub(crate) journal: Vec<JournalEntry>,
     /// Statements the database was asked in this run, each once, the newest last.
-    pub(in crate::session) asked: Vec<String>,
+    pub(crate) asked: Vec<String>,
     /// What the calculations said before the last week.
-    pub(in crate::session) calculated: Vec<Calculated>,
+    pub(crate) calculated: Vec<Calculated>,
     /// The dashboard as it was when the last days had run; none before the first.
-    pub(in crate::session) last_dashboard: Option<String>,
+    pub(crate) last_dashboard: Option<String>,
     /// Money that calls moved since the last day.
-    pub(in crate::session) called: Vec<LedgerEntry>,
+    pub(crate) called: Vec<LedgerEntry>,
     /// How the run ended, if it did.
-    pub(in crate::session) ended: Option<Ended>,
+    pub(crate) ended: Option<Ended>,
     /// First answers to requests that carried an id.
-    pub(in crate::session) first_answers: FirstAnswers,
+    pub(crate) first_answers: FirstAnswers,
 }
 
 impl History {
     /// Nothing has happened yet in this world.
-    pub(in crate::session) fn begin(world: &World) -> History {
+    pub(crate) fn begin(world: &World) -> History {
         let settings = world.settings.clone();
         History {
             cash_by_day: vec![world.finance.cash],
@@ -72,17 +72,12 @@ impl History {
     }
 
     /// Settings changed since the last week, old -> new.
-    pub(in crate::session) fn changes(&self, world: &World) -> Vec<Change> {
+    pub(crate) fn changes(&self, world: &World) -> Vec<Change> {
         changes(&self.this_week.settings, &world.settings)
     }
 
     /// Counts a day that was just simulated, with its notices.
-    pub(in crate::session) fn count_day(
-        &mut self,
-        figures: &DayFigures,
-        simulation: &Simulation,
-        notices: &[String],
-    ) {
+    pub(crate) fn count_day(&mut self, figures: &DayFigures, simulation: &Simulation, notices: &[String]) {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);
         let repeated = |notice: &Notice| matches!(notice, Notice::LeadLossRepeated { .. });
@@ -93,7 +88,7 @@ impl History {
     }
 
     /// Ends the figures of the days that ran, and the week if it is complete.
-    pub(in crate::session) fn settle(
+    pub(crate) fn settle(
         &mut self,
         simulation: &Simulation,
         opening_cash: f64,
@@ -123,7 +118,7 @@ impl History {
     }
 
     /// Figures of the week that runs, or of the last one that ran.
-    pub(in crate::session) fn latest_week(&self) -> WeekFigures {
+    pub(crate) fn latest_week(&self) -> WeekFigures {
         match self.running_week.days_run {
             0 => self.weeks.last().copied().unwrap_or_default(),
             _ => self.running_week,

@@ -7,18 +7,18 @@ use std::fmt::{self, Display, Formatter};
 use serde::{Deserialize, Serialize};
 
 use super::simulation::Simulation;
-use crate::notation::{cents, grouped};
-use crate::world::command::ResolvedCommand;
-use crate::world::enterprise::letters::Letter;
-use crate::world::events::Offering;
-use crate::world::identifiers::{Group, Plan};
+use novamind_base::notation::{cents, grouped};
+use novamind_world::command::ResolvedCommand;
+use novamind_world::enterprise::letters::Letter;
+use novamind_world::events::Offering;
+use novamind_world::identifiers::{Group, Plan};
 
 /// Offers or threads of one call that are named one by one.
 const NAMED: usize = 5;
 
 /// What cannot be taken back.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in crate::session) enum Irrevocable {
+pub(crate) enum Irrevocable {
     /// Something single.
     Single(String),
     /// Offers of the same plans to companies of a group.
@@ -34,7 +34,7 @@ pub(in crate::session) enum Irrevocable {
 
 impl Irrevocable {
     /// Adds what was done to what was done before it.
-    pub(in crate::session) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
+    pub(crate) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
         for own in more {
             if !done.iter_mut().any(|before| before.takes_in(&own)) {
                 done.push(own);
@@ -86,7 +86,7 @@ impl Display for Irrevocable {
 
 impl Simulation {
     /// What cannot be taken back of a command that is about to be applied.
-    pub(in crate::session) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
+    pub(crate) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
         let single = |words: String| vec![Irrevocable::Single(words)];
         match resolved {
             ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
@@ -181,9 +181,9 @@ fn offering_in_words(&(plan, least, most): &(Plan, f64, f64)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::NewRun;
-    use crate::session::state::Session;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::NewRun;
+    use crate::state::Session;
 
     fn letter(customer: u32, offerings: &[(Plan, f64)]) -> Letter {
         let offerings =

@@ -2,16 +2,16 @@
 
 use super::projection::Entries;
 use super::simulation::Simulation;
-use crate::session::state::Session;
-use crate::tools::PublicPost;
-use crate::voice::judge::{self, Circumstances, Lexicon, Submission};
-use crate::world::identifiers::Group;
-use crate::world::market::social::reach::{self, Verdict};
-use crate::world::params::PostJudge;
+use crate::state::Session;
+use novamind_tools::PublicPost;
+use novamind_voice::judge::{self, Circumstances, Lexicon, Submission};
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::reach::{self, Verdict};
+use novamind_world::params::PostJudge;
 
 impl Simulation {
     /// Lets the readers judge what the player posted before today.
-    pub(in crate::session) fn judge_own_posts(&mut self, entries: Entries<'_>) {
+    pub(crate) fn judge_own_posts(&mut self, entries: Entries<'_>) {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::session::trajectory::scripted_steady;
+use crate::trajectory::scripted_steady;
 
 /// The machine, as records name it: nobody learns from them which one it is, but two records of one machine agree.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -7,14 +7,14 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::session::error::RunError;
-use crate::session::folder::durable::{folder_of, sync_folder};
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
-use crate::session::study::rules::FreeText;
-use crate::session::trajectory::record::Note;
-use crate::session::trajectory::{Durability, Record, Trajectory};
-use crate::tools::Refusal;
+use crate::error::RunError;
+use crate::folder::durable::{folder_of, sync_folder};
+use crate::resume::open::Access;
+use crate::state::Session;
+use crate::study::rules::FreeText;
+use crate::trajectory::record::Note;
+use crate::trajectory::{Durability, Record, Trajectory};
+use novamind_tools::Refusal;
 
 const FILE: &str = "memo.md";
 const DRAFT: &str = "memo.draft";
@@ -68,7 +68,7 @@ impl Session {
 
     /// Finishes what a stopped program has left. Notes that are not the ones that were kept last are told; they are the
     /// person's own, and stay as they are.
-    pub(in crate::session) fn check_memo(&mut self, trajectory: &Trajectory, access: Access) {
+    pub(crate) fn check_memo(&mut self, trajectory: &Trajectory, access: Access) {
         let Some(folder) = &self.folder else { return };
         let unfinished = notes_file(folder, trajectory) == folder.join(DRAFT);
         match (access, unfinished) {
@@ -91,7 +91,7 @@ impl Session {
 
 /// The file that holds the notes of a run as its trajectory tells them: the draft, where the program was stopped between
 /// the line and the file.
-pub(in crate::session) fn notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
+pub(crate) fn notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
     let (file, draft) = (folder.join(FILE), folder.join(DRAFT));
     let kept = last_digest(trajectory);
     let is_kept = |path: &Path| kept.is_some() && digest_of(path) == kept;
@@ -131,8 +131,8 @@ fn put_in_place(folder: &Path) -> Result<(), RunError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
 
     fn run(runs: &Path) -> (PathBuf, Session) {
         let storage = Storage::Runs(runs.to_owned());

@@ -6,9 +6,9 @@ use super::act::Marks;
 use super::advance::{Filing, arguments_of_week};
 use super::first_answers::{FirstAnswer, mismatch};
 use super::week::Week;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
-use crate::tools::{Refusal, ToolId, find};
+use crate::state::Session;
+use crate::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
+use novamind_tools::{Refusal, ToolId, find};
 
 /// Longest id, in characters.
 const MAX_ID_CHARACTERS: usize = 128;

@@ -6,27 +6,27 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-use crate::notation::json_number;
-use crate::session::trajectory::record::Override;
-use crate::session::trajectory::{Line, Record};
-use crate::world::params::{ParameterError, Params};
+use crate::trajectory::record::Override;
+use crate::trajectory::{Line, Record};
+use novamind_base::notation::json_number;
+use novamind_world::params::{ParameterError, Params};
 
 /// A parameter that is set to another value.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::session) struct ParameterChange {
+pub(crate) struct ParameterChange {
     /// Line that sets it.
-    pub(in crate::session) seq: u64,
+    pub(crate) seq: u64,
     /// Full key.
-    pub(in crate::session) key: String,
+    pub(crate) key: String,
     /// Value from then on.
-    pub(in crate::session) value: Value,
+    pub(crate) value: Value,
     /// First day that is simulated with it; none: it acts at once.
-    pub(in crate::session) from_day: Option<u32>,
+    pub(crate) from_day: Option<u32>,
 }
 
 impl ParameterChange {
     /// The change that a line tells; none if its value is nothing that a parameter can be.
-    pub(in crate::session) fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
+    pub(crate) fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
         let value = value_of_json(&line.new)?;
         Some(ParameterChange { seq, key: line.key.clone(), value, from_day: line.from_day })
     }
@@ -42,7 +42,7 @@ struct WaitingChange {
 
 /// What has become of the parameters of a run since it began.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct Overrides {
+pub(crate) struct Overrides {
     /// Whether any was set.
     is_used: bool,
     /// Changes that wait, by their day, those of a day in the order of their lines.
@@ -50,29 +50,29 @@ pub(in crate::session) struct Overrides {
 }
 
 /// Parameters after a change was taken in.
-pub(in crate::session) struct Taken {
+pub(crate) struct Taken {
     /// Those in force now.
-    pub(in crate::session) now: Arc<Params>,
+    pub(crate) now: Arc<Params>,
     /// Those in force once the change acts.
-    pub(in crate::session) changed: Arc<Params>,
+    pub(crate) changed: Arc<Params>,
 }
 
 /// Why a change is not possible.
 #[derive(Debug)]
-pub(in crate::session) struct Unfit {
+pub(crate) struct Unfit {
     /// The later day on which values would contradict each other; none: it is the change itself.
-    pub(in crate::session) day: Option<u32>,
-    pub(in crate::session) error: ParameterError,
+    pub(crate) day: Option<u32>,
+    pub(crate) error: ParameterError,
 }
 
 impl Overrides {
     /// Whether any parameter was set since the run began.
-    pub(in crate::session) fn is_used(&self) -> bool {
+    pub(crate) fn is_used(&self) -> bool {
         self.is_used
     }
 
     /// Changes that wait for their day.
-    pub(in crate::session) fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
+    pub(crate) fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
         self.waiting.iter().map(|own| &own.change)
     }
 
@@ -80,11 +80,7 @@ impl Overrides {
     ///
     /// # Errors
     /// The value is not allowed, or contradicts another now or on a later day. Nothing has changed then.
-    pub(in crate::session) fn take(
-        &mut self,
-        now: &Arc<Params>,
-        change: ParameterChange,
-    ) -> Result<Taken, Unfit> {
+    pub(crate) fn take(&mut self, now: &Arc<Params>, change: ParameterChange) -> Result<Taken, Unfit> {
         let (mut now, mut later): (_, Vec<ParameterChange>) =
             (now.clone(), self.waiting().cloned().collect());
         let own = change.seq;
@@ -109,19 +105,19 @@ impl Overrides {
     }
 
     /// The parameters with which a day will be simulated, if they change with it.
-    pub(in crate::session) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
+    pub(crate) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting[..count].last().map(|own| &own.params)
     }
 
     /// The parameters with which a day is simulated, if they change with it: they wait no longer.
-    pub(in crate::session) fn due(&mut self, day: u32) -> Option<Arc<Params>> {
+    pub(crate) fn due(&mut self, day: u32) -> Option<Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting.drain(..count).next_back().map(|own| own.params)
     }
 
     /// The same changes over other parameters, but for some lines; what does not fit them is left out.
-    pub(in crate::session) fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
+    pub(crate) fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
         let mut own = Overrides { is_used: self.is_used, waiting: Vec::new() };
         for change in self.waiting().filter(|change| !dropped.contains(&change.seq)) {
             let _ = own.take(now, change.clone());
@@ -131,11 +127,7 @@ impl Overrides {
 
     /// What some lines of a run have made of the parameters with which it began, at the end of a day. None if a line does
     /// not fit.
-    pub(in crate::session) fn after(
-        opening: &Arc<Params>,
-        lines: &[Line],
-        day: u32,
-    ) -> Option<(Arc<Params>, Overrides)> {
+    pub(crate) fn after(opening: &Arc<Params>, lines: &[Line], day: u32) -> Option<(Arc<Params>, Overrides)> {
         let (mut now, mut own) = (opening.clone(), Overrides::default());
         for line in lines {
             let Record::Override(change) = &line.record else { continue };
@@ -152,7 +144,7 @@ fn with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, Parame
 }
 
 /// A value of JSON as parameters have it; none where they have nothing like it.
-pub(in crate::session) fn value_of_json(value: &Json) -> Option<Value> {
+pub(crate) fn value_of_json(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
         Json::Bool(own) => Value::Boolean(*own),
@@ -170,7 +162,7 @@ pub(in crate::session) fn value_of_json(value: &Json) -> Option<Value> {
 }
 
 /// A value of a parameter as JSON, whole numbers without a decimal point.
-pub(in crate::session) fn json_of_value(value: &Value) -> Json {
+pub(crate) fn json_of_value(value: &Value) -> Json {
     match value {
         Value::String(text) => Json::from(text.as_str()),
         Value::Integer(number) => Json::from(*number),

@@ -6,14 +6,14 @@ use serde_json::Value;
 
 use super::act::not_saved;
 use super::overrides::{ParameterChange, Taken, Unfit, json_of_value, value_of_json};
-use crate::session::figures::journal::JournalEntry;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Override;
-use crate::session::trajectory::{Durability, Record};
-use crate::tools::{Kind, Refusal};
-use crate::world::params::{ParameterError, Params};
+use crate::figures::journal::JournalEntry;
+use crate::folder::configuration::Configuration;
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::trajectory::record::Override;
+use crate::trajectory::{Durability, Record};
+use novamind_tools::{Kind, Refusal};
+use novamind_world::params::{ParameterError, Params};
 
 /// A parameter whose value is, or will be, another than that of the scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,11 +65,7 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::set_parameter`].
-    pub(in crate::session) fn set_parameter_of_lesson(
-        &mut self,
-        key: &str,
-        value: &Value,
-    ) -> Result<(), Refusal> {
+    pub(crate) fn set_parameter_of_lesson(&mut self, key: &str, value: &Value) -> Result<(), Refusal> {
         self.set_parameter_anyway(key, value, None).map(|_| ())
     }
 
@@ -111,7 +107,7 @@ impl Session {
     ///
     /// # Errors
     /// The line does not follow from what is before it.
-    pub(in crate::session) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
+    pub(crate) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
         if self.manifest.mode != Mode::Debug && self.manifest.lesson.is_none() {
             return Err("it sets a parameter, which only a debug run can, or a lesson by itself".to_owned());
         }
@@ -191,12 +187,12 @@ impl Session {
     }
 
     /// Numbers in texts, and whether results can be compared, follow from the parameters.
-    pub(in crate::session) fn renew_what_follows_from_parameters(&mut self) {
+    pub(crate) fn renew_what_follows_from_parameters(&mut self) {
         (self.numbers, self.own_parameters) = (OnceLock::new(), OnceLock::new());
     }
 
     /// Whether the parameters are, or were, others than those of the shipped scenario.
-    pub(in crate::session) fn has_own_parameters(&self) -> bool {
+    pub(crate) fn has_own_parameters(&self) -> bool {
         let is_other = || self.simulation.overrides.is_used() || self.manifest.has_own_parameters();
         *self.own_parameters.get_or_init(is_other)
     }
@@ -206,11 +202,11 @@ fn in_words(error: &ParameterError) -> String {
     format!("{}: {}", error.key, error.problem)
 }
 
-pub(in crate::session) fn unknown(error: ParameterError) -> Refusal {
+pub(crate) fn unknown(error: ParameterError) -> Refusal {
     Refusal::at(error.key, "parameter_unknown", error.problem)
 }
 
-pub(in crate::session) fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
+pub(crate) fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
     let message = match day {
         None => error.problem,
         Some(day) => format!("{}, from day {day} on, for which it was set before", error.problem),

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::session::study::rules::{AtLimit, TimeLimits};
-use crate::session::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
-use crate::session::trajectory::{Record, Trajectory};
+use crate::study::rules::{AtLimit, TimeLimits};
+use crate::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
+use crate::trajectory::{Record, Trajectory};
 
 /// What the lines of a run tell of the clock.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct PersonalClock {
+pub(crate) struct PersonalClock {
     /// When it was stopped, in seconds since 1970; none while it runs.
     pub(super) stopped: Option<f64>,
     /// A limit has stopped it, and nobody has started it since.
@@ -30,14 +30,14 @@ pub struct TimeLeft {
 
 impl PersonalClock {
     /// What the lines of a run tell.
-    pub(in crate::session) fn of(trajectory: &Trajectory) -> PersonalClock {
+    pub(crate) fn of(trajectory: &Trajectory) -> PersonalClock {
         let mut clock = PersonalClock::default();
         trajectory.lines.iter().for_each(|line| clock.pass(&line.record, line.moment()));
         clock
     }
 
     /// Goes on to a line that was written at a moment, in seconds since 1970.
-    pub(in crate::session) fn pass(&mut self, record: &Record, at: f64) {
+    pub(crate) fn pass(&mut self, record: &Record, at: f64) {
         match record {
             Record::Branch(_) => *self = PersonalClock::default(),
             Record::Week(_) => self.told.retain(|(scope, _)| *scope != LimitScope::Week),
@@ -106,7 +106,7 @@ impl TimeLeft {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::trajectory::record::{Clock, Closing, Limit};
+    use crate::trajectory::record::{Clock, Closing, Limit};
 
     fn limit(limit: LimitScope, event: LimitEvent) -> Record {
         Record::Activity(Activity::Limit(Limit { limit, event, minutes: 10, used_ms: 0 }))

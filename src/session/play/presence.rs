@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use crate::session::figures::attendance::TimeSpent;
-use crate::session::play::machine::Machine;
-use crate::session::play::recorder::Recorder;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
-use crate::session::trajectory::{Durability, Record, nanoseconds, now};
+use crate::figures::attendance::TimeSpent;
+use crate::play::machine::Machine;
+use crate::play::recorder::Recorder;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
+use crate::trajectory::{Durability, Record, nanoseconds, now};
 
 /// Time without a key after which a person counts as idle, where keys are watched.
 pub const IDLE_AFTER: Duration = Duration::from_secs(60);

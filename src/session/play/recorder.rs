@@ -3,17 +3,17 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use crate::database::Position;
-use crate::session::error::RunError;
-use crate::session::figures::attendance::Attendance;
-use crate::session::folder::first_line::start_of;
-use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::afterwards::AFTERWARDS;
-use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
+use crate::error::RunError;
+use crate::figures::attendance::Attendance;
+use crate::folder::first_line::start_of;
+use crate::folder::lock::lock_run;
+use crate::folder::manifest::Manifest;
+use crate::play::afterwards::AFTERWARDS;
+use crate::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
+use novamind_database::Position;
 
 /// What a run has that is played, and a run that is only read has not.
-pub(in crate::session) struct Recorder {
+pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
     /// When the line of an accepted call has to be on the disk: before the call is confirmed, or, in headless runs,
     /// with the week.
@@ -30,7 +30,7 @@ pub(in crate::session) struct Recorder {
 
 impl Recorder {
     /// Begins the trajectory of a new run, in its folder or in memory, with the line that says what the run is.
-    pub(in crate::session) fn begin(
+    pub(crate) fn begin(
         manifest: &Manifest,
         folder: Option<&Path>,
         sync_calls: bool,
@@ -54,11 +54,7 @@ impl Recorder {
     }
 
     /// Goes on with the trajectory of a run whose lock is held.
-    pub(in crate::session) fn resume(
-        path: &Path,
-        read: &Trajectory,
-        lock: File,
-    ) -> Result<Recorder, RunError> {
+    pub(crate) fn resume(path: &Path, read: &Trajectory, lock: File) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
         let folder = path.parent().map(Path::to_owned);
         Ok(Recorder {
@@ -72,22 +68,22 @@ impl Recorder {
     }
 
     /// Whether a file holds the lines.
-    pub(in crate::session) fn is_on_disk(&self) -> bool {
+    pub(crate) fn is_on_disk(&self) -> bool {
         self.folder.is_some()
     }
 
     /// Number and hash of the last line.
-    pub(in crate::session) fn position(&self) -> Position {
+    pub(crate) fn position(&self) -> Position {
         self.trajectory.position()
     }
 
     /// When the line of an accepted call has to be on the disk.
-    pub(in crate::session) fn durability_of_calls(&self) -> Durability {
+    pub(crate) fn durability_of_calls(&self) -> Durability {
         self.calls
     }
 
     /// Whether every call is on the disk before it is confirmed.
-    pub(in crate::session) fn syncs_calls(&self) -> bool {
+    pub(crate) fn syncs_calls(&self) -> bool {
         self.calls == Durability::Synced
     }
 
@@ -95,7 +91,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The disk refuses: then the line does not exist.
-    pub(in crate::session) fn append(
+    pub(crate) fn append(
         &mut self,
         day: u32,
         record: &Record,
@@ -110,7 +106,7 @@ impl Recorder {
     ///
     /// # Errors
     /// The disk refuses, or the file is damaged: then the line does not exist.
-    pub(in crate::session) fn append_afterwards(
+    pub(crate) fn append_afterwards(
         &mut self,
         day: u32,
         record: &Record,
@@ -130,41 +126,41 @@ impl Recorder {
     }
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
-    pub(in crate::session) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
+    pub(crate) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
         let problem = self.trajectory.append_done(day, record).err().map(|error| error.to_string());
         self.attendance.note(nanoseconds(self.trajectory.last_at()), record);
         problem
     }
 
     /// Where the time went, up to the last line.
-    pub(in crate::session) fn attendance(&self) -> &Attendance {
+    pub(crate) fn attendance(&self) -> &Attendance {
         &self.attendance
     }
 
     /// Puts everything on the disk, also lines that it has refused so far.
-    pub(in crate::session) fn sync(&mut self) -> Result<(), RunError> {
+    pub(crate) fn sync(&mut self) -> Result<(), RunError> {
         self.trajectory.sync()?;
         self.afterwards.as_mut().map_or(Ok(()), TrajectoryWriter::sync)
     }
 
     /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
-    pub(in crate::session) fn sync_calls(&self) -> Result<(), RunError> {
+    pub(crate) fn sync_calls(&self) -> Result<(), RunError> {
         self.trajectory.sync_written()
     }
 
     /// Why nothing is saved any more, from the moment on at which that was noticed.
-    pub(in crate::session) fn loss(&self) -> Option<&str> {
+    pub(crate) fn loss(&self) -> Option<&str> {
         self.trajectory.loss()
     }
 
     /// Whether the file still stands where it is looked for, and no line waits for it.
-    pub(in crate::session) fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         self.trajectory.is_complete()
     }
 
     /// Puts another medium in place of the file.
     #[cfg(test)]
-    pub(in crate::session) fn write_to(&mut self, medium: Box<dyn crate::session::trajectory::Medium>) {
+    pub(crate) fn write_to(&mut self, medium: Box<dyn crate::trajectory::Medium>) {
         self.trajectory.write_to(medium);
     }
 }

@@ -2,35 +2,31 @@
 
 use super::entry::entry_of;
 use super::recorder::Recorder;
-use crate::database::Entry;
-use crate::session::error::RunError;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, View};
-use crate::session::trajectory::{Durability, Record, now, seconds};
+use crate::error::RunError;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, View};
+use crate::trajectory::{Durability, Record, now, seconds};
+use novamind_database::Entry;
 
 impl Session {
     /// The facts of day 0 with the words that belong to them.
-    pub(in crate::session) fn entry(&self) -> Entry {
+    pub(crate) fn entry(&self) -> Entry {
         entry_of(&self.simulation.facts, self.notice_texts(), &self.simulation.feed, &self.simulation.params)
     }
 
     /// Makes everything handed over visible, as of the last line.
-    pub(in crate::session) fn commit_projection(&self) {
+    pub(crate) fn commit_projection(&self) {
         self.projection.commit(&self.position);
     }
 
     /// When the line of an accepted call has to be on the disk; a run that is only read keeps its database as one that is
     /// played.
-    pub(in crate::session) fn durability_of_calls(&self) -> Durability {
+    pub(crate) fn durability_of_calls(&self) -> Durability {
         self.recorder.as_ref().map_or(Durability::Synced, Recorder::durability_of_calls)
     }
 
     /// Appends a line; a run that is only read has none.
-    pub(in crate::session) fn append(
-        &mut self,
-        record: &Record,
-        durability: Durability,
-    ) -> Result<String, RunError> {
+    pub(crate) fn append(&mut self, record: &Record, durability: Durability) -> Result<String, RunError> {
         let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
         if self.history.ended.is_some() {
             // The end is the last line.
@@ -43,7 +39,7 @@ impl Session {
     }
 
     /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
-    pub(in crate::session) fn append_done(&mut self, record: &Record) -> Option<String> {
+    pub(crate) fn append_done(&mut self, record: &Record) -> Option<String> {
         let recorder = self.recorder.as_mut()?;
         let problem = recorder.append_done(self.simulation.world.day, record);
         self.position = recorder.position();
@@ -58,7 +54,7 @@ impl Session {
     }
 
     /// Records something that changes nothing; a disk that refuses it is no reason to stop.
-    pub(in crate::session) fn note(&mut self, record: Record) {
+    pub(crate) fn note(&mut self, record: Record) {
         let _ = self.append(&record, Durability::Written);
     }
 }

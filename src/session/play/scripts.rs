@@ -7,13 +7,15 @@
 use std::time::{Duration, Instant};
 
 use super::surroundings::Calculated;
-use crate::database::query::SQL_CANCELLED;
-use crate::database::{self, text};
-use crate::session::ask::query_refusal;
-use crate::session::python::refuse_unless_played;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
-use crate::tools::{Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python};
+use crate::ask::query_refusal;
+use crate::python::refuse_unless_played;
+use crate::state::Session;
+use crate::trajectory::record::Via;
+use novamind_database::query::SQL_CANCELLED;
+use novamind_database::text;
+use novamind_tools::{
+    Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python,
+};
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;
@@ -25,7 +27,7 @@ const OUTPUT_IS_CUT: &str = "stdout is cut after 5,000 characters\n";
 
 /// What code said.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Said {
+pub(crate) struct Said {
     /// Results as tables, or what was printed.
     pub results: String,
     /// Warnings and hints.
@@ -33,7 +35,7 @@ pub(in crate::session) struct Said {
 }
 
 impl Said {
-    fn add(&mut self, rows: &database::Rows) {
+    fn add(&mut self, rows: &novamind_database::Rows) {
         if self.results.len() <= 4 * MOST_OUTPUT {
             self.results += &text::columns(rows);
         }
@@ -70,11 +72,7 @@ impl Session {
     ///
     /// # Errors
     /// `script_failed`, `script_timeout`, saying where.
-    pub(in crate::session) fn run_script(
-        &mut self,
-        script: &Script,
-        via: Via,
-    ) -> Result<ScriptOutput, Refusal> {
+    pub(crate) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Refusal> {
         let time = Duration::from_secs_f64(script.seconds);
         let said = match Language::of(&script.code) {
             Language::Sql => self.run_statements(&script.code, time)?,
@@ -120,7 +118,7 @@ impl Session {
 
     /// Runs all calculations on the company as it is. One that fails says why and does not keep the week; all together have the
     /// time of one query, so that a week never waits longer for them.
-    pub(in crate::session) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
+    pub(crate) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
         let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
         let (most, started) = (self.query_limits().time, Instant::now());
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
@@ -148,7 +146,7 @@ impl Session {
     }
 
     /// Names the calculations in Python to whoever goes on with a run: somebody else may have registered them.
-    pub(in crate::session) fn name_python_calculations(&mut self) {
+    pub(crate) fn name_python_calculations(&mut self) {
         let kept = self.surroundings.notebook.statements(Kept::Calculation).entries();
         let python = kept.iter().filter(|(_, code)| Language::of(code) == Language::Python);
         let names: Vec<&str> = python.map(|(name, _)| name.as_str()).collect();
@@ -159,7 +157,7 @@ impl Session {
     }
 
     /// Keeps or forgets what an accepted call asks for.
-    pub(in crate::session) fn keep(&mut self, change: &NotebookChange) {
+    pub(crate) fn keep(&mut self, change: &NotebookChange) {
         self.surroundings.notebook.apply(change);
     }
 }

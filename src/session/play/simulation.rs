@@ -13,61 +13,57 @@ use super::facts_chain::{FactsChain, StateHash, state_hash};
 use super::feed::Feed;
 use super::overrides::Overrides;
 use super::projection::Entries;
-use crate::database::Entry;
-use crate::notation::grouped;
-use crate::session::folder::manifest::Manifest;
-use crate::session::model_voice::scores::RecordedScores;
-use crate::tools::Refusal;
-use crate::voice::CompanyNames;
-use crate::world::command::{Command, ResolvedCommand};
-use crate::world::day::room::{MOST_CUSTOMERS, MOST_LEADS_A_DAY, NoRoom, room_for_next_day};
-use crate::world::day::watch::{DayWatch, Unwatched};
-use crate::world::day::{DayTrace, step_day_watched};
-use crate::world::events::{DayFigures, Facts};
-use crate::world::held::Held;
-use crate::world::params::Params;
-use crate::world::random::Streams;
-use crate::world::state::World;
+use crate::folder::manifest::Manifest;
+use crate::model_voice::scores::RecordedScores;
+use novamind_base::notation::grouped;
+use novamind_database::Entry;
+use novamind_tools::Refusal;
+use novamind_voice::CompanyNames;
+use novamind_world::command::{Command, ResolvedCommand};
+use novamind_world::day::room::{MOST_CUSTOMERS, MOST_LEADS_A_DAY, NoRoom, room_for_next_day};
+use novamind_world::day::watch::{DayWatch, Unwatched};
+use novamind_world::day::{DayTrace, step_day_watched};
+use novamind_world::events::{DayFigures, Facts};
+use novamind_world::held::Held;
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
+use novamind_world::state::World;
 
 /// The company, its words, and how far it has come.
-pub(in crate::session) struct Simulation {
-    pub(in crate::session) params: Arc<Params>,
+pub(crate) struct Simulation {
+    pub(crate) params: Arc<Params>,
     /// What was set of them since the run began.
-    pub(in crate::session) overrides: Overrides,
-    pub(in crate::session) streams: Streams,
-    pub(in crate::session) world: World,
+    pub(crate) overrides: Overrides,
+    pub(crate) streams: Streams,
+    pub(crate) world: World,
     /// Facts of the last day or call.
-    pub(in crate::session) facts: Arc<Facts>,
+    pub(crate) facts: Arc<Facts>,
     /// Those of the day before it, which are filled again once nobody reads them.
     facts_before: Arc<Facts>,
     /// How the leads of the last day came about.
-    pub(in crate::session) trace: DayTrace,
+    pub(crate) trace: DayTrace,
     /// What companies are called.
-    pub(in crate::session) names: CompanyNames,
+    pub(crate) names: CompanyNames,
     /// What people wrote in public, in words.
-    pub(in crate::session) feed: Feed,
+    pub(crate) feed: Feed,
     /// What a language model made of the player's posts.
-    pub(in crate::session) scores: RecordedScores,
+    pub(crate) scores: RecordedScores,
     /// Hashes of this week's facts.
-    pub(in crate::session) facts_chain: FactsChain,
+    pub(crate) facts_chain: FactsChain,
     /// Who looks into the days that are simulated: nobody, but for the x-ray.
-    pub(in crate::session) watch: Arc<dyn DayWatch>,
+    pub(crate) watch: Arc<dyn DayWatch>,
 }
 
 impl Simulation {
     /// The company of a run on day 0.
-    pub(in crate::session) fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
+    pub(crate) fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
         Simulation::of(manifest, params, (world, facts))
     }
 
     /// A company of a run that has come somewhere, with the facts of its last day or call.
-    pub(in crate::session) fn of(
-        manifest: &Manifest,
-        params: Arc<Params>,
-        (world, facts): (World, Facts),
-    ) -> Simulation {
+    pub(crate) fn of(manifest: &Manifest, params: Arc<Params>, (world, facts): (World, Facts)) -> Simulation {
         Simulation {
             names: CompanyNames::new(manifest.seed, &params.personas.email),
             params,
@@ -85,7 +81,7 @@ impl Simulation {
     }
 
     /// A company at some moment of a run, and what was written in public until then.
-    pub(in crate::session) fn at(
+    pub(crate) fn at(
         (params, overrides): (Arc<Params>, Overrides),
         (streams, names): (Streams, CompanyNames),
         world: World,
@@ -108,28 +104,28 @@ impl Simulation {
     }
 
     /// Active subscribers with an open issue.
-    pub(in crate::session) fn open_issues(&self) -> u32 {
+    pub(crate) fn open_issues(&self) -> u32 {
         self.world.customers.blocks().map(|(_, block)| block.open_issues()).sum()
     }
 
     /// Hash of the whole state with one hash per part, by name.
-    pub(in crate::session) fn state_hash(&self) -> StateHash {
+    pub(crate) fn state_hash(&self) -> StateHash {
         state_hash(self.world.part_hashes(), self.facts_chain.hash())
     }
 
     /// A command with its draws made; nothing happens.
-    pub(in crate::session) fn resolve(&self, command: Command) -> ResolvedCommand {
+    pub(crate) fn resolve(&self, command: Command) -> ResolvedCommand {
         self.world.resolve(command, &self.params, &self.streams)
     }
 
     /// Does what a command does.
-    pub(in crate::session) fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
+    pub(crate) fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
         self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
         self.watch.called(&self.facts);
     }
 
     /// The world, and facts to be filled, for what happens between two days.
-    pub(in crate::session) fn between_days(
+    pub(crate) fn between_days(
         &mut self,
         entries: Entries<'_>,
     ) -> (&mut World, &mut Facts, &Params, &Streams) {
@@ -137,7 +133,7 @@ impl Simulation {
     }
 
     /// Goes on with other parameters.
-    pub(in crate::session) fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
+    pub(crate) fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
         if !Arc::ptr_eq(&self.params, &params) {
             entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
             self.params = params;
@@ -148,7 +144,7 @@ impl Simulation {
     ///
     /// # Errors
     /// `too_many_leads`.
-    pub(in crate::session) fn refuse_crowded_day(&self) -> Result<(), Refusal> {
+    pub(crate) fn refuse_crowded_day(&self) -> Result<(), Refusal> {
         let (world, day) = (&self.world, self.world.day + 1);
         let due = self.overrides.due_on(day).unwrap_or(&self.params);
         let told = match room_for_next_day(world, due, &self.streams) {
@@ -170,7 +166,7 @@ impl Simulation {
 
     /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,
     /// with its notices.
-    pub(in crate::session) fn simulate_day(
+    pub(crate) fn simulate_day(
         &mut self,
         held: &Held,
         entries: Entries<'_>,
@@ -192,7 +188,7 @@ impl Simulation {
     }
 
     /// What follows from a call, with its notices and the settings family that it left if it set one.
-    pub(in crate::session) fn follow_call(
+    pub(crate) fn follow_call(
         &mut self,
         entries: Entries<'_>,
         notices: Vec<String>,
@@ -203,21 +199,13 @@ impl Simulation {
     }
 
     /// What follows from the last day of some, if there was any, with its notices.
-    pub(in crate::session) fn follow_last_day(
-        &mut self,
-        entries: Entries<'_>,
-        last_day: Option<Vec<String>>,
-    ) {
+    pub(crate) fn follow_last_day(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, last_day, None);
     }
 
     /// The same; meanwhile the state is hashed.
-    pub(in crate::session) fn end_days(
-        &mut self,
-        entries: Entries<'_>,
-        last_day: Option<Vec<String>>,
-    ) -> StateHash {
+    pub(crate) fn end_days(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.follow(facts, last_day, None));

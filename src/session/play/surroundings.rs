@@ -2,14 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::database;
-use crate::tools::{ColumnDocument, Notebook, Surroundings, TableDocument};
-use crate::voice;
-use crate::world::events::Reading;
+use novamind_tools::{ColumnDocument, Notebook, Surroundings, TableDocument};
+use novamind_world::events::Reading;
 
 /// What a session has around its company.
 #[derive(Debug, Default)]
-pub(in crate::session) struct RunSurroundings {
+pub(crate) struct RunSurroundings {
     /// Calculations and scripts.
     pub notebook: Notebook,
     /// Nobody plays: what is called was decided elsewhere, and starts no programs.
@@ -18,16 +16,16 @@ pub(in crate::session) struct RunSurroundings {
 
 impl Surroundings for RunSurroundings {
     fn describe(&self, reading: &Reading) -> String {
-        voice::reading(reading)
+        novamind_voice::reading(reading)
     }
 
     fn tables(&self) -> Vec<TableDocument> {
-        let document = |table: &'static database::Table| TableDocument {
+        let document = |table: &'static novamind_database::Table| TableDocument {
             name: &table.name,
             description: &table.description,
             columns: table.columns.iter().map(document_of).collect(),
         };
-        database::tables().iter().map(document).collect()
+        novamind_database::tables().iter().map(document).collect()
     }
 
     fn notebook(&self) -> &Notebook {
@@ -35,7 +33,7 @@ impl Surroundings for RunSurroundings {
     }
 }
 
-fn document_of(column: &'static database::Column) -> ColumnDocument {
+fn document_of(column: &'static novamind_database::Column) -> ColumnDocument {
     ColumnDocument {
         name: &column.name,
         kind: &column.kind,

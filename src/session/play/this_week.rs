@@ -1,40 +1,40 @@
 //! What was done since the last week ran, so that settings can be taken back.
 
 use super::irrevocable::Irrevocable;
-use crate::session::trajectory::record::Reversal;
-use crate::tools::ToolId;
-use crate::world::settings::Settings;
+use crate::trajectory::record::Reversal;
+use novamind_tools::ToolId;
+use novamind_world::settings::Settings;
 
 /// What happened since the last week ran.
 #[derive(Debug, Clone)]
-pub(in crate::session) struct ThisWeek {
+pub(crate) struct ThisWeek {
     /// Settings before the first call.
-    pub(in crate::session) settings: Settings,
+    pub(crate) settings: Settings,
     /// Setting calls that can be taken back, newest last.
-    pub(in crate::session) undo: Vec<Step>,
+    pub(crate) undo: Vec<Step>,
     /// Calls that took settings back and can be reversed themselves, newest last.
-    pub(in crate::session) redo: Vec<Step>,
+    pub(crate) redo: Vec<Step>,
     /// Purchases and the like, in words.
-    pub(in crate::session) done: Vec<Irrevocable>,
+    pub(crate) done: Vec<Irrevocable>,
 }
 
 /// A call that changed settings, and the settings that reversing it restores.
 #[derive(Debug, Clone)]
-pub(in crate::session) struct Step {
+pub(crate) struct Step {
     /// Line of the call.
-    pub(in crate::session) seq: u64,
-    pub(in crate::session) tool: ToolId,
-    pub(in crate::session) restores: Settings,
+    pub(crate) seq: u64,
+    pub(crate) tool: ToolId,
+    pub(crate) restores: Settings,
 }
 
 impl ThisWeek {
     /// Nothing has happened since these settings were in force.
-    pub(in crate::session) fn begin(&mut self, settings: Settings) {
+    pub(crate) fn begin(&mut self, settings: Settings) {
         *self = ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() };
     }
 
     /// Keeps what a setting call did, so that it can be reversed.
-    pub(in crate::session) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
+    pub(crate) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
         if let Some(Reversal::Undoes(seq)) = reversal {
             self.undo.retain(|step| step.seq < seq);
         }

@@ -9,12 +9,12 @@ use serde_json::{Map, Value};
 
 use super::act::Marks;
 use super::this_week::Step;
-use crate::session::figures::changes::{Change, changes};
-use crate::session::figures::journal::JournalEntry;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Reversal, Via};
-use crate::tools::{Refusal, ToolId};
-use crate::world::settings::Settings;
+use crate::figures::changes::{Change, changes};
+use crate::figures::journal::JournalEntry;
+use crate::state::Session;
+use crate::trajectory::record::{Reversal, Via};
+use novamind_tools::{Refusal, ToolId};
+use novamind_world::settings::Settings;
 
 /// Lines of the calls that were taken back. What redo repeated has a line of its own.
 pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use crate::notation::json_number;
-use crate::session::figures::week::WeekFigures;
-use crate::session::trajectory::record::Ended;
+use crate::figures::week::WeekFigures;
+use crate::trajectory::record::Ended;
+use novamind_base::notation::json_number;
 
 /// A week, or the rest of one, that was simulated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

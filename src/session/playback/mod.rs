@@ -3,30 +3,30 @@
 //! The lines of the trajectory are applied one after the other to a session of its own, whose database is in memory;
 //! nothing on the disk changes. Forward means more lines for the same session, backward a new one from the start.
 
-pub(in crate::session) mod position;
-pub(in crate::session) mod record_view;
+pub(crate) mod position;
+pub(crate) mod record_view;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::database::{Location, Projector};
-use crate::session::error::RunError;
-use crate::session::figures::week::week_of;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::lesson::over::is_lesson_over;
-use crate::session::play::projection::Projection;
-use crate::session::play::simulation::Simulation;
-use crate::session::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
-use crate::session::playback::record_view::RecordView;
-use crate::session::resume::open::check_start;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Note;
-use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
-use crate::tools::Refusal;
-use crate::world::params::Params;
+use crate::error::RunError;
+use crate::figures::week::week_of;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::lesson::over::is_lesson_over;
+use crate::play::projection::Projection;
+use crate::play::simulation::Simulation;
+use crate::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
+use crate::playback::record_view::RecordView;
+use crate::resume::open::check_start;
+use crate::state::Session;
+use crate::trajectory::record::Note;
+use crate::trajectory::{Line, Record, Trajectory, damaged_at};
+use novamind_database::{Location, Projector};
+use novamind_tools::Refusal;
+use novamind_world::params::Params;
 
 /// A line that closes a week or single steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -337,7 +337,7 @@ impl Playback {
             let message = "nothing comes after this moment: go back to a week first";
             return Err(Refusal::new("run_over", message));
         }
-        crate::session::resume::branch::branch_of(folder, &self.origin.manifest, &self.shared(), mode)
+        crate::resume::branch::branch_of(folder, &self.origin.manifest, &self.shared(), mode)
     }
 
     /// The lines up to here without a week that was about to run: that decision is taken anew.

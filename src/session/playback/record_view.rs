@@ -1,8 +1,8 @@
 //! A line of a trajectory as somebody looks back at it: what it says, and what came of its forecasts.
 
-use crate::session::figures::scored_forecast::ScoredForecast;
-use crate::session::trajectory::{Line, Record};
-use crate::tools::Forecast;
+use crate::figures::scored_forecast::ScoredForecast;
+use crate::trajectory::{Line, Record};
+use novamind_tools::Forecast;
 
 /// A line, and what is known by now of what it foresaw.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +23,7 @@ pub struct RecordView {
 
 impl RecordView {
     /// A line as it is seen on a day. `outcome` knows cash on a day, where that is recorded.
-    pub(in crate::session) fn of(
-        line: &Line,
-        today: u32,
-        outcome: &dyn Fn(u32) -> Option<f64>,
-    ) -> RecordView {
+    pub(crate) fn of(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
         let scored = |forecast: Forecast| {
             let open = ScoredForecast { forecast, day: line.day, outcome: None };
             ScoredForecast { outcome: outcome(open.due()), ..open }
@@ -49,8 +45,8 @@ impl RecordView {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::figures::scored_forecast::Verdict;
-    use crate::session::trajectory::record::{Advance, FiledForecast, Via};
+    use crate::figures::scored_forecast::Verdict;
+    use crate::trajectory::record::{Advance, FiledForecast, Via};
 
     #[test]
     fn a_forecast_says_what_came_and_what_is_still_to_come() {

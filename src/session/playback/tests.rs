@@ -5,23 +5,23 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::record_view::RecordView;
-use crate::session::figures::week::Forecasts;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::playback::*;
-use crate::session::resume::verify::verify;
-use crate::session::trajectory::record::{Call, Outcome, Via};
-use crate::session::trajectory::{Durability, Record};
+use crate::figures::week::Forecasts;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::playback::*;
+use crate::resume::verify::verify;
+use crate::trajectory::record::{Call, Outcome, Via};
+use crate::trajectory::{Durability, Record};
 
 /// A run that was recorded into a folder.
-pub(in crate::session) struct Recorded {
+pub(crate) struct Recorded {
     _runs: tempfile::TempDir,
     pub folder: PathBuf,
     pub id: String,
 }
 
 /// A run of some weeks, with calls, a refusal, a question, notes and a look at a screen; closed.
-pub(in crate::session) fn recorded(mode: Mode, weeks: u32) -> Recorded {
+pub(crate) fn recorded(mode: Mode, weeks: u32) -> Recorded {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play(runs.path(), mode, weeks);
     let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
@@ -88,7 +88,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
         assert_eq!(playback.place().week, week);
         assert_eq!(playback.session().state_hash().0, recorded[&(7 * week)], "week {week}");
         let days = playback.session_mut().query("SELECT max(day) FROM ledger").expect("an answer");
-        assert_eq!(days.rows[0][0], crate::session::Cell::Integer(i64::from(7 * week)), "the database");
+        assert_eq!(days.rows[0][0], crate::Cell::Integer(i64::from(7 * week)), "the database");
     };
     for week in 1..=5 {
         assert_eq!(go(&mut playback, Goal::Weeks(1)), SeekResult::There);
@@ -96,7 +96,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     }
     assert_eq!(
         playback.session().ended(),
-        Some(crate::session::trajectory::record::Ended::Horizon),
+        Some(crate::trajectory::record::Ended::Horizon),
         "the end comes with its week"
     );
     assert!(playback.at_end());
@@ -133,7 +133,7 @@ fn single_actions_show_the_company_between_the_weeks() {
     let chapter = playback.place().chapter;
     assert_eq!((chapter.week, chapter.day, chapter.done, chapter.entries.len()), (1, 0, 1, 6));
     assert!(
-        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if *tool == crate::tools::ToolId::SetPrices)
+        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if *tool == novamind_tools::ToolId::SetPrices)
     );
     go(&mut playback, Goal::Lines(-1));
     assert_eq!(price(&playback), Some(0.0));
@@ -223,7 +223,7 @@ fn an_unfinished_baseline_is_not_taken_over() {
     let playback = Playback::open(&run.folder).expect("it opens");
     assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
-    crate::session::folder::runs::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    crate::folder::runs::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
     let playback = Playback::open(&run.folder).expect("it opens");
     assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
 }
@@ -291,7 +291,7 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
     call.args = json!({"operations": 77, "development": 5});
     call.outcome = Outcome::Accepted(json!({"operations": 77.0, "development": 5.0}));
     let copy = run.folder.with_file_name("other.jsonl");
-    let mut writer = crate::session::trajectory::TrajectoryWriter::create(&copy).expect("a file");
+    let mut writer = crate::trajectory::TrajectoryWriter::create(&copy).expect("a file");
     for line in &lines {
         writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }

@@ -18,7 +18,7 @@ mod process;
 #[cfg(unix)]
 mod run;
 
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 /// Says why a script in Python was not run, or not to its end.
 fn failed(message: impl Into<String>) -> Refusal {
@@ -33,7 +33,7 @@ pub const PYTHON_NOT_RUN: &str =
 ///
 /// # Errors
 /// `script_failed`.
-pub(in crate::session) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
+pub(crate) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
     match is_played {
         true => Ok(()),
         false => Err(failed(PYTHON_NOT_RUN)),
@@ -47,18 +47,13 @@ mod run {
     use std::time::Duration;
 
     use super::failed;
-    use crate::session::play::scripts::Said;
-    use crate::session::state::Session;
-    use crate::tools::Refusal;
+    use crate::play::scripts::Said;
+    use crate::state::Session;
+    use novamind_tools::Refusal;
 
     impl Session {
         /// Refuses a script in Python.
-        pub(in crate::session) fn run_python(
-            &mut self,
-            _: &str,
-            _: Duration,
-            _: bool,
-        ) -> Result<Said, Refusal> {
+        pub(crate) fn run_python(&mut self, _: &str, _: Duration, _: bool) -> Result<Said, Refusal> {
             Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
         }
     }

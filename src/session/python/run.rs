@@ -10,13 +10,13 @@ use super::channel::ScriptRequest;
 use super::failed;
 use super::interpreter::Interpreter;
 use super::process::{ScriptEnd, ScriptProcess};
-use crate::database::Rows;
-use crate::database::query::Limits;
-use crate::session::ask::rows_as_json;
-use crate::session::play::scripts::Said;
-use crate::session::state::Session;
-use crate::session::trajectory::record::QuerySource;
-use crate::tools::Refusal;
+use crate::ask::rows_as_json;
+use crate::play::scripts::Said;
+use crate::state::Session;
+use crate::trajectory::record::QuerySource;
+use novamind_database::Rows;
+use novamind_database::query::Limits;
+use novamind_tools::Refusal;
 
 /// Statements that one script may ask.
 const MOST_QUERIES: u32 = 10_000;
@@ -30,12 +30,7 @@ impl Session {
     ///
     /// # Errors
     /// `script_failed`, `script_timeout`.
-    pub(in crate::session) fn run_python(
-        &mut self,
-        code: &str,
-        time: Duration,
-        noted: bool,
-    ) -> Result<Said, Refusal> {
+    pub(crate) fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<Said, Refusal> {
         let stop = self.interrupt().map_err(|refusal| failed(refusal.message))?;
         let ticket = stop.ticket();
         let interpreter = Interpreter::of(self.manifest.mode);
@@ -110,7 +105,7 @@ fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said
             Err(failed(format!("{what}{}{}", part("", &traceback), printed(process))))
         }
         ScriptEnd::TimedOut => {
-            let seconds = crate::notation::grouped((10.0 * time.as_secs_f64()).round() / 10.0, 1);
+            let seconds = novamind_base::notation::grouped((10.0 * time.as_secs_f64()).round() / 10.0, 1);
             let seconds = seconds.trim_end_matches(".0");
             let message = format!("it did not end in {seconds} s and was stopped{}", printed(process));
             Err(Refusal::at("code", "script_timeout", message))

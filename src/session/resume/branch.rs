@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use super::unnamed::{UnnamedBranch, write_branch};
-use crate::session::error::RunError;
-use crate::session::folder::create::new_id;
-use crate::session::folder::durable::create_folder;
-use crate::session::folder::manifest::{FORMAT, Manifest};
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::study::rules::SessionRules;
-use crate::session::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
-use crate::session::trajectory::{Line, Record, Trajectory, now};
-use crate::tools::Refusal;
+use crate::error::RunError;
+use crate::folder::create::new_id;
+use crate::folder::durable::create_folder;
+use crate::folder::manifest::{FORMAT, Manifest};
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::study::rules::SessionRules;
+use crate::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
+use crate::trajectory::{Line, Record, Trajectory, now};
+use novamind_tools::Refusal;
 
 impl Session {
     /// Starts a branch at the beginning of a week, counted from 1, and opens it.
@@ -29,7 +29,7 @@ impl Session {
     ///
     /// # Errors
     /// As for [`Session::branch`].
-    pub(in crate::session) fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
+    pub(crate) fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
@@ -59,7 +59,7 @@ impl Session {
     }
 }
 
-pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
+pub(crate) fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }
 
@@ -69,7 +69,7 @@ pub(in crate::session) fn not_saved(error: RunError) -> Refusal {
 /// `not_in_this_mode` for a baseline branch, and for one that is no debug run though parameters were set in its past or a fault
 /// was planted;
 /// `not_saved`.
-pub(in crate::session) fn branch_of(
+pub(crate) fn branch_of(
     folder: &Path,
     parent: &Manifest,
     lines: &[Line],
@@ -119,7 +119,7 @@ fn unnamed_branch(
 ///
 /// # Errors
 /// `not_saved`.
-pub(in crate::session) fn branch_of_lesson(
+pub(crate) fn branch_of_lesson(
     folder: &Path,
     parent: &Manifest,
     trajectory: &Trajectory,
@@ -189,11 +189,7 @@ fn makes_company(line: &Line) -> bool {
 ///
 /// # Errors
 /// The folder cannot be written.
-pub(in crate::session) fn write_past(
-    folder: &Path,
-    manifest: &Manifest,
-    lines: &[Line],
-) -> Result<(), RunError> {
+pub(crate) fn write_past(folder: &Path, manifest: &Manifest, lines: &[Line]) -> Result<(), RunError> {
     create_folder(folder)?;
     write_branch(folder, manifest, &shared_lines(lines))
 }

@@ -7,17 +7,17 @@ use std::path::Path;
 
 use super::sealing::SealKey;
 use super::snapshot::{FILE, Snapshot};
-use crate::database::{
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::trajectory::record::VoiceAnswer;
+use crate::trajectory::{BRANCH_THEM, Record, Trajectory};
+use novamind_database::{
     Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
 };
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::Manifest;
-use crate::session::trajectory::record::VoiceAnswer;
-use crate::session::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// What stood beside the trajectory before it was read.
-pub(in crate::session) struct Integrity {
+pub(crate) struct Integrity {
     /// The snapshot, if there is one that is whole.
     pub snapshot: Option<Snapshot>,
     /// How far the database has come, if it can be read.
@@ -30,7 +30,7 @@ pub(in crate::session) struct Integrity {
 
 impl Integrity {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(in crate::session) fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
+    pub(crate) fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
             remarks
@@ -49,7 +49,7 @@ impl Integrity {
     ///
     /// # Errors
     /// The first line that is missing or is not the one they saw.
-    pub(in crate::session) fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+    pub(crate) fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
         let database = self.database.clone().map(|position| ("world.db", position));
         let snapshot = self.snapshot.as_ref().map(|snapshot| (FILE, snapshot.position()));
         [database, snapshot].into_iter().flatten().try_for_each(|(file, position)| {
@@ -76,11 +76,7 @@ impl Integrity {
     }
 
     /// The database of a run that has ended, if its file is the one that the end left and holds every line.
-    pub(in crate::session) fn finished_database(
-        &self,
-        folder: &Path,
-        trajectory: &Trajectory,
-    ) -> Option<Location> {
+    pub(crate) fn finished_database(&self, folder: &Path, trajectory: &Trajectory) -> Option<Location> {
         let last = trajectory.lines.last().filter(|line| matches!(line.record, Record::End(_)))?;
         let position = self.database.as_ref()?;
         let complete = position.seq == last.seq && position.line_hash == last.hash;
@@ -90,7 +86,7 @@ impl Integrity {
 
     /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
     /// its structure is.
-    pub(in crate::session) fn vouch_for_database(&mut self, folder: &Path) -> bool {
+    pub(crate) fn vouch_for_database(&mut self, folder: &Path) -> bool {
         let file = folder.join("world.db");
         if !file.exists() {
             return false;
@@ -113,7 +109,7 @@ fn location(folder: &Path) -> Location {
 }
 
 /// Whether nobody has changed the database's file since the run was closed.
-pub(in crate::session) fn is_as_left(folder: &Path, key: &SealKey) -> bool {
+pub(crate) fn is_as_left(folder: &Path, key: &SealKey) -> bool {
     let Ok(Derived { manifest, .. }) = Derived::of(folder) else { return false };
     Integrity::of(folder, &manifest, key).is_as_closed(folder).unwrap_or(true)
 }

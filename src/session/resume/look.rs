@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use super::open::Access;
-use crate::session::error::RunError;
-use crate::session::folder::derived::manifest_of;
-use crate::session::folder::lock::lock_run;
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Look};
-use crate::session::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+use crate::error::RunError;
+use crate::folder::derived::manifest_of;
+use crate::folder::lock::lock_run;
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Look};
+use crate::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
 /// Records that a command reads the run in a folder. Does nothing for runs that are over, or no baseline, or stand where
 /// nobody can go on with them.
@@ -72,10 +72,10 @@ fn lacks_its_week(trajectory: &Trajectory) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::resume::verify::verify;
-    use crate::session::trajectory::record::Via;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
+    use crate::resume::verify::verify;
+    use crate::trajectory::record::Via;
     use serde_json::json;
 
     fn baseline(runs: &Path, weeks: usize) -> (std::path::PathBuf, Session) {
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are as they were left");
         let rows = session.query("SELECT max(day) FROM ledger").expect("rows");
         assert_eq!(rows.rows.len(), 1);
-        session.call(crate::session::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
+        session.call(crate::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
         let forecasts = session.naive_forecasts();
         session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         drop(session);

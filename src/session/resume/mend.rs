@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::integrity::Integrity;
 use super::open::{Access, open_projector, usable};
-use crate::database::{Location, ProjectionError, is_consistent};
-use crate::session::error::RunError;
-use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
+use crate::error::RunError;
+use crate::state::Session;
+use crate::trajectory::Trajectory;
+use novamind_database::{Location, ProjectionError, is_consistent};
 
 impl Session {
     /// What keeps the database from being written; none where it holds everything, or will soon.
@@ -52,11 +52,11 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::Cell;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::play::week::Week;
-    use crate::session::trajectory::record::Via;
+    use crate::Cell;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
+    use crate::play::week::Week;
+    use crate::trajectory::record::Via;
 
     /// Rows that tell how far the database has come.
     fn rows(session: &mut Session) -> Vec<Vec<Cell>> {

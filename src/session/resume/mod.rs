@@ -1,16 +1,16 @@
 //! Opening a run again: from its snapshot or its trajectory, whole, damaged or as a branch, and what vouches for it.
 
-pub(in crate::session) mod branch;
-pub(in crate::session) mod integrity;
-pub(in crate::session) mod look;
-pub(in crate::session) mod mend;
-pub(in crate::session) mod open;
-pub(in crate::session) mod rebuild;
-pub(in crate::session) mod rescue;
-pub(in crate::session) mod sealing;
-pub(in crate::session) mod snapshot;
-pub(in crate::session) mod unnamed;
-pub(in crate::session) mod verify;
+pub(crate) mod branch;
+pub(crate) mod integrity;
+pub(crate) mod look;
+pub(crate) mod mend;
+pub(crate) mod open;
+pub(crate) mod rebuild;
+pub(crate) mod rescue;
+pub(crate) mod sealing;
+pub(crate) mod snapshot;
+pub(crate) mod unnamed;
+pub(crate) mod verify;
 
 #[cfg(test)]
 mod power_cut_tests;

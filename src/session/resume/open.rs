@@ -7,21 +7,21 @@ use super::integrity::Integrity;
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use super::unnamed::remove_leftovers;
-use crate::database::{Entry, Location, Position, Projector};
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::advance::DayReport;
-use crate::session::play::facts_chain::StateHash;
-use crate::session::play::personal_clock::PersonalClock;
-use crate::session::play::projection::Projection;
-use crate::session::play::recorder::Recorder;
-use crate::session::play::surroundings::RunSurroundings;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Closing, Outcome};
-use crate::session::trajectory::{Line, Record, Trajectory, damaged_at};
-use crate::world::params::Params;
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::lock::lock_run;
+use crate::folder::manifest::Manifest;
+use crate::play::advance::DayReport;
+use crate::play::facts_chain::StateHash;
+use crate::play::personal_clock::PersonalClock;
+use crate::play::projection::Projection;
+use crate::play::recorder::Recorder;
+use crate::play::surroundings::RunSurroundings;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Closing, Outcome};
+use crate::trajectory::{Line, Record, Trajectory, damaged_at};
+use novamind_database::{Entry, Location, Position, Projector};
+use novamind_world::params::Params;
 
 /// What may be done with an opened run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,13 +34,13 @@ pub enum Access {
 
 /// How a reading command keeps what it had to simulate.
 #[derive(Clone, Copy)]
-pub(in crate::session) struct Keeping {
+pub(crate) struct Keeping {
     /// Returns whether the end of the run may be kept.
-    pub(in crate::session) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
+    pub(crate) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
     /// Keeps snapshot and database. Returns whether they were kept.
-    pub(in crate::session) keep_database: fn(&Path, &SealKey) -> bool,
+    pub(crate) keep_database: fn(&Path, &SealKey) -> bool,
     /// Keeps the snapshot.
-    pub(in crate::session) keep_snapshot: fn(&Session, &Path),
+    pub(crate) keep_snapshot: fn(&Session, &Path),
 }
 
 /// The screen that a line says was left, and the day.
@@ -77,7 +77,7 @@ impl Session {
     ///
     /// # Errors
     /// The same.
-    pub(in crate::session) fn open_and_keep(
+    pub(crate) fn open_and_keep(
         folder: &Path,
         access: Access,
         projection: bool,
@@ -154,7 +154,7 @@ impl Session {
     }
 
     /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
-    pub(in crate::session) fn before_replay(
+    pub(crate) fn before_replay(
         manifest: Manifest,
         folder: &Path,
         params: Arc<Params>,
@@ -176,7 +176,7 @@ impl Session {
 
     /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
     /// `reached` is told the day after each line.
-    pub(in crate::session) fn replay(
+    pub(crate) fn replay(
         &mut self,
         path: &Path,
         trajectory: &Trajectory,
@@ -210,12 +210,12 @@ impl Session {
     }
 
     /// Applies a line of a file again.
-    pub(in crate::session) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+    pub(crate) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
         self.apply_line_telling(path, line, &mut |_| {})
     }
 
     /// The same, and tells of each day that it simulates.
-    pub(in crate::session) fn apply_line_telling(
+    pub(crate) fn apply_line_telling(
         &mut self,
         path: &Path,
         line: &Line,
@@ -302,11 +302,7 @@ impl Session {
 }
 
 /// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
-pub(in crate::session) fn check_start(
-    path: &Path,
-    first: Option<&Line>,
-    manifest: &Manifest,
-) -> Result<(), RunError> {
+pub(crate) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let damaged = |problem: &str| RunError::Damaged {
         path: path.to_owned(),
         line: 1,
@@ -344,7 +340,7 @@ fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
 }
 
 /// Starts the database. What it holds already counts only if `sound` says so.
-pub(in crate::session) fn open_projector(
+pub(crate) fn open_projector(
     folder: &Path,
     access: Access,
     (manifest, params): (&Manifest, &Arc<Params>),
@@ -364,7 +360,7 @@ pub(in crate::session) fn open_projector(
 }
 
 /// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
-pub(in crate::session) fn usable<'a>(
+pub(crate) fn usable<'a>(
     integrity: &'a Integrity,
     manifest: &Manifest,
     trajectory: &Trajectory,

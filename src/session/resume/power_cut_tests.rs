@@ -7,14 +7,14 @@ use serde_json::json;
 
 use super::open::Access;
 use super::sealing::SealKey;
-use crate::session::archive::{Export, Imported, import_run};
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::durable::probe;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Ended, Via};
-use crate::session::trajectory::{PageCache, Trajectory};
-use crate::tools::Refusal;
+use crate::archive::{Export, Imported, import_run};
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::durable::probe;
+use crate::state::Session;
+use crate::trajectory::record::{Ended, Via};
+use crate::trajectory::{PageCache, Trajectory};
+use novamind_tools::Refusal;
 
 fn new_run(runs: &Path) -> NewRun {
     NewRun { seed: Some(8), storage: Storage::Runs(runs.to_owned()), ..NewRun::default() }
@@ -127,7 +127,7 @@ fn headless_runs_keep_every_complete_week() {
             assert_eq!(resumed.state_hash(), session.state_hash(), "cut {number}");
         } else if !matches!(
             resumed.journal().last(),
-            Some(crate::session::figures::journal::JournalEntry::Call { .. })
+            Some(crate::figures::journal::JournalEntry::Call { .. })
         ) {
             assert_eq!(resumed.state_hash(), closed, "cut {number}");
         }

@@ -7,13 +7,13 @@ use super::integrity::Integrity;
 use super::open::{Access, Keeping, check_start, open_projector, usable};
 use super::sealing::SealKey;
 use super::snapshot::SnapshotPlace;
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
-use crate::session::state::Session;
-use crate::session::trajectory::{Record, Trajectory};
-use crate::session::xray::permission::may_look_inside;
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::lock::lock_run;
+use crate::folder::manifest::Manifest;
+use crate::state::Session;
+use crate::trajectory::{Record, Trajectory};
+use crate::xray::permission::may_look_inside;
 
 /// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
 /// and the last day of the run. The key is that of the run's snapshots.
@@ -91,11 +91,11 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::folder::mode::Mode;
-    use crate::session::folder::runs::end_run;
-    use crate::session::trajectory::record::Via;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
+    use crate::folder::mode::Mode;
+    use crate::folder::runs::end_run;
+    use crate::trajectory::record::Via;
 
     const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];
 

@@ -7,12 +7,12 @@ use super::branch::branch_of;
 use super::integrity::Integrity;
 use super::open::check_start;
 use super::sealing::SealKey;
-use crate::session::error::RunError;
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::state::Session;
-use crate::session::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
+use crate::error::RunError;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::state::Session;
+use crate::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
 
 /// What was saved of a damaged run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,8 +95,8 @@ fn replayed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::playback::tests::{Recorded, recorded};
-    use crate::session::resume::verify::verify;
+    use crate::playback::tests::{Recorded, recorded};
+    use crate::resume::verify::verify;
 
     /// Damages a copy of a run's trajectory and rescues it.
     fn rescued(run: &Recorded, damage: impl Fn(&mut Vec<u8>)) -> Result<Rescued, RunError> {

@@ -19,27 +19,27 @@ use flate2::write::DeflateEncoder;
 use serde::{Deserialize, Serialize};
 
 use super::sealing::{Envelope, RunKeys, SealKey};
-use crate::database::Position;
-use crate::session::figures::changes::Decisions;
-use crate::session::figures::journal::JournalEntry;
-use crate::session::figures::week::WeekFigures;
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::facts_chain::FactsChain;
-use crate::session::play::feed::Feed;
-use crate::session::play::first_answers::FirstAnswers;
-use crate::session::play::history::History;
-use crate::session::play::irrevocable::Irrevocable;
-use crate::session::play::overrides::Overrides;
-use crate::session::play::simulation::Simulation;
-use crate::session::play::surroundings::Calculated;
-use crate::session::play::this_week::{Step, ThisWeek};
-use crate::session::play::week::Week;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Ended, RequestId};
-use crate::session::trajectory::{Line, Record, hash_of_first_line};
-use crate::tools::Notebook;
-use crate::world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
-use crate::world::params::Params;
+use crate::figures::changes::Decisions;
+use crate::figures::journal::JournalEntry;
+use crate::figures::week::WeekFigures;
+use crate::folder::manifest::Manifest;
+use crate::play::facts_chain::FactsChain;
+use crate::play::feed::Feed;
+use crate::play::first_answers::FirstAnswers;
+use crate::play::history::History;
+use crate::play::irrevocable::Irrevocable;
+use crate::play::overrides::Overrides;
+use crate::play::simulation::Simulation;
+use crate::play::surroundings::Calculated;
+use crate::play::this_week::{Step, ThisWeek};
+use crate::play::week::Week;
+use crate::state::Session;
+use crate::trajectory::record::{Ended, RequestId};
+use crate::trajectory::{Line, Record, hash_of_first_line};
+use novamind_database::Position;
+use novamind_tools::Notebook;
+use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
+use novamind_world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
 /// After the title: whether the secret of a study is needed to open it.
@@ -48,12 +48,12 @@ const OF_STUDY: u8 = b's';
 /// The file whose first line the keys are made of.
 const TRAJECTORY: &str = "trajectory.jsonl";
 /// Name of the file in a run's folder.
-pub(in crate::session) const FILE: &str = "snapshot.bin";
+pub(crate) const FILE: &str = "snapshot.bin";
 /// Room for a subscriber: columns and the facts of a day need 190 bytes or so. Room that nobody takes costs nothing;
 /// room that is too small costs a copy of everything.
 const BYTES_OF_A_SUBSCRIBER: usize = 320;
 /// Weeks between two snapshots of a run that is played.
-pub(in crate::session) const WEEKS_BETWEEN: usize = 4;
+pub(crate) const WEEKS_BETWEEN: usize = 4;
 
 /// What a snapshot is of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,7 +114,7 @@ impl Notes<'_> {
 }
 
 /// A snapshot file that is whole.
-pub(in crate::session) struct Snapshot {
+pub(crate) struct Snapshot {
     header: Header,
     /// Title, envelope and everything after them, opened.
     file: Vec<u8>,
@@ -123,10 +123,10 @@ pub(in crate::session) struct Snapshot {
 }
 
 /// What a session gets back from a snapshot.
-pub(in crate::session) struct Recalled {
-    pub(in crate::session) simulation: Simulation,
-    pub(in crate::session) history: History,
-    pub(in crate::session) notebook: Notebook,
+pub(crate) struct Recalled {
+    pub(crate) simulation: Simulation,
+    pub(crate) history: History,
+    pub(crate) notebook: Notebook,
 }
 
 impl Snapshot {
@@ -134,7 +134,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// What is wrong with the file.
-    pub(in crate::session) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
+    pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
         let mut file = match std::fs::read(folder.join(FILE)) {
             Ok(file) => file,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -150,34 +150,34 @@ impl Snapshot {
     }
 
     /// The line of the trajectory it stands at.
-    pub(in crate::session) fn position(&self) -> Position {
+    pub(crate) fn position(&self) -> Position {
         Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
     }
 
     /// Digest of the database's file as it was then, if the run was closed in order.
-    pub(in crate::session) fn database(&self) -> Option<&str> {
+    pub(crate) fn database(&self) -> Option<&str> {
         self.header.database.as_deref()
     }
 
     /// Vouches for a database that was made anew as of the same line.
-    pub(in crate::session) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
+    pub(crate) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
         let header = Header { database, ..self.header };
         place.write(&header, &mut self.file[self.notes_at..]);
     }
 
     /// Whether it is one of this run.
-    pub(in crate::session) fn is_of(&self, run: &str) -> bool {
+    pub(crate) fn is_of(&self, run: &str) -> bool {
         self.header.run == run
     }
 
     /// Whether it was written by this version under these parameters.
-    pub(in crate::session) fn fits(&self, manifest: &Manifest) -> bool {
+    pub(crate) fn fits(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
     /// The state of a run that began with some parameters and has these lines; none if it is not the one it claims to be.
-    pub(in crate::session) fn recall(
+    pub(crate) fn recall(
         &self,
         manifest: &Manifest,
         params: &Arc<Params>,
@@ -249,7 +249,7 @@ impl Session {
     /// Keeps the present state, which has this hash, as a snapshot, and has the database take in everything up to now; a
     /// run without a folder keeps none. A closing one vouches for the database's file too. A disk that refuses it takes
     /// away nothing but time.
-    pub(in crate::session) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
+    pub(crate) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.recorder.is_some()) else {
             return self.commit_projection();
         };
@@ -335,7 +335,7 @@ fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'s
 }
 
 /// Where the snapshots of a run go, and what seals them.
-pub(in crate::session) struct SnapshotPlace {
+pub(crate) struct SnapshotPlace {
     path: PathBuf,
     of: u8,
     /// None where the trajectory is not in its place: then nothing is kept of the run.
@@ -344,7 +344,7 @@ pub(in crate::session) struct SnapshotPlace {
 
 impl SnapshotPlace {
     /// That of the run in a folder.
-    pub(in crate::session) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
+    pub(crate) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
         let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
         let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
         SnapshotPlace { path: folder.join(FILE), of, keys }
@@ -352,7 +352,7 @@ impl SnapshotPlace {
 
     /// Whether a program with a key may replace the snapshot of a folder: without the secret of a study it keeps one that only the
     /// secret opens.
-    pub(in crate::session) fn may_write(folder: &Path, key: &SealKey) -> bool {
+    pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];
         let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut begin));
         key.has_secret() || read.is_err() || begin[TITLE.len()] != OF_STUDY

@@ -4,19 +4,19 @@
 use std::path::{Path, PathBuf};
 
 use super::open::Access;
-use crate::session::error::RunError;
-use crate::session::folder::durable::{create_folder, sync_folder};
-use crate::session::folder::first_line::start_of;
-use crate::session::folder::lock::lock_run;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::{UNNAMED, is_unnamed};
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Branch;
-use crate::session::trajectory::{Durability, Line, Record, TrajectoryWriter};
+use crate::error::RunError;
+use crate::folder::durable::{create_folder, sync_folder};
+use crate::folder::first_line::start_of;
+use crate::folder::lock::lock_run;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::{UNNAMED, is_unnamed};
+use crate::lesson::lesson_file::Lesson;
+use crate::state::Session;
+use crate::trajectory::record::Branch;
+use crate::trajectory::{Durability, Line, Record, TrajectoryWriter};
 
 /// The folder of a branch without a name; it goes with this, unless the branch was named.
-pub(in crate::session) struct UnnamedBranch {
+pub(crate) struct UnnamedBranch {
     folder: PathBuf,
     /// Where it will lie.
     named: PathBuf,
@@ -27,7 +27,7 @@ impl UnnamedBranch {
     ///
     /// # Errors
     /// The disk refuses; then there is nothing.
-    pub(in crate::session) fn write(
+    pub(crate) fn write(
         parent: &Path,
         manifest: &Manifest,
         shared: &[&Line],
@@ -54,7 +54,7 @@ impl UnnamedBranch {
     ///
     /// # Errors
     /// It cannot be opened.
-    pub(in crate::session) fn open(&self) -> Result<Session, RunError> {
+    pub(crate) fn open(&self) -> Result<Session, RunError> {
         Session::open(&self.folder, Access::Write, true)
     }
 
@@ -62,7 +62,7 @@ impl UnnamedBranch {
     ///
     /// # Errors
     /// The disk refuses, or it cannot be opened; then there is no branch.
-    pub(in crate::session) fn name(self) -> Result<Session, RunError> {
+    pub(crate) fn name(self) -> Result<Session, RunError> {
         let UnnamedBranch { folder, named } = &self;
         std::fs::rename(folder, named).map_err(RunError::io(named))?;
         let opened = named
@@ -101,7 +101,7 @@ impl Drop for UnnamedBranch {
 }
 
 /// Removes what programs have left that ended while they made a branch. What somebody makes at this moment is locked.
-pub(in crate::session) fn remove_leftovers(runs: &Path) {
+pub(crate) fn remove_leftovers(runs: &Path) {
     let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
     for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {
         if lock_run(&folder, "").is_ok() {

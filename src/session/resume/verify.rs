@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::integrity::Integrity;
 use super::sealing::SealKey;
-use crate::session::error::RunError;
-use crate::session::playback::{Origin, read};
-use crate::session::state::Session;
+use crate::error::RunError;
+use crate::playback::{Origin, read};
+use crate::state::Session;
 
 /// What a verification found out.
 #[derive(Debug, Clone, PartialEq, Eq)]

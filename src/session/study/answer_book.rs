@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::session::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
-use crate::session::trajectory::{Line, Record};
+use crate::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
+use crate::trajectory::{Line, Record};
 
 /// What the record of a run says about questions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(in crate::session) struct AnswerBook {
+pub(crate) struct AnswerBook {
     /// Questionnaire, occasion and question of each answer.
     given: BTreeSet<(String, String, String)>,
     /// How often the person took up the run again, or started the clock again.
@@ -18,7 +18,7 @@ pub(in crate::session) struct AnswerBook {
 
 impl AnswerBook {
     /// What lines say, in their order.
-    pub(in crate::session) fn of<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnswerBook {
+    pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnswerBook {
         let mut book = AnswerBook::default();
         for line in lines {
             if let Record::Activity(activity) = &line.record {
@@ -29,7 +29,7 @@ impl AnswerBook {
     }
 
     /// Takes note of what a person did.
-    pub(in crate::session) fn note(&mut self, activity: &Activity) {
+    pub(crate) fn note(&mut self, activity: &Activity) {
         match activity {
             Activity::Answer(answer) => {
                 let Answered { questionnaire, occasion, id, .. } = answer.clone();
@@ -45,7 +45,7 @@ impl AnswerBook {
     }
 
     /// Whether a question of a questionnaire was answered on an occasion.
-    pub(in crate::session) fn has(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
+    pub(crate) fn has(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
         let place = (questionnaire.to_owned(), occasion.to_owned(), question.to_owned());
         self.given.contains(&place)
     }

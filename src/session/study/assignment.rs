@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::session::error::RunError;
-use crate::session::folder::runs::participant_folder;
-use crate::world::params::ParameterError;
+use crate::error::RunError;
+use crate::folder::runs::participant_folder;
+use novamind_world::params::ParameterError;
 
 /// Name of the file in the folder of the study.
 pub const ASSIGNMENT_FILE: &str = "assignment.csv";

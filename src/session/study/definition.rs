@@ -13,12 +13,12 @@ use super::code::CodeCheck;
 use super::keys::seal_key_of;
 use super::questions::Questionnaire;
 use super::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
-use crate::session::error::RunError;
-use crate::session::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
-use crate::session::resume::sealing::SealKey;
-use crate::session::trajectory::record::Activity;
-use crate::voice::model::settings::ModelSettings;
-use crate::world::params::ParameterError;
+use crate::error::RunError;
+use crate::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
+use crate::resume::sealing::SealKey;
+use crate::trajectory::record::Activity;
+use novamind_voice::model::settings::ModelSettings;
+use novamind_world::params::ParameterError;
 
 /// Name of the file that makes a folder a study.
 pub const STUDY_FILE: &str = "study.toml";
@@ -430,7 +430,7 @@ impl Protocol {
 }
 
 /// Returns the first 16 digits of a digest, for messages.
-pub(in crate::session) fn shortened(digest: &str) -> &str {
+pub(crate) fn shortened(digest: &str) -> &str {
     digest.get(..16).unwrap_or(digest)
 }
 

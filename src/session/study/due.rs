@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use super::definition::Study;
 use super::questions::{Moment, Question, Questionnaire};
 use super::rules::FreeText;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Answered, Asked};
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Answered, Asked};
 
 /// A question that is due.
 #[derive(Debug, Clone, PartialEq)]

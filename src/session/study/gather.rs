@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::session::archive::{LabPublicKey, import_run, is_archive_name};
-use crate::session::error::RunError;
-use crate::session::folder::manifest::Manifest;
-use crate::session::play::afterwards::lines_afterwards;
-use crate::session::study::assignment::Assignment;
-use crate::session::study::definition::shortened;
-use crate::session::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
-use crate::session::trajectory::{Trajectory, nanoseconds};
+use crate::archive::{LabPublicKey, import_run, is_archive_name};
+use crate::error::RunError;
+use crate::folder::manifest::Manifest;
+use crate::play::afterwards::lines_afterwards;
+use crate::study::assignment::Assignment;
+use crate::study::definition::shortened;
+use crate::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
+use crate::trajectory::{Trajectory, nanoseconds};
 
 /// How deep folders are searched.
 const DEEPEST: usize = 12;

@@ -4,9 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::session::archive::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
-use crate::session::error::RunError;
-use crate::session::resume::sealing::SealKey;
+use crate::archive::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
+use crate::error::RunError;
+use crate::resume::sealing::SealKey;
 
 /// File of the private key.
 pub const LAB_KEY_FILE: &str = "lab.key";

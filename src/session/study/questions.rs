@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::world::params::ParameterError;
+use novamind_world::params::ParameterError;
 
 /// Questions that are asked together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::error::RunError;
-use crate::session::folder::durable::append_synced;
-use crate::session::trajectory::{now, read_regular_text};
+use crate::error::RunError;
+use crate::folder::durable::append_synced;
+use crate::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";

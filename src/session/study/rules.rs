@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::folder::mode::Mode;
-use crate::session::trajectory::record::Ended;
+use crate::folder::mode::Mode;
+use crate::trajectory::record::Ended;
 
 /// The rules of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::session::folder::derived::Derived;
-use crate::session::folder::lock::is_being_played;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::runs::{all_run_folders, last_lines};
-use crate::session::study::definition::Study;
-use crate::session::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
-use crate::session::trajectory::{Line, Record, now, seconds};
+use crate::folder::derived::Derived;
+use crate::folder::lock::is_being_played;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::{all_run_folders, last_lines};
+use crate::study::definition::Study;
+use crate::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
+use crate::trajectory::{Line, Record, now, seconds};
 
 /// A run of a study as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::folder::mode::Mode;
+use crate::folder::mode::Mode;
 
 /// The study, and the place of this person in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ pub struct StudyStamp {
 #[cfg(test)]
 impl StudyStamp {
     /// That of a pilot in which nobody is assigned to anything.
-    pub(in crate::session) fn pilot(practice: bool) -> StudyStamp {
+    pub(crate) fn pilot(practice: bool) -> StudyStamp {
         StudyStamp {
             name: "pilot".to_owned(),
             digest: String::new(),

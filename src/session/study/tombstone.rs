@@ -4,16 +4,16 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::session::error::RunError;
-use crate::session::folder::durable::{create_folder, write_whole};
-use crate::session::trajectory::now;
+use crate::error::RunError;
+use crate::folder::durable::{create_folder, write_whole};
+use crate::trajectory::now;
 
 /// Name of the file.
 const FILE: &str = "withdrawn.toml";
 
 /// That somebody has withdrawn, and which runs were erased.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(in crate::session) struct Tombstone {
+pub(crate) struct Tombstone {
     /// Runs that were erased, with blanks between them.
     run: String,
     /// Digest of the study's protocol.
@@ -24,12 +24,12 @@ pub(in crate::session) struct Tombstone {
 
 impl Tombstone {
     /// That these runs of a study are erased now.
-    pub(in crate::session) fn of(runs: &[String], study: &str) -> Tombstone {
+    pub(crate) fn of(runs: &[String], study: &str) -> Tombstone {
         Tombstone { run: runs.join(" "), study: study.to_owned(), at: now() }
     }
 
     /// Whether there is one in a folder of runs, whatever it says.
-    pub(in crate::session) fn is_in(folder: &Path) -> bool {
+    pub(crate) fn is_in(folder: &Path) -> bool {
         folder.join(FILE).exists()
     }
 
@@ -37,7 +37,7 @@ impl Tombstone {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub(in crate::session) fn write(&self, folder: &Path) -> Result<(), RunError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), RunError> {
         create_folder(folder)?;
         write_whole(&folder.join(FILE), toml::to_string(self).unwrap_or_default().as_bytes())
     }

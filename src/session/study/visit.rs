@@ -9,17 +9,17 @@ use super::definition::{PracticeOffer, SeedPlan, Study};
 use super::stamp::StudyStamp;
 use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
-use crate::session::error::RunError;
-use crate::session::folder::agreement::Agreed;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::consent::ConsentText;
-use crate::session::folder::create::{NewRun, Storage, StudyEntry};
-use crate::session::folder::derived::Derived;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
+use crate::error::RunError;
+use crate::folder::agreement::Agreed;
+use crate::folder::configuration::Configuration;
+use crate::folder::consent::ConsentText;
+use crate::folder::create::{NewRun, Storage, StudyEntry};
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
+use crate::resume::open::Access;
+use crate::state::Session;
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \

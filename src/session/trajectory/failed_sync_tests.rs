@@ -5,9 +5,9 @@ use std::path::Path;
 use super::page_cache::PageCache;
 use super::record::Memo;
 use super::{Durability, Record, Trajectory, TrajectoryWriter};
-use crate::session::folder::create::NewRun;
-use crate::session::folder::{configuration::Configuration, durable::probe, first_line::start_of};
-use crate::session::state::Session;
+use crate::folder::create::NewRun;
+use crate::folder::{configuration::Configuration, durable::probe, first_line::start_of};
+use crate::state::Session;
 
 /// A trajectory with its first line, on a disk whose syncs can fail.
 fn writer(folder: &Path) -> (TrajectoryWriter, PageCache) {

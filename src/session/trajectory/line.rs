@@ -10,8 +10,8 @@ use serde_json::{Map, Value};
 use super::record::Record;
 use super::regular_file::open_regular_file;
 use super::time::{nanoseconds, seconds};
-use crate::database::Position;
-use crate::session::trajectory::DOES_NOT_FOLLOW;
+use crate::trajectory::DOES_NOT_FOLLOW;
+use novamind_database::Position;
 
 /// A line that was read back.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,12 +71,12 @@ impl Line {
     }
 
     /// Reads the first line of a file; none if it is not whole.
-    pub(in crate::session) fn first(text: &[u8]) -> Option<Line> {
+    pub(crate) fn first(text: &[u8]) -> Option<Line> {
         Line::read(text, 0, &line_hash(b""), true).ok()
     }
 
     /// Reads a line whose place in its file does not matter, and whose sum nobody asks for; none if it cannot be read.
-    pub(in crate::session) fn unchecked(text: &[u8]) -> Option<Line> {
+    pub(crate) fn unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;
         let (seq, day, at) = (frame.seq.unwrap_or(0), frame.day?, frame.at.unwrap_or_default());
         let record = Record::read(&frame.kind?, text).ok()?;
@@ -116,8 +116,8 @@ impl Line {
     }
 
     /// A line that stands in no file.
-    #[cfg(test)]
-    pub(crate) fn alone(seq: u64, day: u32, at: &str, record: Record) -> Line {
+    #[cfg(any(test, feature = "test-kit"))]
+    pub fn alone(seq: u64, day: u32, at: &str, record: Record) -> Line {
         let text = Value::Object(record.fields()).to_string().into_bytes();
         Line { seq, day, at: at.to_owned(), record, hash: line_hash(&text), text: text.into() }
     }
@@ -129,7 +129,7 @@ pub(super) fn line_hash(bytes: &[u8]) -> String {
 }
 
 /// Hash of the first line of a file; none if it cannot be read or has no whole line.
-pub(in crate::session) fn hash_of_first_line(path: &Path) -> Option<String> {
+pub(crate) fn hash_of_first_line(path: &Path) -> Option<String> {
     let mut line = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut line).ok()?;
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))

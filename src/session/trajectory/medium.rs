@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// Where lines end up: a file, or in tests one with a page cache that can fail.
-pub(in crate::session) trait Medium: Send {
+pub(crate) trait Medium: Send {
     /// Appends bytes.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Makes everything appended survive a power cut. After an error, whatever was appended since the last successful sync

@@ -34,9 +34,9 @@ pub(super) use time::scripted_steady;
 pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
 pub use writer::{Durability, TrajectoryWriter};
 
-use crate::database::Position;
-use crate::session::error::RunError;
+use crate::error::RunError;
 use line::line_hash;
+use novamind_database::Position;
 
 /// The line that says how a run ended, among its lines; none while it is unfinished.
 pub fn end_of(lines: &[Line]) -> Option<&Line> {
@@ -156,9 +156,9 @@ pub(super) const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::NewRun;
-    use crate::session::trajectory::record::{Activity, Memo, Query, QuerySource, View};
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::NewRun;
+    use crate::trajectory::record::{Activity, Memo, Query, QuerySource, View};
     use serde_json::{Value, json};
     use std::path::PathBuf;
 
@@ -167,11 +167,11 @@ mod tests {
     }
 
     fn start() -> Record {
-        let manifest = crate::session::state::Session::create(NewRun::default(), &Configuration::shipped())
+        let manifest = crate::state::Session::create(NewRun::default(), &Configuration::shipped())
             .expect("a run")
             .manifest()
             .clone();
-        crate::session::folder::first_line::start_of(&manifest)
+        crate::folder::first_line::start_of(&manifest)
     }
 
     /// A start, and memos after it.

@@ -10,7 +10,7 @@ use super::medium::Medium;
 
 /// The file; clones are the same one.
 #[derive(Clone)]
-pub(in crate::session) struct PageCache(Arc<Mutex<CachedBytes>>);
+pub(crate) struct PageCache(Arc<Mutex<CachedBytes>>);
 
 #[derive(Default)]
 struct CachedBytes {

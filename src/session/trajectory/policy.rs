@@ -1,7 +1,7 @@
 //! Runs that a policy plays: what their weeks say of it.
 
 use super::{Line, Record};
-use crate::session::trajectory::record::Via;
+use crate::trajectory::record::Via;
 
 /// What the rationale of a policy's week says before the policy's name.
 const BEFORE_NAME: &str = "policy ";

@@ -54,7 +54,7 @@ pub fn steady() -> Duration {
 }
 
 /// The same of a scripted clock, which is one for all machines.
-pub(in crate::session) fn scripted_steady() -> Option<Duration> {
+pub(crate) fn scripted_steady() -> Option<Duration> {
     scripted().map(|moment| Duration::from_nanos(moment.unsigned_abs()))
 }
 

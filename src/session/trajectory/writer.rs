@@ -13,10 +13,10 @@ use super::record::Record;
 use super::regular_file::{read_regular_file, write_to_regular_file};
 use super::synced_file::SyncedFile;
 use super::time::now;
-use crate::database::Position;
-use crate::session::error::RunError;
-use crate::session::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
-use crate::session::trajectory::Trajectory;
+use crate::error::RunError;
+use crate::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
+use crate::trajectory::Trajectory;
+use novamind_database::Position;
 
 /// When a line has to be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -253,7 +253,7 @@ impl TrajectoryWriter {
 
     /// Puts another medium in place of the file.
     #[cfg(test)]
-    pub(in crate::session) fn write_to(&mut self, medium: Box<dyn Medium>) {
+    pub(crate) fn write_to(&mut self, medium: Box<dyn Medium>) {
         self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
     }
 

@@ -6,17 +6,17 @@ use serde_json::json;
 
 use super::decision_edit::{DecisionEdit, Opening, edits, let_capacity_follow};
 use super::lesson_limits::refuse_locked;
-use crate::session::counterfactual::companies::{CallHere, in_other_numbers};
-use crate::session::counterfactual::edits::{Edits, FollowedUsage};
-use crate::session::counterfactual::script::{Move, PastCall, moves};
-use crate::session::figures::capacity_by_usage::UsageRule;
-use crate::session::folder::mode::Mode;
-use crate::session::resume::branch::not_saved;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{JudgedPost, Via, VoiceAnswer};
-use crate::session::trajectory::{Line, Record, Trajectory};
-use crate::tools::{Refusal, ToolId};
-use crate::world::customers::numbers::CustomerNumbers;
+use crate::counterfactual::companies::{CallHere, in_other_numbers};
+use crate::counterfactual::edits::{Edits, FollowedUsage};
+use crate::counterfactual::script::{Move, PastCall, moves};
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::folder::mode::Mode;
+use crate::resume::branch::not_saved;
+use crate::state::Session;
+use crate::trajectory::record::{JudgedPost, Via, VoiceAnswer};
+use crate::trajectory::{Line, Record, Trajectory};
+use novamind_tools::{Refusal, ToolId};
+use novamind_world::customers::numbers::CustomerNumbers;
 
 /// A branch that was played up to where its run stands.
 pub struct Adopted {

@@ -4,12 +4,12 @@ use serde_json::Value;
 
 use super::decision_edit::DecisionEdit;
 use super::figure::{BranchFigure, Values, values};
-use crate::session::counterfactual::branch::BranchOutcome;
-use crate::session::counterfactual::edits::{AddedCall, Edits};
-use crate::session::counterfactual::script::{Move, PastCall, PastSetting};
-use crate::session::play::overrides::json_of_value;
-use crate::tools::{Kind, Refusal, ToolId};
-use crate::world::events::DayFigures;
+use crate::counterfactual::branch::BranchOutcome;
+use crate::counterfactual::edits::{AddedCall, Edits};
+use crate::counterfactual::script::{Move, PastCall, PastSetting};
+use crate::play::overrides::json_of_value;
+use novamind_tools::{Kind, Refusal, ToolId};
+use novamind_world::events::DayFigures;
 
 /// Branches of a run, under the same luck.
 #[derive(Debug, Clone, PartialEq)]

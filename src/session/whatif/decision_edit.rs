@@ -5,17 +5,17 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value, json};
 
-use crate::notation::json_number;
-use crate::session::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage};
-use crate::session::counterfactual::kept_state::KeptState;
-use crate::session::counterfactual::script::{Move, PastCall};
-use crate::session::figures::capacity_by_usage::UsageRule;
-use crate::session::folder::mode::Mode;
-use crate::session::play::overrides::value_of_json;
-use crate::session::play::parameters::unknown;
-use crate::tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
-use crate::world::params::Params;
-use crate::world::settings::Settings;
+use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage};
+use crate::counterfactual::kept_state::KeptState;
+use crate::counterfactual::script::{Move, PastCall};
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::folder::mode::Mode;
+use crate::play::overrides::value_of_json;
+use crate::play::parameters::unknown;
+use novamind_base::notation::json_number;
+use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
+use novamind_world::params::Params;
+use novamind_world::settings::Settings;
 
 /// Largest factor of settings.
 const MOST_FACTOR: f64 = 1000.0;

@@ -1,9 +1,9 @@
 //! Which figures branches are compared by.
 
-use crate::session::counterfactual::branch::BranchOutcome;
-use crate::session::figures::week::WeekFigures;
-use crate::session::why::FigureUnit;
-use crate::world::events::DayFigures;
+use crate::counterfactual::branch::BranchOutcome;
+use crate::figures::week::WeekFigures;
+use crate::why::FigureUnit;
+use novamind_world::events::DayFigures;
 
 /// Days of which leavers are counted against those who were there before.
 const CHURN_DAYS: usize = 30;

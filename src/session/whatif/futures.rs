@@ -1,7 +1,7 @@
 //! Branches under luck that is redrawn: what may come, and how sure a difference is.
 
 use super::figure::{BranchFigure, Values};
-use crate::statistics::{PairedDifference, quantile_of_sorted};
+use novamind_base::statistics::{PairedDifference, quantile_of_sorted};
 
 /// Branches under several futures, the same ones for each.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,7 +86,7 @@ fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::Interval;
+    use novamind_base::statistics::Interval;
 
     fn futures(cash: &[[f64; 2]]) -> Futures {
         let week = |value: f64| {

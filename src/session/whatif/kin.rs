@@ -5,11 +5,11 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::session::figures::week::week_of;
-use crate::session::folder::derived::manifest_of;
-use crate::session::folder::runs::{RunSummary, list_runs, run_folder};
-use crate::session::trajectory::record::Parent;
-use crate::session::trajectory::{Line, Record, Trajectory};
+use crate::figures::week::week_of;
+use crate::folder::derived::manifest_of;
+use crate::folder::runs::{RunSummary, list_runs, run_folder};
+use crate::trajectory::record::Parent;
+use crate::trajectory::{Line, Record, Trajectory};
 
 /// A run in the tree.
 #[derive(Debug, Clone)]

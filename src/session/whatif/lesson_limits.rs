@@ -4,14 +4,14 @@
 use std::path::Path;
 
 use super::decision_edit::DecisionEdit;
-use crate::session::counterfactual::past::Past;
-use crate::session::counterfactual::script::Move;
-use crate::session::lesson::definition::LessonPart;
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::lesson::standing::LessonStanding;
-use crate::session::trajectory::Trajectory;
-use crate::session::why::not_readable;
-use crate::tools::{Refusal, ToolId};
+use crate::counterfactual::past::Past;
+use crate::counterfactual::script::Move;
+use crate::lesson::definition::LessonPart;
+use crate::lesson::lesson_file::Lesson;
+use crate::lesson::standing::LessonStanding;
+use crate::trajectory::Trajectory;
+use crate::why::not_readable;
+use novamind_tools::{Refusal, ToolId};
 
 /// Where the student of an unfinished lesson stands, and whether the lesson of a run, over or not, moves the capacity by itself.
 ///
@@ -34,7 +34,7 @@ pub(super) fn lesson_of(folder: &Path, past: &Past) -> Result<(Option<LessonStan
 ///
 /// # Errors
 /// `not_in_this_lesson`.
-pub(in crate::session) fn refuse_locked(
+pub(crate) fn refuse_locked(
     standing: &LessonStanding,
     decided: &[DecisionEdit],
     moves: &[Move],

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
-use crate::session::figures::capacity_by_usage::UsageRule;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::lesson::conduct::LessonEntry;
-use crate::session::lesson::lesson_file::Lesson;
-use crate::session::trajectory::record::Via;
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::lesson::conduct::LessonEntry;
+use crate::lesson::lesson_file::Lesson;
+use crate::trajectory::record::Via;
 
 /// A company that grows out of its servers; what moves them is the lesson.
 const PLAN: &str = r#"

@@ -9,7 +9,7 @@ mod decision_edit;
 mod figure;
 mod futures;
 mod kin;
-pub(in crate::session) mod lesson_limits;
+pub(crate) mod lesson_limits;
 #[cfg(test)]
 mod lesson_tests;
 #[cfg(test)]
@@ -37,13 +37,13 @@ use super::counterfactual::one_each::one_each;
 use super::counterfactual::past::Past;
 use super::counterfactual::script::{Move, PastDecision};
 use super::why::{Sight, not_readable, sight};
-use crate::session::figures::capacity_by_usage::UsageRule;
-use crate::session::figures::week::WeekFigures;
-use crate::session::folder::mode::Mode;
-use crate::session::lesson::standing::LessonStanding;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::events::DayFigures;
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::figures::week::WeekFigures;
+use crate::folder::mode::Mode;
+use crate::lesson::standing::LessonStanding;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::events::DayFigures;
 
 /// Alternatives that stand side by side, at most.
 pub const MOST_ALTERNATIVES: usize = 3;

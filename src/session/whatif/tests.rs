@@ -6,15 +6,15 @@ use std::path::Path;
 use serde_json::json;
 
 use super::*;
-use crate::session::counterfactual::last_read::LastRead;
-use crate::session::counterfactual::test_kit::played;
-use crate::session::folder::mode::Mode;
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
-use crate::session::trajectory::{Record, Trajectory};
-use crate::tools::ToolId;
-use crate::world::identifiers::Group;
+use crate::counterfactual::last_read::LastRead;
+use crate::counterfactual::test_kit::played;
+use crate::folder::mode::Mode;
+use crate::resume::open::Access;
+use crate::state::Session;
+use crate::trajectory::record::Via;
+use crate::trajectory::{Record, Trajectory};
+use novamind_tools::ToolId;
+use novamind_world::identifiers::Group;
 
 fn on(_: usize, _: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())

@@ -1,14 +1,14 @@
 //! Who may see causes. They are simulated with the hidden state, so they tell of it.
 
 use super::quantity::WeekQuantity;
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
 
 /// How finely the inputs of the world are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) enum Sight {
+pub(crate) enum Sight {
     /// The market is one cause: what moves it is hidden.
     Market,
     /// Every input for itself.
@@ -19,7 +19,7 @@ pub(in crate::session) enum Sight {
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, and for one of which its study shows no results.
-pub(in crate::session) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
+pub(crate) fn sight(manifest: &Manifest, ended: bool) -> Result<Sight, Refusal> {
     match (manifest.mode, ended) {
         (Mode::Baseline, true) if manifest.session_rules().hides_results() => Err(Refusal::new(
             "not_in_this_mode",
@@ -59,11 +59,11 @@ pub(super) fn unknown_group(group: Group, week: u32) -> Refusal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::NewRun;
-    use crate::session::state::Session;
-    use crate::session::study::rules::{ResultsShown, SessionRules};
-    use crate::session::study::stamp::StudyStamp;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::NewRun;
+    use crate::state::Session;
+    use crate::study::rules::{ResultsShown, SessionRules};
+    use crate::study::stamp::StudyStamp;
 
     #[test]
     fn an_ended_baseline_tells_its_causes_unless_its_study_shows_no_results_of_it() {

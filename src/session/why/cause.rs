@@ -1,7 +1,7 @@
 //! What can have changed a figure, and by how much it changed itself.
 
-use crate::session::figures::changes::Change;
-use crate::tools::ToolId;
+use crate::figures::changes::Change;
+use novamind_tools::ToolId;
 
 /// A cause of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

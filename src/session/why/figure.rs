@@ -1,8 +1,8 @@
 //! Figures of a week whose change can be explained.
 
 use super::simulated_week::{GroupOfWeek, SimulatedWeek};
-use crate::session::figures::week::WeekFigures;
-use crate::world::events::Category;
+use crate::figures::week::WeekFigures;
+use novamind_world::events::Category;
 
 /// What a figure is counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,7 +145,7 @@ impl WeekFigure {
 
     /// Its value in a week whose groups are not told; none for a figure that is made of groups or hidden. Not a number where
     /// it has no value.
-    pub(in crate::session) fn of_week(self, figures: &WeekFigures) -> Option<f64> {
+    pub(crate) fn of_week(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {
             return None;

@@ -10,18 +10,18 @@ use super::cause::{Cause, Detail};
 use super::inputs::TwoWeeks;
 use super::simulated_week::SimulatedWeek;
 use super::{OnProgress, WhyProgress};
-use crate::session::counterfactual::branch::{BranchOutcome, counterfactual};
-use crate::session::counterfactual::edits::Edits;
-use crate::session::counterfactual::kept_state::KeptState;
-use crate::session::counterfactual::one_each::one_each;
-use crate::session::counterfactual::past::Past;
-use crate::session::counterfactual::script::{Move, PastCall};
-use crate::session::error::RunError;
-use crate::session::figures::changes::changes;
-use crate::tools::Kind;
-use crate::world::events::DayFigures;
-use crate::world::held::Held;
-use crate::world::identifiers::Group;
+use crate::counterfactual::branch::{BranchOutcome, counterfactual};
+use crate::counterfactual::edits::Edits;
+use crate::counterfactual::kept_state::KeptState;
+use crate::counterfactual::one_each::one_each;
+use crate::counterfactual::past::Past;
+use crate::counterfactual::script::{Move, PastCall};
+use crate::error::RunError;
+use crate::figures::changes::changes;
+use novamind_tools::Kind;
+use novamind_world::events::DayFigures;
+use novamind_world::held::Held;
+use novamind_world::identifiers::Group;
 
 /// Which causes are taken away: the player's calls and inputs of the world, by their place in the laboratory, a bit for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -28,11 +28,11 @@ pub use week::{Why, WhyPart};
 use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::past::Past;
 use super::error::RunError;
-use crate::session::lesson::over::is_lesson_over;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-pub(in crate::session) use access::{Sight, sight};
+use crate::lesson::over::is_lesson_over;
+use crate::state::Session;
+pub(crate) use access::{Sight, sight};
 use laboratory::Laboratory;
+use novamind_tools::Refusal;
 
 /// How far an answer has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,7 +114,7 @@ impl Causes {
     }
 }
 
-pub(in crate::session) fn not_readable(error: &RunError) -> Refusal {
+pub(crate) fn not_readable(error: &RunError) -> Refusal {
     Refusal::new("not_readable", error.to_string())
 }
 

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use super::figure::{FigureUnit, WeekFigure};
 use super::simulated_week::SimulatedWeek;
-use crate::session::xray::breakpoint::grammar::{ConditionProblem, Words, why_not};
-use crate::session::xray::breakpoint::measure::NoQuantity;
-use crate::world::identifiers::Group;
+use crate::xray::breakpoint::grammar::{ConditionProblem, Words, why_not};
+use crate::xray::breakpoint::measure::NoQuantity;
 use novamind_base::nearest;
+use novamind_world::identifiers::Group;
 
 /// A figure of a week, of the company or of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! A week that was simulated: what it was like for the company and for each group.
 
-use crate::session::counterfactual::branch::BranchOutcome;
-use crate::session::counterfactual::kept_state::KeptState;
-use crate::session::figures::churn::churn;
-use crate::session::figures::week::WeekFigures;
-use crate::session::xray::measured_group::MeasuredGroup;
-use crate::world::events::Category;
-use crate::world::identifiers::{ByGroup, Group};
+use crate::counterfactual::branch::BranchOutcome;
+use crate::counterfactual::kept_state::KeptState;
+use crate::figures::churn::churn;
+use crate::figures::week::WeekFigures;
+use crate::xray::measured_group::MeasuredGroup;
+use novamind_world::events::Category;
+use novamind_world::identifiers::{ByGroup, Group};
 
 /// What is paid at once, and for nothing that goes on.
 const PURCHASES: [Category; 3] =

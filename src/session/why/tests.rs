@@ -6,13 +6,13 @@ use serde_json::json;
 
 use super::simulated_week::{GroupOfWeek, SimulatedWeek};
 use super::*;
-use crate::session::counterfactual::test_kit::{WEEKS, played};
-use crate::session::folder::mode::Mode;
-use crate::session::trajectory::record::Via;
-use crate::session::xray::measured_group::MeasuredGroup;
-use crate::session::xray::mood::mood_of;
-use crate::tools::ToolId;
-use crate::world::identifiers::{ByGroup, Group};
+use crate::counterfactual::test_kit::{WEEKS, played};
+use crate::folder::mode::Mode;
+use crate::trajectory::record::Via;
+use crate::xray::measured_group::MeasuredGroup;
+use crate::xray::mood::mood_of;
+use novamind_tools::ToolId;
+use novamind_world::identifiers::{ByGroup, Group};
 
 fn on(_: WhyProgress) -> ControlFlow<()> {
     ControlFlow::Continue(())
@@ -378,7 +378,7 @@ fn what_was_paid_once_the_week_before_is_a_cause_and_no_luck() {
     let mut session = played(runs.path(), Mode::Sandbox, 3, project);
     let forecasts = session.naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    let paid = -session.weeks()[WEEKS as usize].booked.of(crate::world::events::Category::ResearchProject);
+    let paid = -session.weeks()[WEEKS as usize].booked.of(novamind_world::events::Category::ResearchProject);
     assert!(paid > 0.0);
     let earlier = |why: &Why| {
         let part = why.parts.iter().find(|part| part.cause == Cause::EarlierPurchases);

@@ -7,7 +7,7 @@ use super::laboratory::{Candidate, Laboratory, Without};
 use super::quantity::WeekQuantity;
 use super::shapley::shapley;
 use super::simulated_week::SimulatedWeek;
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 /// Causes that are valued for themselves; more of them would take too many simulations.
 const MOST: usize = 6;

@@ -1,13 +1,13 @@
 //! A thread as the company sees it on a morning: what it would accept, and what it would answer.
 
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Subscriber;
-use crate::world::enterprise::letters::{late_days, late_penalty};
-use crate::world::enterprise::{
+use novamind_world::customers::Customers;
+use novamind_world::customers::columns::Subscriber;
+use novamind_world::enterprise::letters::{late_days, late_penalty};
+use novamind_world::enterprise::{
     Answer, Enterprise, Judge, Negotiation, Thread, counter_price, highest_price, moved_relationship,
 };
-use crate::world::events::{Offering, Sender, ThreadKind};
-use crate::world::identifiers::{ByPlan, Group};
+use novamind_world::events::{Offering, Sender, ThreadKind};
+use novamind_world::identifiers::{ByPlan, Group};
 
 /// A plan, as a company judges it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +56,7 @@ pub struct CompanyDay {
 }
 
 /// A thread this morning; none if it is over.
-pub(in crate::session) fn company_day(
+pub(crate) fn company_day(
     thread: &Thread,
     enterprise: &Enterprise,
     customers: &Customers,

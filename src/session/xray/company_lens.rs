@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::company_day::{CompanyDay, company_day};
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::customers::Customers;
-use crate::world::day::watch::DayWatch;
-use crate::world::enterprise::{Enterprise, Negotiation};
-use crate::world::identifiers::Group;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::customers::Customers;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::enterprise::{Enterprise, Negotiation};
+use novamind_world::identifiers::Group;
 
 /// A company, up to the day that is shown.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,12 +32,7 @@ impl CompanyLens {
 
 impl Session {
     /// A company on a day that it has reached.
-    pub(in crate::session) fn company_lens(
-        &self,
-        customer: u32,
-        group: Group,
-        day: u32,
-    ) -> Result<CompanyLens, Refusal> {
+    pub(crate) fn company_lens(&self, customer: u32, group: Group, day: u32) -> Result<CompanyLens, Refusal> {
         let diary = Arc::new(CompanyDiary { customer, days: Mutex::default() });
         self.watch_up_to(day, diary.clone())?;
         let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));

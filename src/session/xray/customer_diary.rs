@@ -3,19 +3,19 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::weighed::Weighed;
-use crate::world::customers::choice::{Choice, offered};
-use crate::world::customers::columns::Block;
-use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::day::watch::DayWatch;
-use crate::world::events::{EndCause, Facts, Source};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
-use crate::world::market::arrivals::{Arrivals, first_look};
-use crate::world::market::leads::LeadFactors;
-use crate::world::params::Params;
-use crate::world::retention::due_today;
-use crate::world::retention::renewal::RenewalContext;
-use crate::world::retention::weighing::weigh;
-use crate::world::state::World;
+use novamind_world::customers::choice::{Choice, offered};
+use novamind_world::customers::columns::Block;
+use novamind_world::customers::curve::{Curve, required_quality};
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::{EndCause, Facts, Source};
+use novamind_world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use novamind_world::market::arrivals::{Arrivals, first_look};
+use novamind_world::market::leads::LeadFactors;
+use novamind_world::params::Params;
+use novamind_world::retention::due_today;
+use novamind_world::retention::renewal::RenewalContext;
+use novamind_world::retention::weighing::weigh;
+use novamind_world::state::World;
 
 /// A plan, as a lead sees it.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +82,7 @@ pub struct CustomerDay {
 }
 
 /// Keeps the days of one individual.
-pub(in crate::session) struct CustomerDiary {
+pub(crate) struct CustomerDiary {
     customer: u32,
     group: Group,
     n: u32,
@@ -91,21 +91,21 @@ pub(in crate::session) struct CustomerDiary {
 }
 
 #[derive(Default)]
-pub(in crate::session) struct CustomerPages {
-    pub(in crate::session) first: Option<FirstDecision>,
-    pub(in crate::session) days: Vec<CustomerDay>,
+pub(crate) struct CustomerPages {
+    pub(crate) first: Option<FirstDecision>,
+    pub(crate) days: Vec<CustomerDay>,
     today: Option<CustomerDay>,
     last_bill: Option<ByPlan<f64>>,
 }
 
 impl CustomerDiary {
     /// An empty one of the n-th customer of a group.
-    pub(in crate::session) fn of(customer: u32, (group, n): (Group, u32), arrival_day: u32) -> CustomerDiary {
+    pub(crate) fn of(customer: u32, (group, n): (Group, u32), arrival_day: u32) -> CustomerDiary {
         CustomerDiary { customer, group, n, arrival_day, pages: Mutex::default() }
     }
 
     /// What it holds.
-    pub(in crate::session) fn take(&self) -> CustomerPages {
+    pub(crate) fn take(&self) -> CustomerPages {
         std::mem::take(&mut *self.pages())
     }
 

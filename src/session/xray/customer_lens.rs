@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::customer_diary::{CustomerDay, CustomerDiary, FirstDecision};
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
 
 /// An individual, up to the day that is shown.
 #[derive(Debug, Clone)]
@@ -51,7 +51,7 @@ impl CustomerLens {
 
 impl Session {
     /// An individual on a day that it has reached.
-    pub(in crate::session) fn customer_lens(
+    pub(crate) fn customer_lens(
         &self,
         customer: u32,
         found: (Group, u32),

@@ -3,26 +3,26 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use crate::world::canonical::hash_of;
-use crate::world::customers::columns::Subscriber;
-use crate::world::day::closing_figures;
-use crate::world::day::watch::DayWatch;
-use crate::world::events::Facts;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::state::{PartHash, World};
+use novamind_world::canonical::hash_of;
+use novamind_world::customers::columns::Subscriber;
+use novamind_world::day::closing_figures;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::Facts;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::state::{PartHash, World};
 
 /// The end of a day.
 #[derive(Debug, Clone)]
-pub(in crate::session) struct DayEnd {
+pub(crate) struct DayEnd {
     /// Hashes of the parts of the state, and of the facts of the day.
-    pub(in crate::session) parts: Vec<PartHash>,
+    pub(crate) parts: Vec<PartHash>,
     /// Parameters with which the day was simulated.
-    pub(in crate::session) params: Params,
+    pub(crate) params: Params,
     /// Figures by name, hidden ones included, in one order.
-    pub(in crate::session) figures: Vec<(String, f64)>,
+    pub(crate) figures: Vec<(String, f64)>,
     /// Active subscribers by customer number.
-    pub(in crate::session) customers: BTreeMap<u32, (Group, Subscriber)>,
+    pub(crate) customers: BTreeMap<u32, (Group, Subscriber)>,
 }
 
 impl DayEnd {
@@ -83,19 +83,19 @@ fn figures_of(world: &World, facts: &Facts) -> Vec<(String, f64)> {
 }
 
 /// Keeps the ends of some days.
-pub(in crate::session) struct Album {
+pub(crate) struct Album {
     wanted: Vec<u32>,
     moments: Mutex<BTreeMap<u32, DayEnd>>,
 }
 
 impl Album {
     /// Of these days.
-    pub(in crate::session) fn of(wanted: &[u32]) -> Album {
+    pub(crate) fn of(wanted: &[u32]) -> Album {
         Album { wanted: wanted.to_vec(), moments: Mutex::default() }
     }
 
     /// The end of a day that has been seen.
-    pub(in crate::session) fn take(&self, day: u32) -> Option<DayEnd> {
+    pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.moments.lock().unwrap_or_else(PoisonError::into_inner).remove(&day)
     }
 }
@@ -110,24 +110,24 @@ impl DayWatch for Album {
 }
 
 /// Keeps the hashes of every day, day 1 first, and the ends of some.
-pub(in crate::session) struct Fingerprints {
+pub(crate) struct Fingerprints {
     parts: Mutex<Vec<Vec<PartHash>>>,
     album: Album,
 }
 
 impl Fingerprints {
     /// Of every day, with the ends of these.
-    pub(in crate::session) fn with_ends(wanted: &[u32]) -> Fingerprints {
+    pub(crate) fn with_ends(wanted: &[u32]) -> Fingerprints {
         Fingerprints { parts: Mutex::default(), album: Album::of(wanted) }
     }
 
     /// The hashes of all days so far.
-    pub(in crate::session) fn all(&self) -> Vec<Vec<PartHash>> {
+    pub(crate) fn all(&self) -> Vec<Vec<PartHash>> {
         self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// The end of a day that was wanted.
-    pub(in crate::session) fn take(&self, day: u32) -> Option<DayEnd> {
+    pub(crate) fn take(&self, day: u32) -> Option<DayEnd> {
         self.album.take(day)
     }
 }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 
 use super::day_end::{Album, DayEnd, Fingerprints};
-use crate::session::play::overrides::json_of_value;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
+use crate::play::overrides::json_of_value;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
 
 /// Customers of whom it is told in what they differ.
 const CUSTOMERS_TOLD: usize = 10;

@@ -1,9 +1,9 @@
 //! How far expectations and budgets have moved, group by group, and what the next application of drift adds.
 
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
-use crate::world::market::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
+use novamind_world::market::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
 
 /// A group.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,9 +5,9 @@ use super::lead_equation::WINDOW_DAYS;
 use super::quality_equation::QualityEquation;
 use super::reputation_equation::{ReputationEquation, Spillover};
 use super::satisfaction_equation::SatisfactionEquation;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
 
 impl Session {
     /// What was delivered to a group on a day, the last one if none is named. The look is recorded.

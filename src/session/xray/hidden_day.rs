@@ -7,110 +7,110 @@ use super::mood::mood_of;
 use super::quality_equation::QualityDay;
 use super::reputation_equation::ReputationDay;
 use super::satisfaction_equation::{MoodSums, MoodsByBlock, SatisfactionDay};
-use crate::world::context::DayContext;
-use crate::world::customers::Customers;
-use crate::world::customers::columns::Block;
-use crate::world::day::watch::DayWatch;
-use crate::world::enterprise::{Enterprise, Negotiation, Thread};
-use crate::world::events::{Facts, Reading, Sender, Snapshot};
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::Market;
-use crate::world::market::arrivals::{Arrivals, lead_context};
-use crate::world::market::competitors::{Event, severity};
-use crate::world::market::drift::DriftTotals;
-use crate::world::market::economy::Dimension;
-use crate::world::market::leads::{LeadFactors, word_of_mouth};
-use crate::world::market::reputation::ReputationWrite;
-use crate::world::morning::Morning;
-use crate::world::params::Params;
-use crate::world::retention::satisfaction::Mood;
-use crate::world::state::World;
+use novamind_world::context::DayContext;
+use novamind_world::customers::Customers;
+use novamind_world::customers::columns::Block;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::enterprise::{Enterprise, Negotiation, Thread};
+use novamind_world::events::{Facts, Reading, Sender, Snapshot};
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::Market;
+use novamind_world::market::arrivals::{Arrivals, lead_context};
+use novamind_world::market::competitors::{Event, severity};
+use novamind_world::market::drift::DriftTotals;
+use novamind_world::market::economy::Dimension;
+use novamind_world::market::leads::{LeadFactors, word_of_mouth};
+use novamind_world::market::reputation::ReputationWrite;
+use novamind_world::morning::Morning;
+use novamind_world::params::Params;
+use novamind_world::retention::satisfaction::Mood;
+use novamind_world::state::World;
 
 /// A day, as far as groups and the market go.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct HiddenDay {
+pub(crate) struct HiddenDay {
     /// Which groups were known.
-    pub(in crate::session) known: ByGroup<bool>,
+    pub(crate) known: ByGroup<bool>,
     /// Factors of the leads.
-    pub(in crate::session) leads: ByGroup<LeadFactors>,
+    pub(crate) leads: ByGroup<LeadFactors>,
     /// Leads by word of mouth before the factors, by the group whose subscribers bring them.
-    pub(in crate::session) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
+    pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
     /// Leads that came.
-    pub(in crate::session) came: ByGroup<u32>,
+    pub(crate) came: ByGroup<u32>,
     /// What quality was made of.
-    pub(in crate::session) quality: QualityDay,
+    pub(crate) quality: QualityDay,
     /// What moved satisfaction.
-    pub(in crate::session) satisfaction: ByGroup<SatisfactionDay>,
+    pub(crate) satisfaction: ByGroup<SatisfactionDay>,
     /// What moved reputations.
-    pub(in crate::session) reputation: ReputationDay,
+    pub(crate) reputation: ReputationDay,
     /// What rivals could copy in the evening.
-    pub(in crate::session) banks: Banks,
+    pub(crate) banks: Banks,
     /// Threads of the morning in which somebody was still to answer, where they are kept.
-    pub(in crate::session) threads: Vec<CompanyDay>,
+    pub(crate) threads: Vec<CompanyDay>,
     /// The groups in the evening.
-    pub(in crate::session) groups: ByGroup<GroupEvening>,
+    pub(crate) groups: ByGroup<GroupEvening>,
     /// The market in the evening.
-    pub(in crate::session) market: MarketEvening,
+    pub(crate) market: MarketEvening,
 }
 
 /// Improvements, and how much of them no rival has copied.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct Banks {
+pub(crate) struct Banks {
     /// Quality gained for everybody.
-    pub(in crate::session) shared_bonus: f64,
+    pub(crate) shared_bonus: f64,
     /// What is left of it to be copied.
-    pub(in crate::session) shared: f64,
+    pub(crate) shared: f64,
     /// Quality gained for single groups.
-    pub(in crate::session) group_bonus: ByGroup<f64>,
+    pub(crate) group_bonus: ByGroup<f64>,
     /// What is left of that.
-    pub(in crate::session) own: ByGroup<f64>,
+    pub(crate) own: ByGroup<f64>,
 }
 
 /// A group once a day is over.
 #[derive(Debug, Clone, Copy, Default)]
-pub(in crate::session) struct GroupEvening {
+pub(crate) struct GroupEvening {
     /// What the company knows of it, 0 before it is found.
-    pub(in crate::session) info_level: u32,
+    pub(crate) info_level: u32,
     /// Active subscriptions.
-    pub(in crate::session) active: u32,
+    pub(crate) active: u32,
     /// Reputation.
-    pub(in crate::session) reputation: f64,
+    pub(crate) reputation: f64,
     /// Mean satisfaction and relationship of the active ones; none without any.
-    pub(in crate::session) mood: Option<(f64, f64)>,
+    pub(crate) mood: Option<(f64, f64)>,
     /// Active ones with an open issue.
-    pub(in crate::session) open_issues: u32,
+    pub(crate) open_issues: u32,
     /// Product quality before the multiplier of the model.
-    pub(in crate::session) product_quality: f64,
+    pub(crate) product_quality: f64,
     /// Mean budget of customers who come, with what the market has added.
-    pub(in crate::session) budget: f64,
+    pub(crate) budget: f64,
     /// Mean quality floor of customers who come, with what the market has added.
-    pub(in crate::session) quality_floor: f64,
+    pub(crate) quality_floor: f64,
     /// What its market holds; without a limit at 0.
-    pub(in crate::session) market_cap: f64,
+    pub(crate) market_cap: f64,
     /// Factor of the economy on budgets.
-    pub(in crate::session) willingness_to_pay: f64,
+    pub(crate) willingness_to_pay: f64,
     /// Factor of the economy on the speed of replies.
-    pub(in crate::session) deal_velocity: f64,
+    pub(crate) deal_velocity: f64,
     /// Factor of the economy on the drift of seats.
-    pub(in crate::session) seat_count: f64,
+    pub(crate) seat_count: f64,
 }
 
 /// The market once a day is over.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct MarketEvening {
+pub(crate) struct MarketEvening {
     /// What it has added to curves since day 0.
-    pub(in crate::session) drift: DriftTotals,
+    pub(crate) drift: DriftTotals,
     /// The event of the rivals on this day, with its severity.
-    pub(in crate::session) event: Option<(Event, &'static str)>,
+    pub(crate) event: Option<(Event, &'static str)>,
     /// The index.
-    pub(in crate::session) pmi: f64,
+    pub(crate) pmi: f64,
     /// Its newest measurement, and whether it is published.
-    pub(in crate::session) measured: Option<(Reading, bool)>,
+    pub(crate) measured: Option<(Reading, bool)>,
 }
 
 /// Keeps every day that is simulated.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Diary {
+pub(crate) struct Diary {
     /// Whether threads are kept as well: every company that negotiates judges every plan, every day.
     keeps_threads: bool,
     pages: Mutex<Pages>,
@@ -130,27 +130,27 @@ struct Pages {
 
 impl Diary {
     /// An empty one that keeps threads as well.
-    pub(in crate::session) fn with_threads() -> Diary {
+    pub(crate) fn with_threads() -> Diary {
         Diary { keeps_threads: true, ..Diary::default() }
     }
 
     /// Whether it keeps threads.
-    pub(in crate::session) fn keeps_threads(&self) -> bool {
+    pub(crate) fn keeps_threads(&self) -> bool {
         self.keeps_threads
     }
 
     /// Looks at a day that is over, from 1.
-    pub(in crate::session) fn read<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
+    pub(crate) fn read<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
         self.pages().days.get(day.checked_sub(1)? as usize).map(look)
     }
 
     /// A day that is over, from 1.
-    pub(in crate::session) fn day(&self, day: u32) -> Option<HiddenDay> {
+    pub(crate) fn day(&self, day: u32) -> Option<HiddenDay> {
         self.read(day, HiddenDay::clone)
     }
 
     /// Hands over the threads of a day: there are many, so they are kept in one place only.
-    pub(in crate::session) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
+    pub(crate) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
         let at = day.checked_sub(1).map(|at| at as usize);
         let mut pages = self.pages();
         at.and_then(|at| pages.days.get_mut(at))

@@ -2,17 +2,17 @@
 
 use super::company_day::CompanyDay;
 use super::hidden_day::{GroupEvening, HiddenDay};
-use crate::database::HiddenValue;
-use crate::world::customers::columns::Subscriber;
-use crate::world::customers::traits::Negotiator;
-use crate::world::enterprise::{Answer, Standing};
-use crate::world::identifiers::{Channel, Group, Plan};
-use crate::world::state::World;
+use novamind_database::HiddenValue;
+use novamind_world::customers::columns::Subscriber;
+use novamind_world::customers::traits::Negotiator;
+use novamind_world::enterprise::{Answer, Standing};
+use novamind_world::identifiers::{Channel, Group, Plan};
+use novamind_world::state::World;
 
 use HiddenValue::{Null, Whole};
 
 /// `hidden.groups` of a day.
-pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
+pub(crate) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     let rows = Group::all().map(|group| {
         let own: GroupEvening = seen.groups[group];
         let expectation = seen.market.drift.expectation(group);
@@ -38,7 +38,7 @@ pub(in crate::session) fn groups(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue
 }
 
 /// `hidden.drift` of a day.
-pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
+pub(crate) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     let drift = &seen.market.drift;
     let rows = Group::all().map(|group| {
         [
@@ -53,7 +53,7 @@ pub(in crate::session) fn drift(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue;
 }
 
 /// `hidden.factors` of a day: the groups that were known.
-pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
+pub(crate) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     let rows = Group::all().filter(|group| seen.known[*group]).map(|group| {
         let own = &seen.leads[group];
         let paid = |channel: Channel| own.paid[channel].into();
@@ -80,7 +80,7 @@ pub(in crate::session) fn factors(day: u32, seen: &HiddenDay) -> Vec<[HiddenValu
 }
 
 /// `hidden.competitors` of a day.
-pub(in crate::session) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
+pub(crate) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let event = seen.market.event.as_ref().map(|(event, _)| event);
     [
         day.into(),
@@ -95,7 +95,7 @@ pub(in crate::session) fn competitors(day: u32, seen: &HiddenDay) -> [HiddenValu
 }
 
 /// `hidden.pmi` of a day.
-pub(in crate::session) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
+pub(crate) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     let reading = seen.market.measured.as_ref().map(|(reading, _)| reading);
     [
         day.into(),
@@ -110,7 +110,7 @@ pub(in crate::session) fn pmi(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
 }
 
 /// A row of `hidden.threads`.
-pub(in crate::session) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
+pub(crate) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
     let accepts = |plan: Plan| {
         let judged = own.plans[plan];
         (!judged.accepts_any_price).then_some(judged.accepts_below).into()
@@ -149,7 +149,7 @@ pub(in crate::session) fn thread(own: &CompanyDay) -> [HiddenValue; 22] {
 }
 
 /// `hidden.customers` of a world: the subscribers in its columns, then the companies that are none.
-pub(in crate::session) fn customers(world: &World) -> impl Iterator<Item = [HiddenValue; 32]> {
+pub(crate) fn customers(world: &World) -> impl Iterator<Item = [HiddenValue; 32]> {
     let subscribers = world.customers.blocks().flat_map(move |(group, block)| {
         (0..block.len()).map(move |at| {
             let row = block.row(at);

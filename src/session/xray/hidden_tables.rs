@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::hidden_day::Diary;
 use super::hidden_rows::{competitors, customers, drift, factors, groups, pmi, thread};
-use crate::database::{QueryConnection, QueryError, Table, Ticket};
-use crate::world::canonical::hash_of;
-use crate::world::state::World;
+use novamind_database::{QueryConnection, QueryError, Table, Ticket};
+use novamind_world::canonical::hash_of;
+use novamind_world::state::World;
 
 /// The connection of the x-ray. Nobody else has one that knows the hidden tables.
-pub(in crate::session) struct HiddenTables {
+pub(crate) struct HiddenTables {
     connection: QueryConnection,
     /// The last day in each table that has every day.
     days: BTreeMap<&'static str, u32>,
@@ -19,7 +19,7 @@ pub(in crate::session) struct HiddenTables {
 
 /// What the table of customers shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) enum ShownCustomers {
+pub(crate) enum ShownCustomers {
     /// They as they stand, calls since the last day included.
     Now {
         /// Hash of the columns of subscribers.
@@ -33,29 +33,29 @@ pub(in crate::session) enum ShownCustomers {
 
 impl ShownCustomers {
     /// They as they stand in a world.
-    pub(in crate::session) fn now(world: &World) -> ShownCustomers {
+    pub(crate) fn now(world: &World) -> ShownCustomers {
         ShownCustomers::Now { customers: world.customers.hash(), companies: hash_of(&world.enterprise) }
     }
 }
 
 /// The table that shows one day.
-pub(in crate::session) const CUSTOMERS: &str = "hidden.customers";
+pub(crate) const CUSTOMERS: &str = "hidden.customers";
 /// The table whose rows are kept only once it was asked.
-pub(in crate::session) const THREADS: &str = "hidden.threads";
+pub(crate) const THREADS: &str = "hidden.threads";
 
 impl HiddenTables {
     /// Empty tables behind a connection.
-    pub(in crate::session) fn behind(connection: QueryConnection) -> HiddenTables {
+    pub(crate) fn behind(connection: QueryConnection) -> HiddenTables {
         HiddenTables { connection, days: BTreeMap::new(), shown: None }
     }
 
     /// The connection.
-    pub(in crate::session) fn connection(&self) -> &QueryConnection {
+    pub(crate) fn connection(&self) -> &QueryConnection {
         &self.connection
     }
 
     /// Whether a table that has every day lacks one.
-    pub(in crate::session) fn lacks(&self, table: &Table, day: u32) -> bool {
+    pub(crate) fn lacks(&self, table: &Table, day: u32) -> bool {
         self.filled_to(table) < day
     }
 
@@ -64,12 +64,12 @@ impl HiddenTables {
     }
 
     /// Whether the table of customers shows this already.
-    pub(in crate::session) fn shows(&self, wanted: ShownCustomers) -> bool {
+    pub(crate) fn shows(&self, wanted: ShownCustomers) -> bool {
         self.shown == Some(wanted)
     }
 
     /// Continues a table that has every day up to one of them, from a diary. The diary hands its threads over.
-    pub(in crate::session) fn continue_to(
+    pub(crate) fn continue_to(
         &mut self,
         day: u32,
         ticket: Ticket,
@@ -109,7 +109,7 @@ impl HiddenTables {
     }
 
     /// Lets the table of customers show those of a world.
-    pub(in crate::session) fn show(
+    pub(crate) fn show(
         &mut self,
         ticket: Ticket,
         table: &Table,

@@ -2,10 +2,10 @@
 
 use super::hidden_day::HiddenDay;
 use super::rival_state::NextRivalMove;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::drift::next_drift_day;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::drift::next_drift_day;
 
 /// A group on an evening.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,19 +1,19 @@
 //! The hidden state after the last day, as it stands: for policies and figures of debug runs.
 
 use super::mood::mood_of;
-use crate::session::folder::mode::Mode;
-use crate::session::play::simulation::Simulation;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::voice::judge::Judgement;
-use crate::world::customers::columns::Block;
-use crate::world::day::DayTrace;
-use crate::world::events::{Facts, LedgerEntry, Notice};
-use crate::world::identifiers::{Channel, Group, Plan};
-use crate::world::market::economy::Dimension;
-use crate::world::market::leads::LeadFactors;
-use crate::world::params::Params;
-use crate::world::state::World;
+use crate::folder::mode::Mode;
+use crate::play::simulation::Simulation;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_voice::judge::Judgement;
+use novamind_world::customers::columns::Block;
+use novamind_world::day::DayTrace;
+use novamind_world::events::{Facts, LedgerEntry, Notice};
+use novamind_world::identifiers::{Channel, Group, Plan};
+use novamind_world::market::economy::Dimension;
+use novamind_world::market::leads::LeadFactors;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 /// A look behind the curtain, as of the last day.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ impl Session {
 }
 
 impl<'a> Xray<'a> {
-    pub(in crate::session) fn new(session: &'a Session) -> Xray<'a> {
+    pub(crate) fn new(session: &'a Session) -> Xray<'a> {
         let Simulation { world, params, facts, trace, feed, .. } = &session.simulation;
         Xray { world, params, facts, trace, called: &session.history.called, judgements: &feed.judgements }
     }

@@ -3,13 +3,13 @@
 use std::fmt;
 
 use super::hidden_day::HiddenDay;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::{Channel, Group};
-use crate::world::market::leads::LeadFactors;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::{Channel, Group};
+use novamind_world::market::leads::LeadFactors;
 
 /// Days that are shown with one: it and the days before it.
-pub(in crate::session) const WINDOW_DAYS: u32 = 28;
+pub(crate) const WINDOW_DAYS: u32 = 28;
 
 /// A factor of the leads of a group (docs/mechanics/market/leads.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

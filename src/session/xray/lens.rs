@@ -2,10 +2,10 @@
 
 use super::company_lens::CompanyLens;
 use super::customer_lens::CustomerLens;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::customers::FIRST_CUSTOMER;
-use crate::world::identifiers::Group;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::customers::FIRST_CUSTOMER;
+use novamind_world::identifiers::Group;
 
 /// A customer from within.
 #[derive(Debug, Clone)]
@@ -57,7 +57,7 @@ impl Session {
     }
 
     /// Day on which a customer came; 0 if nobody of this number did.
-    pub(in crate::session) fn arrival_of(&self, customer: u32) -> u32 {
+    pub(crate) fn arrival_of(&self, customer: u32) -> u32 {
         self.simulation.world.customers.numbers.arrival_day(customer).unwrap_or(0)
     }
 }

@@ -1,37 +1,37 @@
 //! Figures of a group over some days, hidden ones included.
 
 use super::mood::mood_of;
-use crate::session::figures::groups::GroupWeek;
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::Group;
-use crate::world::state::World;
+use crate::figures::groups::GroupWeek;
+use novamind_world::customers::columns::Block;
+use novamind_world::identifiers::Group;
+use novamind_world::state::World;
 
 /// Figures of a group over some days: what happened on them, and how things stand at the end of the last.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::session) struct MeasuredGroup {
+pub(crate) struct MeasuredGroup {
     /// Customers who came.
-    pub(in crate::session) leads: u32,
+    pub(crate) leads: u32,
     /// Individuals who signed up, or companies whose first deal was accepted.
-    pub(in crate::session) signed: u32,
+    pub(crate) signed: u32,
     /// Subscribers who cancelled.
-    pub(in crate::session) left: u32,
+    pub(crate) left: u32,
     /// Units used.
-    pub(in crate::session) usage: u64,
+    pub(crate) usage: u64,
     /// Active subscriptions at the end.
-    pub(in crate::session) subscribers: u32,
+    pub(crate) subscribers: u32,
     /// Those of them with an open issue.
-    pub(in crate::session) open_issues: u32,
+    pub(crate) open_issues: u32,
     /// Reputation at the end.
-    pub(in crate::session) reputation: f64,
+    pub(crate) reputation: f64,
     /// Mean satisfaction of the subscribers; none without any.
-    pub(in crate::session) satisfaction: Option<f64>,
+    pub(crate) satisfaction: Option<f64>,
     /// Mean relationship of the subscribers, 0..=1; none without any.
-    pub(in crate::session) relationship: Option<f64>,
+    pub(crate) relationship: Option<f64>,
 }
 
 impl MeasuredGroup {
     /// Of a world at the end of days on which so much was counted.
-    pub(in crate::session) fn of(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
+    pub(crate) fn of(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
         let (satisfaction, relationship) = mood_of(world, group).unzip();
         let own = &world.customers.groups[group];
         MeasuredGroup {

@@ -5,16 +5,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::permission::REFUSED_LOOK;
-use crate::session::error::RunError;
-use crate::session::folder::derived::manifest_of;
-use crate::session::folder::mode::Mode;
-use crate::session::play::advance::DayReport;
-use crate::session::resume::open::Access;
-use crate::session::resume::sealing::SealKey;
-use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
-use crate::tools::Refusal;
-use crate::world::day::watch::Unwatched;
+use crate::error::RunError;
+use crate::folder::derived::manifest_of;
+use crate::folder::mode::Mode;
+use crate::play::advance::DayReport;
+use crate::resume::open::Access;
+use crate::resume::sealing::SealKey;
+use crate::state::Session;
+use crate::trajectory::Trajectory;
+use novamind_tools::Refusal;
+use novamind_world::day::watch::Unwatched;
 
 impl Session {
     /// Opens a run to look into it: a debug run, or one that is over. Nothing but looks is recorded.

@@ -3,35 +3,35 @@
 //! Past days are simulated again beside the run, and watched on the way: what is shown is what the functions of the
 //! world were given and what they said, never a second calculation. Each look is a line of the trajectory.
 
-pub(in crate::session) mod breakpoint;
-pub(in crate::session) mod company_day;
-pub(in crate::session) mod company_lens;
-pub(in crate::session) mod customer_diary;
-pub(in crate::session) mod customer_lens;
-pub(in crate::session) mod day_end;
-pub(in crate::session) mod difference;
-pub(in crate::session) mod drift_state;
-pub(in crate::session) mod group_views;
-pub(in crate::session) mod hidden_day;
-pub(in crate::session) mod hidden_rows;
-pub(in crate::session) mod hidden_tables;
-pub(in crate::session) mod hidden_values;
-pub(in crate::session) mod last_day;
-pub(in crate::session) mod lead_equation;
-pub(in crate::session) mod lens;
-pub(in crate::session) mod measured_group;
-pub(in crate::session) mod metrics;
-pub(in crate::session) mod mood;
-pub(in crate::session) mod next_draws;
-pub(in crate::session) mod permission;
-pub(in crate::session) mod quality_equation;
-pub(in crate::session) mod reputation_equation;
-pub(in crate::session) mod rival_state;
-pub(in crate::session) mod satisfaction_equation;
-pub(in crate::session) mod shadow;
-pub(in crate::session) mod sql;
-pub(in crate::session) mod weighed;
-pub(in crate::session) mod writes;
+pub(crate) mod breakpoint;
+pub(crate) mod company_day;
+pub(crate) mod company_lens;
+pub(crate) mod customer_diary;
+pub(crate) mod customer_lens;
+pub(crate) mod day_end;
+pub(crate) mod difference;
+pub(crate) mod drift_state;
+pub(crate) mod group_views;
+pub(crate) mod hidden_day;
+pub(crate) mod hidden_rows;
+pub(crate) mod hidden_tables;
+pub(crate) mod hidden_values;
+pub(crate) mod last_day;
+pub(crate) mod lead_equation;
+pub(crate) mod lens;
+pub(crate) mod measured_group;
+pub(crate) mod metrics;
+pub(crate) mod mood;
+pub(crate) mod next_draws;
+pub(crate) mod permission;
+pub(crate) mod quality_equation;
+pub(crate) mod reputation_equation;
+pub(crate) mod rival_state;
+pub(crate) mod satisfaction_equation;
+pub(crate) mod shadow;
+pub(crate) mod sql;
+pub(crate) mod weighed;
+pub(crate) mod writes;
 
 #[cfg(test)]
 mod tests;

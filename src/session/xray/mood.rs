@@ -1,11 +1,11 @@
 //! How content a group is.
 
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::Group;
-use crate::world::state::World;
+use novamind_world::customers::columns::Block;
+use novamind_world::identifiers::Group;
+use novamind_world::state::World;
 
 /// Mean satisfaction and relationship of a group's active subscribers; none without any.
-pub(in crate::session) fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
+pub(crate) fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();
     let satisfaction: f64 = blocks().flat_map(|block| &block.satisfaction).sum();

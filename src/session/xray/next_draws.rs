@@ -1,18 +1,18 @@
 //! The next draws of a part of the world. Streams are keyed and keep no state: what a part will draw on the next day is
 //! known before the day, as far as nothing decides on it that is still open.
 
-use crate::session::play::simulation::Simulation;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::identifiers::Group;
-use crate::world::market::competitors::move_of;
-use crate::world::market::economy::index_of;
-use crate::world::market::surges::{Surge, surge_of};
-use crate::world::product::development::daily_noise;
-use crate::world::product::research;
-use crate::world::random::{Part, word_below};
-use crate::world::retention::due_today;
-use crate::world::retention::renewal::{involuntary_rate_of, payment_rolls};
+use crate::play::simulation::Simulation;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::identifiers::Group;
+use novamind_world::market::competitors::move_of;
+use novamind_world::market::economy::index_of;
+use novamind_world::market::surges::{Surge, surge_of};
+use novamind_world::product::development::daily_noise;
+use novamind_world::product::research;
+use novamind_world::random::{Part, word_below};
+use novamind_world::retention::due_today;
+use novamind_world::retention::renewal::{involuntary_rate_of, payment_rolls};
 
 /// A part of the world whose next draws can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

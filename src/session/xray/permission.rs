@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use crate::session::folder::manifest::Manifest;
-use crate::session::folder::mode::Mode;
-use crate::session::lesson::over::is_lesson_over;
-use crate::session::state::Session;
-use crate::session::trajectory::record::{Activity, Ended, XrayLook};
-use crate::session::trajectory::{Durability, Record};
-use crate::tools::Refusal;
+use crate::folder::manifest::Manifest;
+use crate::folder::mode::Mode;
+use crate::lesson::over::is_lesson_over;
+use crate::state::Session;
+use crate::trajectory::record::{Activity, Ended, XrayLook};
+use crate::trajectory::{Durability, Record};
+use novamind_tools::Refusal;
 
 /// Said where hidden state is not shown.
 pub const REFUSED_LOOK: &str = "the x-ray works in debug runs and in runs that are over";
@@ -55,12 +55,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
-    pub(in crate::session) fn begin_look(
-        &mut self,
-        what: &str,
-        which: &str,
-        day: Option<u32>,
-    ) -> Result<u32, Refusal> {
+    pub(crate) fn begin_look(&mut self, what: &str, which: &str, day: Option<u32>) -> Result<u32, Refusal> {
         self.refuse_to_look_inside()?;
         let day = self.day_to_show(day)?;
         self.record_look_inside(what, which, day)?;
@@ -71,7 +66,7 @@ impl Session {
     ///
     /// # Errors
     /// `read_only` where the run has nothing that writes it, `not_saved`.
-    pub(in crate::session) fn record_look_inside(
+    pub(crate) fn record_look_inside(
         &mut self,
         what: &str,
         which: &str,
@@ -91,7 +86,7 @@ impl Session {
     ///
     /// # Errors
     /// `day_unknown`: it has not been simulated.
-    pub(in crate::session) fn day_to_show(&self, day: Option<u32>) -> Result<u32, Refusal> {
+    pub(crate) fn day_to_show(&self, day: Option<u32>) -> Result<u32, Refusal> {
         let last = self.day();
         let refused = |message: String| Err(Refusal::at("day", "day_unknown", message));
         match day.unwrap_or(last) {

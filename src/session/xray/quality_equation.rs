@@ -1,14 +1,14 @@
 //! What the product delivers to a group on each plan, term by term.
 
-use crate::world::identifiers::{ByGroup, ByPlan, Group};
-use crate::world::market::drift::{DriftTotals, Expectation};
-use crate::world::morning::Morning;
-use crate::world::params::Params;
-use crate::world::product::Product;
-use crate::world::product::development::development_gain;
-use crate::world::product::quality::delivered_quality;
-use crate::world::settings::Settings;
-use crate::world::state::World;
+use novamind_world::identifiers::{ByGroup, ByPlan, Group};
+use novamind_world::market::drift::{DriftTotals, Expectation};
+use novamind_world::morning::Morning;
+use novamind_world::params::Params;
+use novamind_world::product::Product;
+use novamind_world::product::development::development_gain;
+use novamind_world::product::quality::delivered_quality;
+use novamind_world::settings::Settings;
+use novamind_world::state::World;
 
 /// Where the quality that was gained for everybody comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,7 +36,7 @@ pub struct PlanDelivered {
 
 /// What quality is made of on a day, for all groups.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct QualityDay {
+pub(crate) struct QualityDay {
     base: f64,
     shared: f64,
     gains: SharedGains,
@@ -47,17 +47,12 @@ pub(in crate::session) struct QualityDay {
     everyone: f64,
     expectations: ByGroup<Expectation>,
     /// Quality lost to the service of the day.
-    pub(in crate::session) service_penalty: f64,
+    pub(crate) service_penalty: f64,
 }
 
 impl QualityDay {
     /// A morning, after so much development; counts the development of the day.
-    pub(in crate::session) fn of(
-        world: &World,
-        morning: &Morning,
-        params: &Params,
-        development: &mut f64,
-    ) -> QualityDay {
+    pub(crate) fn of(world: &World, morning: &Morning, params: &Params, development: &mut f64) -> QualityDay {
         let World { product, settings, market, .. } = world;
         let gains = shared_gains(product, *development, params);
         *development += gain_of_today(settings, params);
@@ -127,7 +122,7 @@ pub struct QualityEquation {
 
 impl QualityEquation {
     /// The group on a day.
-    pub(in crate::session) fn of(group: Group, day: u32, seen: &QualityDay) -> QualityEquation {
+    pub(crate) fn of(group: Group, day: u32, seen: &QualityDay) -> QualityEquation {
         QualityEquation {
             group,
             day,

@@ -1,12 +1,12 @@
 //! What moved the reputation of a group on a day, and how the change of each group spilled over to the others.
 
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::Market;
-use crate::world::market::reputation::{
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::Market;
+use novamind_world::market::reputation::{
     ReputationBook, ReputationCause, ReputationWrite, Spill, called_change, daily_change, spill,
 };
-use crate::world::params::Params;
-use crate::world::retention::satisfaction::Mood;
+use novamind_world::params::Params;
+use novamind_world::retention::satisfaction::Mood;
 
 /// Departures of a day and what they took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -46,7 +46,7 @@ pub struct LeastChanges {
 
 /// Reputations of all groups on a day.
 #[derive(Debug, Clone, Default)]
-pub(in crate::session) struct ReputationDay {
+pub(crate) struct ReputationDay {
     before: ByGroup<f64>,
     gave_up: ByGroup<Departures>,
     lost: ByGroup<Departures>,
@@ -60,12 +60,12 @@ pub(in crate::session) struct ReputationDay {
 
 impl ReputationDay {
     /// A day that finds these reputations.
-    pub(in crate::session) fn in_the_morning(book: &ReputationBook) -> ReputationDay {
+    pub(crate) fn in_the_morning(book: &ReputationBook) -> ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.of(group)), ..ReputationDay::default() }
     }
 
     /// Counts what a mechanism wrote.
-    pub(in crate::session) fn count(&mut self, write: &ReputationWrite<'_>) {
+    pub(crate) fn count(&mut self, write: &ReputationWrite<'_>) {
         let group = write.group;
         let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
         self.bounds[group] += write.after - without_bounds;
@@ -79,7 +79,7 @@ impl ReputationDay {
     }
 
     /// Ends with what subscribers contributed, what is dropped of it as well.
-    pub(in crate::session) fn settle(&mut self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
+    pub(crate) fn settle(&mut self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
         let law = &params.reputation;
         self.least = LeastChanges { own: law.daily_delta_min_abs, spill: law.cross_delta_min_abs };
         self.after = ByGroup::from_fn(|group| market.reputation.of(group));
@@ -124,12 +124,7 @@ pub struct ReputationEquation {
 
 impl ReputationEquation {
     /// The group on a day, with its reputation of evenings.
-    pub(in crate::session) fn of(
-        group: Group,
-        day: u32,
-        seen: &ReputationDay,
-        evenings: Vec<f64>,
-    ) -> ReputationEquation {
+    pub(crate) fn of(group: Group, day: u32, seen: &ReputationDay, evenings: Vec<f64>) -> ReputationEquation {
         ReputationEquation {
             group,
             day,
@@ -169,7 +164,7 @@ pub struct Spillover {
 
 impl Spillover {
     /// A day on which some groups were known.
-    pub(in crate::session) fn of(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
+    pub(crate) fn of(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
         let known = Group::all().filter(|group| known[*group]).collect();
         let ReputationDay { own, spills, least, .. } = seen;
         Spillover { day, known, own, spills, least }
@@ -184,19 +179,19 @@ impl Spillover {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::xray::hidden_day::Diary;
-    use crate::world::day::step_day_watched;
-    use crate::world::events::Facts;
-    use crate::world::held::Held;
-    use crate::world::random::Streams;
-    use crate::world::state::World;
+    use crate::xray::hidden_day::Diary;
+    use novamind_world::day::step_day_watched;
+    use novamind_world::events::Facts;
+    use novamind_world::held::Held;
+    use novamind_world::random::Streams;
+    use novamind_world::state::World;
 
     #[test]
     fn the_floor_is_a_term_of_its_own() {
         let (params, streams) = (Params::shipped(), Streams::new(5));
         let mut facts = Facts::default();
         let mut world = World::open(500, 1e9, &params, &mut facts);
-        crate::world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::policy_p(&mut world);
         let diary = Diary::default();
         let mut day = |world: &mut World| {
             step_day_watched(world, &params, &streams, &Held::default(), &mut facts, &diary);

@@ -1,11 +1,11 @@
 //! Rivals from within: what they could copy, what they did, and the move that is decided next.
 
 use super::hidden_day::Banks;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::events::Severity;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::competitors::{Event, next_move, severity};
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::events::Severity;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::competitors::{Event, next_move, severity};
 
 /// The next move of rivals after a day.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,11 +78,7 @@ impl Session {
     }
 
     /// The move after a day: the one that was made, or the one that is decided under the parameters in force.
-    pub(in crate::session) fn rival_move_after(
-        &self,
-        day: u32,
-        banks: &ByGroup<f64>,
-    ) -> Option<NextRivalMove> {
+    pub(crate) fn rival_move_after(&self, day: u32, banks: &ByGroup<f64>) -> Option<NextRivalMove> {
         let (world, params) = (&self.simulation.world, &self.simulation.params);
         let events = &world.market.competitors;
         if let Some(made) = events.iter().copied().find(|event| event.day > day) {

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
-use crate::world::context::DayContext;
-use crate::world::customers::columns::Block;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::retention::satisfaction::{FeltDay, felt};
+use novamind_world::context::DayContext;
+use novamind_world::customers::columns::Block;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::retention::satisfaction::{FeltDay, felt};
 
 /// A term of what a subscriber feels today (docs/mechanics/retention/satisfaction.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl MoodTerm {
 
 /// Sums over subscribers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::session) struct MoodSums {
+pub(crate) struct MoodSums {
     count: u32,
     before: f64,
     terms: [f64; MoodTerm::ALL.len()],
@@ -92,7 +92,7 @@ pub(in crate::session) struct MoodSums {
 
 impl MoodSums {
     /// A block whose satisfaction is about to move.
-    pub(in crate::session) fn of(group: Group, block: &Block, day: &DayContext<'_>) -> MoodSums {
+    pub(crate) fn of(group: Group, block: &Block, day: &DayContext<'_>) -> MoodSums {
         let mut sums = MoodSums { count: block.len() as u32, ..MoodSums::default() };
         for at in 0..block.len() {
             let own = felt(group, block, at, day);
@@ -121,18 +121,18 @@ impl AddAssign for MoodSums {
 
 /// The satisfaction of a group on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::session) struct SatisfactionDay {
+pub(crate) struct SatisfactionDay {
     sums: MoodSums,
     left: u32,
     weight: f64,
 }
 
 /// The blocks of a day, which come in any order.
-pub(in crate::session) type MoodsByBlock = BTreeMap<(Group, u32), MoodSums>;
+pub(crate) type MoodsByBlock = BTreeMap<(Group, u32), MoodSums>;
 
 impl SatisfactionDay {
     /// All groups, from the sums of their blocks and who left; `weight` is that of a day.
-    pub(in crate::session) fn by_group(
+    pub(crate) fn by_group(
         blocks: &MoodsByBlock,
         left: &ByGroup<u32>,
         weight: f64,
@@ -172,7 +172,7 @@ pub struct SatisfactionEquation {
 impl SatisfactionEquation {
     /// The group on a day, its subscribers in the evening with their mean satisfaction, how it was on the day before, and
     /// the mean satisfaction of evenings.
-    pub(in crate::session) fn of(
+    pub(crate) fn of(
         group: Group,
         day: u32,
         own: SatisfactionDay,

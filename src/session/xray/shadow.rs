@@ -3,22 +3,22 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::hidden_day::{Diary, HiddenDay};
-use crate::session::play::advance::DayReport;
-use crate::session::state::Session;
-use crate::session::trajectory::Trajectory;
-use crate::session::why::not_readable;
-use crate::tools::Refusal;
-use crate::world::day::watch::DayWatch;
-use crate::world::events::Facts;
-use crate::world::params::Params;
-use crate::world::state::World;
+use crate::play::advance::DayReport;
+use crate::state::Session;
+use crate::trajectory::Trajectory;
+use crate::why::not_readable;
+use novamind_tools::Refusal;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::Facts;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 impl Session {
     /// Days that are over, as they were seen from within, the first one first.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn hidden_days(
+    pub(crate) fn hidden_days(
         &mut self,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Refusal> {
@@ -31,10 +31,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn diary_of_all_days(
-        &mut self,
-        with_threads: bool,
-    ) -> Result<Arc<Diary>, Refusal> {
+    pub(crate) fn diary_of_all_days(&mut self, with_threads: bool) -> Result<Arc<Diary>, Refusal> {
         let kept = self.shadow.take().filter(|_| self.diary.keeps_threads() == with_threads);
         let mut shadow = match kept {
             Some(shadow) => shadow,
@@ -53,7 +50,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn world_on(&self, day: u32) -> Result<World, Refusal> {
+    pub(crate) fn world_on(&self, day: u32) -> Result<World, Refusal> {
         let evening = Arc::new(Evening { day, world: Mutex::default() });
         self.watch_up_to(day, evening.clone())?;
         let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -64,7 +61,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn hidden_day(&mut self, day: u32) -> Result<HiddenDay, Refusal> {
+    pub(crate) fn hidden_day(&mut self, day: u32) -> Result<HiddenDay, Refusal> {
         let seen = self.hidden_days([day])?.pop();
         seen.ok_or_else(|| Refusal::new("not_readable", format!("day {day} could not be simulated again")))
     }
@@ -73,7 +70,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn watch_up_to(&self, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
+    pub(crate) fn watch_up_to(&self, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
         let mut shadow = self.new_shadow(watch)?;
         self.lead(&mut shadow, |shadow| shadow.day() < day)
     }
@@ -82,7 +79,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
-    pub(in crate::session) fn new_shadow(&self, watch: Arc<dyn DayWatch>) -> Result<Box<Session>, Refusal> {
+    pub(crate) fn new_shadow(&self, watch: Arc<dyn DayWatch>) -> Result<Box<Session>, Refusal> {
         if self.folder.is_none() {
             let message = "a run in memory keeps no lines, so its past days cannot be simulated again";
             return Err(Refusal::new("not_possible", message));
@@ -106,7 +103,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_readable`.
-    pub(in crate::session) fn lead_telling(
+    pub(crate) fn lead_telling(
         &self,
         shadow: &mut Session,
         goes_on: impl Fn(&Session) -> bool,

@@ -1,10 +1,10 @@
 //! `hidden.*`: what is hidden as tables, beside those of the company (docs/formats/hidden-tables.md).
 
 use super::hidden_tables::{CUSTOMERS, HiddenTables, ShownCustomers, THREADS};
-use crate::database::{Interrupt, Rows, Scope, Table, Ticket};
-use crate::session::ask::query_refusal;
-use crate::session::state::Session;
-use crate::tools::Refusal;
+use crate::ask::query_refusal;
+use crate::state::Session;
+use novamind_database::{Interrupt, Rows, Scope, Table, Ticket};
+use novamind_tools::Refusal;
 
 impl Session {
     /// Answers a statement that may read the hidden tables. `hidden.customers` shows a day, the last one if none is named;
@@ -105,11 +105,11 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::folder::configuration::Configuration;
-    use crate::session::folder::create::{NewRun, Storage};
-    use crate::session::folder::mode::Mode;
-    use crate::session::study::rules::{ResultsShown, SessionRules};
-    use crate::session::study::stamp::StudyStamp;
+    use crate::folder::configuration::Configuration;
+    use crate::folder::create::{NewRun, Storage};
+    use crate::folder::mode::Mode;
+    use crate::study::rules::{ResultsShown, SessionRules};
+    use crate::study::stamp::StudyStamp;
 
     #[test]
     fn a_run_of_which_its_study_shows_no_results_stays_closed_once_it_is_over() {
@@ -118,7 +118,7 @@ mod tests {
         let new = NewRun { mode: Mode::Baseline, days: Some(28), storage, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let forecasts = session.naive_forecasts();
-        session.advance("wait", &forecasts, crate::session::Via::Script, &mut |_| {}).expect("a week");
+        session.advance("wait", &forecasts, crate::Via::Script, &mut |_| {}).expect("a week");
         session.end().expect("it ends");
         let sql = "SELECT count(*) FROM hidden.groups";
         for (practice, results, is_shown) in [

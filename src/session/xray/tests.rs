@@ -9,34 +9,34 @@ use serde_json::json;
 use super::next_draws::{DrawnPart, Follows, NextDraws};
 use super::quality_equation::QualityEquation;
 use super::satisfaction_equation::MoodTerm;
-use crate::session::folder::configuration::Configuration;
-use crate::session::folder::create::{NewRun, Storage};
-use crate::session::folder::mode::Mode;
-use crate::session::resume::open::Access;
-use crate::session::state::Session;
-use crate::session::trajectory::record::Via;
-use crate::world::customers::columns::Block;
-use crate::world::day::watch::DayWatch;
-use crate::world::events::{EndCause, Facts};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
-use crate::world::market::arrivals::Arrivals;
-use crate::world::market::competitors::{Event, next_move};
-use crate::world::market::drift::{DriftTotals, Expectation};
-use crate::world::market::leads::LeadFactors;
-use crate::world::market::surges::surge_of;
-use crate::world::params::Params;
-use crate::world::product::development::development_gain;
-use crate::world::product::service::{error_rate, outage_probability, p95_latency};
-use crate::world::random::{Part, Streams};
-use crate::world::retention::renewal::RenewalContext;
-use crate::world::state::World;
+use crate::folder::configuration::Configuration;
+use crate::folder::create::{NewRun, Storage};
+use crate::folder::mode::Mode;
+use crate::resume::open::Access;
+use crate::state::Session;
+use crate::trajectory::record::Via;
+use novamind_world::customers::columns::Block;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::{EndCause, Facts};
+use novamind_world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use novamind_world::market::arrivals::Arrivals;
+use novamind_world::market::competitors::{Event, next_move};
+use novamind_world::market::drift::{DriftTotals, Expectation};
+use novamind_world::market::leads::LeadFactors;
+use novamind_world::market::surges::surge_of;
+use novamind_world::params::Params;
+use novamind_world::product::development::development_gain;
+use novamind_world::product::service::{error_rate, outage_probability, p95_latency};
+use novamind_world::random::{Part, Streams};
+use novamind_world::retention::renewal::RenewalContext;
+use novamind_world::state::World;
 
 /// Days and groups that are compared.
 const DAYS: [u32; 8] = [1, 2, 31, 62, 66, 91, 98, 119];
 
 /// The recorded company that uses every lever, in a folder of its own.
 fn recorded_run(place: &Path) -> Session {
-    let from = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded/everything");
+    let from = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded/everything");
     let folder = place.join("everything");
     std::fs::create_dir(&folder).expect("a folder");
     for name in ["run.toml", "trajectory.jsonl"] {
@@ -322,7 +322,7 @@ fn draws_are_those_of_the_streams(told: &NextDraws, streams: &Streams) {
 
 fn compare(told: &NextDraws, session: &Session, bonus: f64, seen: &mut BTreeMap<&'static str, u32>) {
     let mut saw = |what| *seen.entry(what).or_insert(0) += 1;
-    let crate::session::play::simulation::Simulation { world, params, streams, facts, trace, .. } =
+    let crate::play::simulation::Simulation { world, params, streams, facts, trace, .. } =
         &session.simulation;
     assert_eq!(told.day, world.day);
     for own in &told.streams {

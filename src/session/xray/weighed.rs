@@ -1,10 +1,10 @@
 //! A decision of an individual, term by term, and the terms without which it would have come out otherwise.
 
-use crate::world::customers::curve::{Curve, required_quality};
-use crate::world::identifiers::{ByPlan, Plan};
-use crate::world::params::Params;
-use crate::world::product::quality::Experience;
-use crate::world::retention::weighing::Weighing;
+use novamind_world::customers::curve::{Curve, required_quality};
+use novamind_world::identifiers::{ByPlan, Plan};
+use novamind_world::params::Params;
+use novamind_world::product::quality::Experience;
+use novamind_world::retention::weighing::Weighing;
 
 /// A plan, as an individual sees it on a billing day.
 #[derive(Debug, Clone, Copy)]
@@ -108,11 +108,7 @@ pub struct Weighed {
 
 impl Weighed {
     /// Takes apart what was weighed.
-    pub(in crate::session) fn of(
-        weighing: &Weighing,
-        last_bill: Option<&ByPlan<f64>>,
-        params: &Params,
-    ) -> Weighed {
+    pub(crate) fn of(weighing: &Weighing, last_bill: Option<&ByPlan<f64>>, params: &Params) -> Weighed {
         let curve = weighing.curve(params);
         let qualities = weighing.qualities(params);
         let plans = ByPlan::from_fn(|plan| {
@@ -145,18 +141,18 @@ mod tests {
     use std::sync::Mutex;
 
     use super::*;
-    use crate::world::customers::columns::Block;
-    use crate::world::day::step_day_watched;
-    use crate::world::day::watch::DayWatch;
-    use crate::world::events::{EndCause, Facts};
-    use crate::world::held::Held;
-    use crate::world::identifiers::{Channel, Group};
-    use crate::world::random::Streams;
-    use crate::world::retention::due_today;
-    use crate::world::retention::renewal::RenewalContext;
-    use crate::world::retention::weighing::weigh;
-    use crate::world::settings::PerGroup;
-    use crate::world::state::World;
+    use novamind_world::customers::columns::Block;
+    use novamind_world::day::step_day_watched;
+    use novamind_world::day::watch::DayWatch;
+    use novamind_world::events::{EndCause, Facts};
+    use novamind_world::held::Held;
+    use novamind_world::identifiers::{Channel, Group};
+    use novamind_world::random::Streams;
+    use novamind_world::retention::due_today;
+    use novamind_world::retention::renewal::RenewalContext;
+    use novamind_world::retention::weighing::weigh;
+    use novamind_world::settings::PerGroup;
+    use novamind_world::state::World;
 
     /// A decision as the lens sees it: plan of the morning, whether satisfaction was negative, what was weighed.
     struct Seen {
@@ -204,7 +200,7 @@ mod tests {
         let (params, streams) = (Params::shipped(), Streams::new(11));
         let mut facts = Facts::default();
         let mut world = World::open(500, 1e12, &params, &mut facts);
-        crate::world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::policy_p(&mut world);
         let everybody = Everybody::default();
         let (mut judged, mut left, mut switched, mut turned_by_issue) = (0, 0, 0, 0);
         while judged < 100_000 {

@@ -186,7 +186,7 @@ impl Activity {
     }
 
     /// Whether the record would lack something that no other line tells: then it is on the disk at once.
-    pub(in crate::session) fn is_evidence(&self) -> bool {
+    pub(crate) fn is_evidence(&self) -> bool {
         !matches!(
             self,
             Activity::View(_)

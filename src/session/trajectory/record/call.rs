@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::called_tool::CalledTool;
 use super::request_id::RequestId;
-use crate::tools::Refusal;
+use novamind_tools::Refusal;
 
 /// A call of a tool.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

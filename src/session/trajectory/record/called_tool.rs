@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::tools::ToolId;
+use novamind_tools::ToolId;
 
 /// Longest unknown name that is recorded, in characters. A longer one is cut and ends with an ellipsis.
 const MAX_NAME_CHARACTERS: usize = 128;

@@ -48,7 +48,7 @@ pub enum LessonEvent {
 
 impl LessonNote {
     /// A note about a step that says nothing else yet.
-    pub(in crate::session) fn about(event: LessonEvent, step: u32) -> LessonNote {
+    pub(crate) fn about(event: LessonEvent, step: u32) -> LessonNote {
         LessonNote { event, step, number: None, name: None, value: None, bound: None, met: None }
     }
 }

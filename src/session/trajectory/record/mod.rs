@@ -18,7 +18,7 @@ mod week;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
-use crate::notation::json_number;
+use novamind_base::notation::json_number;
 
 pub use activity::{
     Activity, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help, Look, Select, View, XrayLook,

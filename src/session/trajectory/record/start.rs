@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::shortest;
-use crate::session::class::stamp::HandoutStamp;
-use crate::session::folder::consent::Consent;
-use crate::session::folder::mode::Mode;
-use crate::session::lesson::stamp::LessonStamp;
-use crate::session::study::rules::SessionRules;
-use crate::session::study::stamp::{EarlierRun, StudyStamp};
-use crate::voice::model::settings::ModelStamp;
-use crate::world::fault::Fault;
+use crate::class::stamp::HandoutStamp;
+use crate::folder::consent::Consent;
+use crate::folder::mode::Mode;
+use crate::lesson::stamp::LessonStamp;
+use crate::study::rules::SessionRules;
+use crate::study::stamp::{EarlierRun, StudyStamp};
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::fault::Fault;
 
 /// What the first line says of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -85,6 +85,6 @@ pub struct Parent {
 }
 
 /// Number of the mechanics of runs whose first line names none.
-pub(crate) fn first_mechanics() -> u32 {
+pub fn first_mechanics() -> u32 {
     1
 }

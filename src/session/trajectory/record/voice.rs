@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::shortest;
-use crate::voice::model::scoring::ModelScore;
+use novamind_voice::model::scoring::ModelScore;
 
 /// An answer of a language model, or that there was none that could be used.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

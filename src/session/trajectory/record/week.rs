@@ -9,8 +9,8 @@ use super::call::Via;
 use super::request_id::RequestId;
 use super::start::Parent;
 use super::{shortest, shortest_if_any};
-use crate::session::play::surroundings::Calculated;
-use crate::tools::Forecast;
+use crate::play::surroundings::Calculated;
+use novamind_tools::Forecast;
 
 /// What was filed before a week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

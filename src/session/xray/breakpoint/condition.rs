@@ -113,7 +113,7 @@ impl Condition {
     }
 
     /// How it stands on a day of some days, day 1 first.
-    pub(in crate::session) fn judged(&self, days: &[MeasuredDay], day: u32) -> Judged {
+    pub(crate) fn judged(&self, days: &[MeasuredDay], day: u32) -> Judged {
         let before = day.saturating_sub(1);
         let at = |day: u32| self.quantity().and_then(|quantity| quantity.value(days, day));
         let (value, value_before) = (at(day), at(before));

@@ -4,8 +4,8 @@ use std::str::FromStr;
 
 use super::condition::{Condition, Direction, Relation, WorldEvent};
 use super::measure::{Measure, MeasureKind, NoQuantity, Quantity};
-use crate::world::identifiers::Group;
 use novamind_base::nearest;
+use novamind_world::identifiers::Group;
 
 /// What is wrong with a text, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,7 +24,7 @@ struct Token<'a> {
 }
 
 /// Reads words and signs one after the other; a # begins a comment.
-pub(in crate::session) struct Words<'a> {
+pub(crate) struct Words<'a> {
     tokens: Vec<Token<'a>>,
     at: usize,
     end: usize,
@@ -32,7 +32,7 @@ pub(in crate::session) struct Words<'a> {
 
 impl<'a> Words<'a> {
     /// Those of a text.
-    pub(in crate::session) fn of(text: &'a str) -> Words<'a> {
+    pub(crate) fn of(text: &'a str) -> Words<'a> {
         let text = text.split('#').next().unwrap_or_default().trim_end();
         let (mut tokens, mut rest, mut column) = (Vec::new(), text, 1);
         while let Some(first) = rest.chars().next() {
@@ -89,7 +89,7 @@ impl<'a> Words<'a> {
     }
 
     /// `(S1)`, if a bracket is opened.
-    pub(in crate::session) fn group(&mut self) -> Result<Option<Group>, ConditionProblem> {
+    pub(crate) fn group(&mut self) -> Result<Option<Group>, ConditionProblem> {
         if !self.next_if("(") {
             return Ok(None);
         }
@@ -107,7 +107,7 @@ impl<'a> Words<'a> {
     }
 
     /// A name of a list, with the column it stands in.
-    pub(in crate::session) fn name<T: Copy>(
+    pub(crate) fn name<T: Copy>(
         &mut self,
         known: &[T],
         id: impl Fn(T) -> &'static str,
@@ -117,7 +117,7 @@ impl<'a> Words<'a> {
     }
 
     /// A whole number, if any word is left.
-    pub(in crate::session) fn whole_number(&mut self) -> Result<Option<u32>, ConditionProblem> {
+    pub(crate) fn whole_number(&mut self) -> Result<Option<u32>, ConditionProblem> {
         let Some(token) = self.next() else { return Ok(None) };
         let number = token.text.parse().map(Some);
         number.map_err(|_| {
@@ -126,7 +126,7 @@ impl<'a> Words<'a> {
     }
 
     /// Nothing is left.
-    pub(in crate::session) fn end(&mut self) -> Result<(), ConditionProblem> {
+    pub(crate) fn end(&mut self) -> Result<(), ConditionProblem> {
         match self.next() {
             None => Ok(()),
             Some(token) => Err(self.problem_at(Some(token), format!("{} is one word too many", token.text))),
@@ -220,7 +220,7 @@ fn about_a_figure(words: &mut Words<'_>) -> Result<Condition, ConditionProblem> 
 }
 
 /// Why a figure cannot be asked for like this, and how it can.
-pub(in crate::session) fn why_not(id: &str, no: NoQuantity) -> String {
+pub(crate) fn why_not(id: &str, no: NoQuantity) -> String {
     match no {
         NoQuantity::OfCompany => format!("{id} is a figure of the whole company; write {id} without a group"),
         NoQuantity::OfGroup => format!("{id} is a figure of a group; write for instance {id}(S1)"),

@@ -16,21 +16,21 @@ pub struct Breakpoint {
 
 /// The breakpoints of a run, as long as it is open.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Breakpoints {
+pub(crate) struct Breakpoints {
     set: Vec<Breakpoint>,
     last_number: u32,
     /// Figures of the days.
-    pub(in crate::session) series: Arc<Series>,
+    pub(crate) series: Arc<Series>,
 }
 
 impl Breakpoints {
     /// Those that are set, in the order of their numbers.
-    pub(in crate::session) fn all(&self) -> &[Breakpoint] {
+    pub(crate) fn all(&self) -> &[Breakpoint] {
         &self.set
     }
 
     /// Sets one; the one that is there if it is set already.
-    pub(in crate::session) fn set(&mut self, condition: Condition) -> Breakpoint {
+    pub(crate) fn set(&mut self, condition: Condition) -> Breakpoint {
         if let Some(known) = self.set.iter().find(|own| own.condition == condition) {
             return *known;
         }
@@ -41,13 +41,13 @@ impl Breakpoints {
     }
 
     /// Removes the one with a number; none if there is none.
-    pub(in crate::session) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
+    pub(crate) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
         let at = self.set.iter().position(|own| own.number == number)?;
         Some(self.set.remove(at))
     }
 
     /// Removes all; returns what was set.
-    pub(in crate::session) fn clear_all(&mut self) -> Vec<Breakpoint> {
+    pub(crate) fn clear_all(&mut self) -> Vec<Breakpoint> {
         std::mem::take(&mut self.set)
     }
 }

@@ -1,8 +1,8 @@
 //! When a condition was true, over the days of a run that are over.
 
 use super::condition::{Condition, Judged};
-use crate::session::state::Session;
-use crate::tools::Refusal;
+use crate::state::Session;
+use novamind_tools::Refusal;
 
 /// How a condition stands today, and when that was otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]

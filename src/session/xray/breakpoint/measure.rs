@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::series::MeasuredDay;
-use crate::session::figures::churn::churn;
-use crate::session::xray::measured_group::MeasuredGroup;
-use crate::world::identifiers::Group;
+use crate::figures::churn::churn;
+use crate::xray::measured_group::MeasuredGroup;
+use novamind_world::identifiers::Group;
 
 /// How a figure goes with time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,7 +91,7 @@ measures! {
 
 /// Why a figure cannot be asked for like this.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::session) enum NoQuantity {
+pub(crate) enum NoQuantity {
     /// It is one of the whole company.
     OfCompany,
     /// It is one of a group.
@@ -115,7 +115,7 @@ impl Quantity {
     pub const MOST_DAYS: u32 = 1000;
 
     /// A figure; `days` is a number from 1 to [`Quantity::MOST_DAYS`], where it is named.
-    pub(in crate::session) fn new(
+    pub(crate) fn new(
         measure: Measure,
         group: Option<Group>,
         days: Option<u32>,
@@ -159,7 +159,7 @@ impl Quantity {
     }
 
     /// Its value on a day of some days, day 1 first; none while there are too few days, or where it divides by nothing.
-    pub(in crate::session) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
+    pub(crate) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
         let value = match self.measure {
             Measure::Churn => {
                 let beginning = day.checked_sub(self.days)?;

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::condition::{Condition, Judged};
 use super::list::Breakpoint;
 use super::series::Series;
-use crate::session::play::advance::DayReport;
-use crate::session::play::week::Week;
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::day::watch::Unwatched;
+use crate::play::advance::DayReport;
+use crate::play::week::Week;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::day::watch::Unwatched;
 
 /// A breakpoint that became true.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl Session {
         }
     }
 
-    pub(in crate::session) fn unknown_breakpoint(&self, number: u32) -> Refusal {
+    pub(crate) fn unknown_breakpoint(&self, number: u32) -> Refusal {
         let numbers: Vec<String> = self.breakpoints.all().iter().map(|own| own.number.to_string()).collect();
         let message = match numbers.is_empty() {
             true => format!("there is no breakpoint {number}; none is set"),
@@ -140,7 +140,7 @@ impl Session {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(in crate::session) fn measured_up_to(&mut self, day: u32) -> Result<Arc<Series>, Refusal> {
+    pub(crate) fn measured_up_to(&mut self, day: u32) -> Result<Arc<Series>, Refusal> {
         if self.breakpoints.series.last_day() < day {
             let series = Arc::new(Series::default());
             self.watch_up_to(day, series.clone())?;

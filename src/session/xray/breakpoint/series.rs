@@ -2,29 +2,29 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::session::figures::groups::{self, GroupWeek};
-use crate::session::xray::measured_group::MeasuredGroup;
-use crate::world::day::watch::DayWatch;
-use crate::world::events::{DayFigures, Facts};
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::drift::is_drift_day;
-use crate::world::market::surges::surge_factor;
-use crate::world::params::Params;
-use crate::world::state::World;
+use crate::figures::groups::{self, GroupWeek};
+use crate::xray::measured_group::MeasuredGroup;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::{DayFigures, Facts};
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::drift::is_drift_day;
+use novamind_world::market::surges::surge_factor;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 /// Figures of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::session) struct MeasuredDay {
+pub(crate) struct MeasuredDay {
     /// Those of the company.
-    pub(in crate::session) figures: DayFigures,
+    pub(crate) figures: DayFigures,
     /// Those of the groups.
-    pub(in crate::session) groups: ByGroup<MeasuredGroup>,
+    pub(crate) groups: ByGroup<MeasuredGroup>,
     /// Whether rivals moved.
-    pub(in crate::session) rival: bool,
+    pub(crate) rival: bool,
     /// Whether expectations drifted.
-    pub(in crate::session) drift: bool,
+    pub(crate) drift: bool,
     /// Whether a demand surge acts.
-    pub(in crate::session) surge: bool,
+    pub(crate) surge: bool,
 }
 
 impl MeasuredDay {
@@ -42,14 +42,14 @@ impl MeasuredDay {
     }
 
     /// Active subscribers with an open issue.
-    pub(in crate::session) fn open_issues(&self) -> u32 {
+    pub(crate) fn open_issues(&self) -> u32 {
         Group::all().map(|group| self.groups[group].open_issues).sum()
     }
 }
 
 /// Keeps the figures of days, without a gap from day 1.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Series {
+pub(crate) struct Series {
     pages: Mutex<SeriesPages>,
 }
 
@@ -62,12 +62,12 @@ struct SeriesPages {
 
 impl Series {
     /// Reads the days, day 1 first.
-    pub(in crate::session) fn read<R>(&self, work: impl FnOnce(&[MeasuredDay]) -> R) -> R {
+    pub(crate) fn read<R>(&self, work: impl FnOnce(&[MeasuredDay]) -> R) -> R {
         work(&self.pages().days)
     }
 
     /// The last day that is there; 0 before the first.
-    pub(in crate::session) fn last_day(&self) -> u32 {
+    pub(crate) fn last_day(&self) -> u32 {
         self.pages().days.len() as u32
     }
 

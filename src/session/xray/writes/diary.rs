@@ -4,14 +4,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::target::WriteTarget;
 use super::{WhoWrites, Write, WrittenBy};
-use crate::world::day::watch::DayWatch;
-use crate::world::events::{
+use novamind_world::day::watch::DayWatch;
+use novamind_world::events::{
     Category, DayFigures, Facts, LedgerEntry, Source, SubscriptionEnded, SubscriptionStatus,
 };
-use crate::world::identifiers::Group;
-use crate::world::market::reputation::ReputationWrite;
-use crate::world::params::Params;
-use crate::world::state::World;
+use novamind_world::identifiers::Group;
+use novamind_world::market::reputation::ReputationWrite;
+use novamind_world::params::Params;
+use novamind_world::state::World;
 
 /// Keeps what is written to a figure on one day.
 pub(super) struct WriteDiary {

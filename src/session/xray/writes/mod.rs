@@ -1,17 +1,17 @@
 //! Who wrote a figure on a day: each mechanism with its amount, in the order of the day (docs/debugging.md#who-writes).
 
 mod diary;
-pub(in crate::session) mod target;
+pub(crate) mod target;
 
 use std::sync::Arc;
 
 use diary::WriteDiary;
 use target::WriteTarget;
 
-use crate::session::state::Session;
-use crate::tools::Refusal;
-use crate::world::events::{Category, EndCause, Source};
-use crate::world::market::reputation::ReputationCause;
+use crate::state::Session;
+use novamind_tools::Refusal;
+use novamind_world::events::{Category, EndCause, Source};
+use novamind_world::market::reputation::ReputationCause;
 
 /// What wrote.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::session::xray::breakpoint::grammar::{ConditionProblem, Words};
-use crate::world::identifiers::Group;
+use crate::xray::breakpoint::grammar::{ConditionProblem, Words};
+use novamind_world::identifiers::Group;
 
 /// A figure of which every write can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -75,7 +75,6 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::{database, tools};
 
     #[test]
     fn ids_are_unique_words_with_dashes() {
@@ -97,8 +96,10 @@ mod tests {
     fn everything_a_term_points_at_exists() {
         for Term { id, see, tools, tables, places, .. } in terms() {
             see.iter().for_each(|other| assert!(term(other).is_some() && other != id, "{id} sees {other}"));
-            tools.iter().for_each(|tool| assert!(tools::find(tool).is_some(), "{id} names {tool}"));
-            tables.iter().for_each(|table| assert!(database::table(table).is_some(), "{id} names {table}"));
+            tools.iter().for_each(|tool| assert!(novamind_tools::find(tool).is_some(), "{id} names {tool}"));
+            tables
+                .iter()
+                .for_each(|table| assert!(novamind_database::table(table).is_some(), "{id} names {table}"));
             assert!(!places.is_empty() || !tools.is_empty() || !tables.is_empty(), "{id} is nowhere");
             assert!(!see.is_empty(), "{id} leads nowhere");
         }
@@ -123,7 +124,7 @@ mod tests {
         let sealed = include_str!("../../tests/data/sealed.csv");
         let text = include_str!("../../assets/glossary.toml");
         let visible = |name: &str| {
-            database::tables()
+            novamind_database::tables()
                 .iter()
                 .any(|table| table.name == name || table.columns.iter().any(|column| column.name == name))
         };

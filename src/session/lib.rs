@@ -4,7 +4,7 @@
 //! changes; applying cannot fail. So memory is never ahead of the trajectory, the trajectory never ahead of
 //! what was confirmed, and a run can always be rebuilt from `run.toml` and `trajectory.jsonl`.
 
-pub(crate) mod archive;
+pub mod archive;
 mod ask;
 mod audit;
 mod class;
@@ -185,16 +185,16 @@ pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
 pub use xray::writes::target::WriteTarget;
 pub use xray::writes::{WhoWrites, Write, WrittenBy};
 
-pub use crate::database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
-pub use crate::tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
-pub use crate::voice::CompanyNames;
-pub use crate::voice::judge::Judgement;
-pub use crate::voice::model::settings::{ModelSettings, ModelStamp};
-pub use crate::world::enterprise::Answer as CompanyAnswer;
-pub use crate::world::events::{Category, EndCause, Severity, Source};
-pub use crate::world::fault::Fault;
-pub use crate::world::market::competitors::Event as RivalEvent;
-pub use crate::world::market::drift::Expectation;
-pub use crate::world::market::reputation::{ReputationCause, Spill, SpillOver};
-pub use crate::world::market::surges::Surge;
-pub use crate::world::settings::{CoreSettings, Settings};
+pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
+pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
+pub use novamind_voice::CompanyNames;
+pub use novamind_voice::judge::Judgement;
+pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_world::enterprise::Answer as CompanyAnswer;
+pub use novamind_world::events::{Category, EndCause, Severity, Source};
+pub use novamind_world::fault::Fault;
+pub use novamind_world::market::competitors::Event as RivalEvent;
+pub use novamind_world::market::drift::Expectation;
+pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
+pub use novamind_world::market::surges::Surge;
+pub use novamind_world::settings::{CoreSettings, Settings};

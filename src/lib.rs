@@ -50,8 +50,6 @@ pub mod cli;
 pub mod console;
 pub mod lab;
 pub mod plain;
-pub mod report;
-pub mod rules;
 #[cfg(feature = "server")]
 pub mod server;
 
@@ -61,6 +59,10 @@ use novamind_base::{notation, statistics};
 pub use novamind_database as database;
 #[doc(inline)]
 pub use novamind_glossary as glossary;
+#[doc(inline)]
+pub use novamind_report as report;
+#[doc(inline)]
+pub use novamind_rules as rules;
 #[doc(inline)]
 pub use novamind_session as session;
 #[doc(inline)]

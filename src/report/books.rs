@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::session::{Booked, Cell, Rows, Session, number_at, text_at};
-use crate::world::identifiers::Group;
+use novamind_session::identifiers::Group;
+use novamind_session::{Booked, Cell, Rows, Session, number_at, text_at};
 
 /// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
 const FLOWS: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
@@ -167,8 +167,8 @@ fn ledger_of(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
-    use crate::session::WEEK_OF_ENTRY;
+    use crate::test_kit;
+    use novamind_session::WEEK_OF_ENTRY;
 
     #[test]
     fn the_books_agree_with_the_figures_of_the_run() {

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::words::number;
-use crate::session::ToolId;
-use crate::session::{Change, Decisions, JournalEntry, WeekFigures, week_of};
+use novamind_session::ToolId;
+use novamind_session::{Change, Decisions, JournalEntry, WeekFigures, week_of};
 
 /// Weeks that began with the same decision: the first of them decided, the others let it stand.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,7 +141,7 @@ fn deeds(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
+    use crate::test_kit;
 
     #[test]
     fn weeks_without_a_decision_join_the_one_before() {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::Logbook;
 use super::tables::StudyTables;
-use crate::session::archive::Workshop;
-use crate::session::{
+use novamind_session::archive::Workshop;
+use novamind_session::{
     CollectNote, Export, FoundRun, FoundVisit, Gathered, LabKey, LabPublicKey, RunError, Seal, SealKey,
     Study, VisitSummary, gather, missing_places,
 };

@@ -3,7 +3,7 @@
 use super::logbook::Logbook;
 use super::ranking::published;
 use super::words::{dollar_tick, whole};
-use crate::session::{DEFAULT_SCENARIO, Mode, Observation, RunSummary};
+use novamind_session::{DEFAULT_SCENARIO, Mode, Observation, RunSummary};
 
 /// Last day of the published runs.
 pub const PUBLISHED_DAYS: u32 = 500;
@@ -206,7 +206,7 @@ pub fn not_ranked_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Configuration, NewRun, Session};
+    use novamind_session::{Configuration, NewRun, Session};
 
     const COMPARABLE: RunTerms<'static> = RunTerms {
         days: 500,

@@ -1,8 +1,8 @@
 //! The curve explorer in words: what it is drawn from, the curve at some prices, and what leads would do.
 
-use crate::notation::{cents, percent, price_to_cents};
-use crate::session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
-use crate::world::identifiers::{ByPlan, Plan};
+use novamind_base::notation::{cents, percent, price_to_cents};
+use novamind_session::identifiers::{ByPlan, Plan};
+use novamind_session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
 
 /// Every so many points of the curve is a row.
 const ROW_EVERY: usize = 6;
@@ -97,8 +97,8 @@ pub fn quality(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit::played;
-    use crate::world::identifiers::Group;
+    use crate::test_kit::played;
+    use novamind_session::identifiers::Group;
 
     #[test]
     fn an_unfinished_run_is_told_with_ends_and_what_is_assumed() {

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::words::count;
-use crate::notation::cents;
-use crate::session::{CompanyNames, ToolId};
+use novamind_base::notation::cents;
+use novamind_session::{CompanyNames, ToolId};
 
 /// Deals of a call that are told one by one.
 const TOLD: usize = 3;
@@ -42,7 +42,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::world::params::Params;
+    use novamind_world::params::Params;
 
     #[test]
     fn deals_name_their_companies_in_every_form_of_a_call() {

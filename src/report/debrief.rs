@@ -6,9 +6,9 @@ use super::deals::deals_in_words;
 use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_words};
 use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
 use super::words::{count, money};
-use crate::glossary::{Term, terms};
-use crate::notation::{grouped, percent, signed_dollars};
-use crate::session::{
+use novamind_base::notation::{grouped, percent, signed_dollars};
+use novamind_glossary::{Term, terms};
+use novamind_session::{
     CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, Ended,
     FigureUnit, FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve,
     ToolId, WeekFigure,
@@ -410,7 +410,7 @@ fn goals(own: &Debrief) -> Vec<Block> {
             Some(false) => "missed",
             None => "not judged",
         };
-        let one = |goal: &crate::session::GoalPage| {
+        let one = |goal: &novamind_session::GoalPage| {
             let number =
                 |value: Option<f64>| value.map_or("–".to_owned(), |value| goal_amount(goal, value));
             vec![

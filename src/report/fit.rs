@@ -2,9 +2,9 @@
 //! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
 
 use super::words::{range, whole};
-use crate::notation::{cents, dollars, percent, price_to_cents};
-use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use novamind_base::notation::{cents, dollars, percent, price_to_cents};
+use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
 
 /// Weeks that are recent.
 const RECENT: usize = 4;
@@ -382,9 +382,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::report::lead_costs::{SPELL, pair_costs};
-    use crate::report::test_kit::played;
-    use crate::session::{Via, number_at};
+    use crate::lead_costs::{SPELL, pair_costs};
+    use crate::test_kit::played;
+    use novamind_session::{Via, number_at};
 
     fn number(session: &mut Session, sql: &str) -> f64 {
         number_at(&session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0], 0)

@@ -2,8 +2,8 @@
 
 use super::fit::{Beside, TruthRange};
 use super::words::{count, whole};
-use crate::session::{DeliveredQuality, Estimates, GroupWeek, Session};
-use crate::world::identifiers::{ByGroup, Group, Plan};
+use novamind_session::identifiers::{ByGroup, Group, Plan};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 
 /// A group of companies over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::{Configuration, NewRun, Storage, Via};
+    use novamind_session::{Configuration, NewRun, Storage, Via};
 
     #[test]
     fn companies_are_counted_as_the_tables_have_them() {
@@ -141,7 +141,7 @@ mod tests {
         let all = funnels(&session);
         assert_eq!(all.iter().map(|own| own.group.id()).collect::<Vec<_>>(), ["E1", "E2", "E3"]);
         let mut number =
-            |sql: String| crate::session::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
+            |sql: String| novamind_session::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
         for own in &all {
             let group = own.group;
             let of = |table: &str, condition: &str| {

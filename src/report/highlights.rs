@@ -1,8 +1,8 @@
 //! The days of a run worth remembering.
 
 use super::words::{count, money, whole};
-use crate::notation::signed_dollars;
-use crate::session::{Ended, WeekFigures};
+use novamind_base::notation::signed_dollars;
+use novamind_session::{Ended, WeekFigures};
 
 /// A day worth remembering.
 #[derive(Debug, Clone, PartialEq, Eq)]

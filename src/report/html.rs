@@ -2,7 +2,7 @@
 
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
-use crate::notation::acts;
+use novamind_base::notation::acts;
 
 /// The style of the page.
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
@@ -156,7 +156,7 @@ pub fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Story, as_html, as_markdown, test_kit};
+    use crate::{Story, as_html, as_markdown, test_kit};
 
     /// Names of the elements that are open when they should not be, or closed without having been open.
     fn check(html: &str) {
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn the_same_run_gives_the_same_report_but_for_its_name() {
-        let told = |session: crate::session::Session| {
+        let told = |session: novamind_session::Session| {
             let id = session.manifest().id.clone();
             let story = Story::of(&session);
             (as_markdown(&story).replace(&id, "RUN"), as_html(&story).replace(&id, "RUN"))

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::fit::Fit;
 use super::words::range;
-use crate::session::truth_behind;
+use novamind_session::truth_behind;
 
 /// Fields of the insights that hold estimates.
 const ESTIMATED: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];

@@ -1,7 +1,7 @@
 //! What a lead costs by channel and group: the last four weeks beside the cheapest four weeks before them.
 
-use crate::session::{GroupWeek, PaidLeads};
-use crate::world::identifiers::{ByGroup, Channel, Group};
+use novamind_session::identifiers::{ByGroup, Channel, Group};
+use novamind_session::{GroupWeek, PaidLeads};
 
 /// Weeks that are looked at together: one of them alone brings too few leads to compare.
 pub const SPELL: usize = 4;

@@ -1,8 +1,8 @@
 //! What happened in a lesson, in words.
 
 use super::words::money;
-use crate::notation::{cents, compact, parse_number, percent, short_dollars};
-use crate::session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
+use novamind_base::notation::{cents, compact, parse_number, percent, short_dollars};
+use novamind_session::{GoalPage, LessonEvent, LessonNote, LessonPage, LessonQuestion};
 
 /// The word of an event, as lines write it.
 pub fn word(event: LessonEvent) -> &'static str {

@@ -2,7 +2,7 @@
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
 use super::plot::{LEVELS, level};
-use crate::notation::acts;
+use novamind_base::notation::acts;
 
 /// Characters of a full bar.
 const BAR: usize = 24;

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::books::ChannelRow;
-use crate::session::{
+use novamind_session::identifiers::{Channel, Group};
+use novamind_session::{
     Decisions, Ended, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
 };
-use crate::world::identifiers::{Channel, Group};
 
 /// Words that show somebody weighing what may come.
 pub const PLANNING_WORDS: [&str; 16] = [
@@ -361,8 +361,8 @@ pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
-    use crate::session::Change;
+    use crate::test_kit;
+    use novamind_session::Change;
 
     fn ads(group: &str, channel: &str, leads: f64, spend: f64) -> ChannelRow {
         ChannelRow { group: group.to_owned(), channel: channel.to_owned(), leads, spend }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::notation::dollars;
-use crate::session::{Configuration, Refusal};
+use novamind_base::notation::dollars;
+use novamind_session::{Configuration, Refusal};
 
 /// What became of a policy in the world of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]

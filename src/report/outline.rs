@@ -7,8 +7,8 @@ use super::page::{Bar, Block, Fact, Page, Table};
 use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
 use super::words::{cash_change_in_words, count, money, origin_in_words, whole};
-use crate::notation::{capital, grouped, percent, signed_dollars};
-use crate::session::{Ended, ModelStamp};
+use novamind_base::notation::{capital, grouped, percent, signed_dollars};
+use novamind_session::{Ended, ModelStamp};
 
 /// The page that tells a story.
 pub fn page_of(story: &Story) -> Page {
@@ -215,7 +215,7 @@ fn forecasts(story: &Story) -> Vec<Block> {
         blocks.push(Block::Text(text));
         return blocks;
     }
-    let row = |score: &&crate::session::ForecastScore| {
+    let row = |score: &&novamind_session::ForecastScore| {
         vec![
             count(score.horizon_days / 7, "week"),
             score.scored.to_string(),

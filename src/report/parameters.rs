@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::session::{ChangedParameter, ChangedParameters};
+use novamind_session::{ChangedParameter, ChangedParameters};
 
 /// `group.S1.c_max_mean: 50 → 300, from day 30 on`
 pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {

@@ -2,8 +2,8 @@
 //! the week before. A projection at last week's growth, and named so wherever it stands.
 
 use super::words::whole;
-use crate::notation::percent;
-use crate::session::WeekFigures;
+use novamind_base::notation::percent;
+use novamind_session::WeekFigures;
 
 /// The busiest days of the last two weeks, and the next at the same growth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,8 +64,8 @@ pub fn peak_beside_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit::played;
-    use crate::session::number_at;
+    use crate::test_kit::played;
+    use novamind_session::number_at;
 
     #[test]
     fn the_projection_follows_from_the_days_in_the_tables() {

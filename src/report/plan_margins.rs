@@ -9,9 +9,9 @@ use serde_json::Value;
 pub use sentences::margin_sentences;
 
 use super::words::money;
-use crate::notation::{cents, compact, percent};
-use crate::session::{Cell, Refusal, Rows, Session, ToolId, number_at, query_refusal, text_at};
-use crate::world::identifiers::{ByPlan, Group, Plan};
+use novamind_base::notation::{cents, compact, percent};
+use novamind_session::identifiers::{ByPlan, Group, Plan};
+use novamind_session::{Cell, Refusal, Rows, Session, ToolId, number_at, query_refusal, text_at};
 
 /// Active subscriptions by group and plan.
 const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
@@ -339,8 +339,8 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::report::test_kit::played;
-    use crate::session::CoreSettings;
+    use crate::test_kit::played;
+    use novamind_session::CoreSettings;
 
     fn terms(core: &CoreSettings) -> ByPlan<PlanTerms> {
         ByPlan::from_fn(|plan| PlanTerms {

@@ -3,7 +3,7 @@
 use unicode_width::UnicodeWidthStr;
 
 use super::words::tick;
-use crate::notation::compact;
+use novamind_base::notation::compact;
 
 /// How values are placed on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl AxisScale {
     }
 
     /// Where a value stands on a ruler; not a number where it has no place.
-    pub(crate) fn placed(self, value: f64) -> f64 {
+    pub fn placed(self, value: f64) -> f64 {
         match self {
             AxisScale::Linear | AxisScale::Whole => value,
             AxisScale::Logarithmic if value > 0.0 => libm::log10(value),

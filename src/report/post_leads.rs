@@ -2,8 +2,8 @@
 //! brought is in no record that a player may see.
 
 use super::words::whole;
-use crate::session::GroupWeek;
-use crate::world::identifiers::{ByGroup, Group};
+use novamind_session::GroupWeek;
+use novamind_session::identifiers::{ByGroup, Group};
 
 /// Lines on the leads before and after a decision day; none before a week has run after it.
 pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
@@ -27,8 +27,8 @@ pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit::played;
-    use crate::session::number_at;
+    use crate::test_kit::played;
+    use novamind_session::number_at;
 
     #[test]
     fn leads_are_counted_on_both_sides_of_the_day() {

@@ -1,9 +1,9 @@
 //! The protocol of a study in words, ready to be preregistered: everything in it is computed from the study, the
 //! parameters in force and the columns of the tables.
 
-use crate::notation::{dollars, grouped};
-use crate::report::tables::headings;
-use crate::session::{
+use crate::tables::headings;
+use novamind_base::notation::{dollars, grouped};
+use novamind_session::{
     ASSIGNMENT_FILE, Assignment, AtLimit, AuditKind, BREAK_SECONDS, Configuration, DraftsKept,
     FAST_WEEK_SECONDS, Form, FreeText, IDLE_AFTER, Moment, PracticeOffer, Questionnaire, ResultsShown,
     RunError, SeedPlan, Study, TimeLimits, lab_public_key_of,

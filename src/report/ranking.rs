@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::comparable::{Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obstacles_in_words};
 use super::words::dollar_tick;
-use crate::session::Observation;
+use novamind_session::Observation;
 
 /// Published results (read once).
 #[derive(Debug, Deserialize)]
@@ -167,8 +167,8 @@ pub fn published_terms() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
-    use crate::session::{Configuration, Mode, NewRun, Session};
+    use crate::test_kit;
+    use novamind_session::{Configuration, Mode, NewRun, Session};
 
     #[test]
     fn a_score_stands_among_the_published_ones() {

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::notation::grouped;
-use crate::session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
+use novamind_base::notation::grouped;
+use novamind_session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
 /// Lines on a project before it is started, the first one on time.
 pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
@@ -90,7 +90,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::{Configuration, Mode, NewRun, Session, Storage, Via};
+    use novamind_session::{Configuration, Mode, NewRun, Session, Storage, Via};
 
     fn run(days: u32, mode: Mode) -> Session {
         let new = NewRun {
@@ -172,7 +172,7 @@ mod tests {
             let _ = session.call("start_research_project", &json!({ "tier": tier }), Via::Script);
         }
         let seen = session.observe();
-        let due = |project: &crate::session::LateProject| project.due_day > 200 && project.is_new;
+        let due = |project: &novamind_session::LateProject| project.due_day > 200 && project.is_new;
         assert!(!seen.late_projects.is_empty() && seen.late_projects.iter().all(due));
         let first = &seen.late_projects[0];
         let words =

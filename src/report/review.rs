@@ -2,8 +2,8 @@
 //! cash lasts at that.
 
 use super::words::{count, money};
-use crate::notation::{dollars, price_to_cents, signed_dollars};
-use crate::session::{AlikePlans, Observation, Preview};
+use novamind_base::notation::{dollars, price_to_cents, signed_dollars};
+use novamind_session::{AlikePlans, Observation, Preview};
 
 /// Lines on the money of a company before its next week.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
@@ -78,8 +78,8 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::report::test_kit;
-    use crate::session::{Session, Via, number_at};
+    use crate::test_kit;
+    use novamind_session::{Session, Via, number_at};
 
     #[test]
     fn eighteen_changes_have_one_total_and_purchases_stand_apart() {

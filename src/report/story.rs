@@ -6,7 +6,7 @@ use super::highlights::{Highlight, highlights};
 use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
-use crate::session::{
+use novamind_session::{
     BranchOrigin, Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures,
     filed_forecasts, origin_of,
 };
@@ -115,7 +115,7 @@ impl Story {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
+    use crate::test_kit;
 
     #[test]
     fn a_finished_run_has_a_score_a_rank_and_its_measures() {

@@ -3,11 +3,11 @@
 
 use super::fit::{Fit, fits};
 use super::plot::{Drawn, plot};
-use crate::notation::{compact, percent};
-use crate::session::{
+use novamind_base::notation::{compact, percent};
+use novamind_session::identifiers::{ByGroup, Group, Plan};
+use novamind_session::{
     DeliveredQuality, GroupWeek, Numbers, Session, WeekFigures, churn_of_last_week, example_curve,
 };
-use crate::world::identifiers::{ByGroup, Group, Plan};
 
 /// A change of reputation, as an example.
 const CHANGE: f64 = 0.1;
@@ -271,7 +271,7 @@ pub fn term_picture_of(term: &str, session: &Session) -> Option<TermPicture> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
+    use crate::test_kit;
 
     fn picture(term: &str, weeks: usize) -> TermPicture {
         assert!(has_picture(term));

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::session::{Configuration, Line, NewRun, Session, Storage, Trajectory, Via};
+use novamind_session::{Configuration, Line, NewRun, Session, Storage, Trajectory, Via};
 
 /// A run in memory of some weeks, played by a sensible beginner who changes one thing in the third week.
 pub fn played(weeks: usize) -> Session {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::words::{money, whole};
-use crate::session::WeekFigures;
+use novamind_session::WeekFigures;
 
 /// A kind of cost over the whole run.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,8 @@ use std::ops::Range;
 use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
 use super::words::{category_name, money, number, points, short_week_in_words, whole};
-use crate::notation::{compact, percent};
-use crate::session::{
+use novamind_base::notation::{compact, percent};
+use novamind_session::{
     Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, WeekFigures,
     filed_forecasts,
 };
@@ -303,13 +303,13 @@ fn due(sources: &Sources<'_>, day: u32) -> Vec<ScoredForecast> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
+    use crate::test_kit;
 
     #[test]
     fn calls_between_the_single_days_of_the_last_short_week_are_told() {
-        use crate::session::{Mode, NewRun, Storage, Via};
+        use novamind_session::{Mode, NewRun, Storage, Via};
         let new = NewRun { days: Some(10), mode: Mode::Debug, storage: Storage::Memory, ..NewRun::default() };
-        let mut session = Session::create(new, &crate::session::Configuration::shipped()).expect("a run");
+        let mut session = Session::create(new, &novamind_session::Configuration::shipped()).expect("a run");
         for days in [7, 1] {
             session.step(days, &mut |_| {}).expect("days");
         }
@@ -329,10 +329,11 @@ mod tests {
         let sum: f64 = report.parts.iter().map(|(_, dollars)| dollars).sum();
         assert!((sum - report.week.cash_change).abs() < 0.01);
         for (at, week) in session.weeks().to_vec().iter().enumerate() {
-            let of_week = crate::session::entries_of_weeks(at as u32 + 1, at as u32 + 1);
+            let of_week = novamind_session::entries_of_weeks(at as u32 + 1, at as u32 + 1);
             let sql = format!("SELECT category, sum(amount) FROM ledger WHERE {of_week} GROUP BY 1");
             for row in session.query(&sql).expect("rows").rows {
-                let (id, dollars) = (crate::session::text_at(&row, 0), crate::session::number_at(&row, 1));
+                let (id, dollars) =
+                    (novamind_session::text_at(&row, 0), novamind_session::number_at(&row, 1));
                 let category = Category::ALL.into_iter().find(|own| own.id() == id).expect("a category");
                 assert!((week.booked.of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
             }

@@ -2,12 +2,12 @@
 
 use super::why::{signed, written};
 use super::words::{count, first_change_in_words};
-use crate::notation::{compact, printable, short_dollars};
-use crate::session::{
+use novamind_base::notation::{compact, printable, short_dollars};
+use novamind_base::statistics::Interval;
+use novamind_session::{
     BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FigureUnit, Futures,
     Kin, ParameterDifference,
 };
-use crate::statistics::Interval;
 
 /// The name of the branch without edits. Days after the end of the record were not played in it either.
 const UNCHANGED: &str = "your decisions unchanged";
@@ -264,7 +264,7 @@ pub fn kin_line(kin: &Kin, own: &str) -> String {
         run.id,
         run.day,
         run.days,
-        crate::notation::dollars(run.cash)
+        novamind_base::notation::dollars(run.cash)
     )
 }
 
@@ -273,7 +273,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::ToolId;
+    use novamind_session::ToolId;
 
     #[test]
     fn weeks_after_the_end_of_the_record_are_not_called_played() {

@@ -2,8 +2,8 @@
 
 use super::chapters::change_in_words;
 use super::words::{count, number, points, short_week_in_words, whole};
-use crate::notation::{grouped, percent};
-use crate::session::{Detail, FigureUnit, InputDetail, Why};
+use novamind_base::notation::{grouped, percent};
+use novamind_session::{Detail, FigureUnit, InputDetail, Why};
 
 /// What no cause explains.
 pub const REST: &str = "composition and chance";
@@ -27,7 +27,7 @@ pub fn lines(why: &Why) -> Vec<CauseLine> {
         let written = signed(why.quantity.unit(), amount);
         CauseLine { name, amount, written, details }
     };
-    let part = |part: &crate::session::WhyPart| {
+    let part = |part: &novamind_session::WhyPart| {
         line(part.cause.name(), part.amount, part.details.iter().map(in_words).collect())
     };
     why.parts.iter().map(part).chain([line(REST, why.rest, Vec::new())]).collect()
@@ -51,7 +51,7 @@ pub fn heading(why: &Why) -> String {
 /// A value of a figure in a unit.
 pub fn written(unit: FigureUnit, value: f64) -> String {
     match unit {
-        FigureUnit::Dollars => crate::notation::dollars(value + 0.0),
+        FigureUnit::Dollars => novamind_base::notation::dollars(value + 0.0),
         FigureUnit::Count => whole(value),
         FigureUnit::Share => percent(value, 1),
         FigureUnit::FineShare => percent(value, 2),
@@ -92,7 +92,7 @@ fn in_words(detail: &Detail) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Cause, ToolId, WeekFigure, WeekQuantity, WhyPart};
+    use novamind_session::{Cause, ToolId, WeekFigure, WeekQuantity, WhyPart};
 
     fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
         let part =

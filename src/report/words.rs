@@ -1,7 +1,7 @@
 //! How reports write figures and name what they are.
 
-use crate::notation::{compact, grouped, signed_dollars};
-use crate::session::{BranchOrigin, Category, FirstChange, Observation};
+use novamind_base::notation::{compact, grouped, signed_dollars};
+use novamind_session::{BranchOrigin, Category, FirstChange, Observation};
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {

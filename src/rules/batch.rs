@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use super::grammar::{Action, OfferLine, Price, Rule};
 use super::thread::{AskingThread, Market, TOOLS};
-use crate::notation::{cents, dollars, grouped, percent};
-use crate::session::{CompanyNames, Refusal, Session, ToolId};
-use crate::world::identifiers::Plan;
+use novamind_base::notation::{cents, dollars, grouped, percent};
+use novamind_session::identifiers::Plan;
+use novamind_session::{CompanyNames, Refusal, Session, ToolId};
 
 /// What a thread would be sent.
 #[derive(Debug, Clone, PartialEq)]
@@ -244,7 +244,7 @@ mod tests {
     use super::super::parse;
     use super::super::usage::SeatUsage;
     use super::*;
-    use crate::session::WaitingThread;
+    use novamind_session::WaitingThread;
 
     fn thread(customer: u32, seats: u32, asked: Option<(Plan, f64)>, last: &[(Plan, f64)]) -> AskingThread {
         let waiting = WaitingThread {

@@ -1,7 +1,7 @@
 //! Whom a rule means: comparisons of what a thread shows.
 
 use super::thread::AskingThread;
-use crate::world::identifiers::Plan;
+use novamind_session::identifiers::Plan;
 
 /// What a condition asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

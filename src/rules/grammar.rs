@@ -2,8 +2,8 @@
 
 use super::condition::{Comparison, Condition, FIELDS, Field, Value};
 use super::thread::AskingThread;
-use crate::world::identifiers::Plan;
 use novamind_base::nearest;
+use novamind_session::identifiers::Plan;
 
 /// Lines that an offer may have.
 const MOST_LINES: usize = 3;

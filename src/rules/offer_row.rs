@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::world::identifiers::Plan;
+use novamind_session::identifiers::Plan;
 
 /// Plans and prices that the player offered, and the price that a company named, dollars a month and seat, in the JSON
 /// of a row.

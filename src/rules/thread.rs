@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::usage::{SEAT_USAGE, SeatUsage};
-use crate::notation::json_number;
-use crate::session::{CompanyNames, Refusal, Rows, Session, ToolId, WaitingThread, number_at, text_at};
-use crate::world::identifiers::{Group, Plan};
+use novamind_base::notation::json_number;
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{CompanyNames, Refusal, Rows, Session, ToolId, WaitingThread, number_at, text_at};
 
 /// The statement for what companies wrote last: a thread ends a week after it.
 pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
@@ -22,7 +22,7 @@ pub struct Letters(BTreeMap<u32, Plan>);
 impl Letters {
     /// Reads the answer to [`LAST_LETTERS`].
     pub fn read(rows: &Rows) -> Letters {
-        let plan = |row: &Vec<crate::session::Cell>| {
+        let plan = |row: &Vec<novamind_session::Cell>| {
             let plan = other_plan_in(text_at(row, 1), Plan::parse(text_at(row, 2)))?;
             Some((number_at(row, 0) as u32, plan))
         };

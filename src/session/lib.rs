@@ -193,6 +193,7 @@ pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
 pub use novamind_world::enterprise::Answer as CompanyAnswer;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
+pub use novamind_world::identifiers;
 pub use novamind_world::market::competitors::Event as RivalEvent;
 pub use novamind_world::market::drift::Expectation;
 pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};

@@ -7,8 +7,8 @@ mod text;
 use super::highlights::{highest_cash, lowest_cash, peak_week};
 use super::story::Story;
 use super::words::{money, whole};
-use crate::notation::printable;
-use crate::session::{Ended, WeekFigures};
+use novamind_base::notation::printable;
+use novamind_session::{Ended, WeekFigures};
 
 /// A fact with what it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -117,8 +117,8 @@ mod tests {
     use unicode_width::UnicodeWidthStr;
 
     use super::*;
-    use crate::report::test_kit;
-    use crate::session::{Cell, Session};
+    use crate::test_kit;
+    use novamind_session::{Cell, Session};
 
     fn number(session: &mut Session, sql: &str) -> f64 {
         let rows = session.query(sql).expect(sql);
@@ -208,7 +208,7 @@ mod tests {
         let mut story = Story::of(&test_kit::finished());
         assert!(!as_text(&story).contains("rank"));
         (story.seen.last_day, story.seen.seed) = (500, Some(42));
-        story.standing = crate::report::ranking::standing(Some(14_208_331.0), &story.seen);
+        story.standing = crate::ranking::standing(Some(14_208_331.0), &story.seen);
         assert!(as_text(&story).contains("rank 2 of 18") && as_svg(&story).contains("rank 2 of 18"));
     }
 }

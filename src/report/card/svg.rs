@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Card, CardFigure};
-use crate::report::html::escaped;
-use crate::report::words::dollar_tick;
+use crate::html::escaped;
+use crate::words::dollar_tick;
 
 /// Size in which pictures are shared.
 const SIZE: (f64, f64) = (1200.0, 630.0);

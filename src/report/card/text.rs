@@ -1,7 +1,7 @@
 //! The card as text: a curve of blocks, facts below it.
 
 use super::{Card, CardFigure};
-use crate::report::words::dollar_tick;
+use crate::words::dollar_tick;
 
 /// Columns and rows of the curve.
 const COLUMNS: usize = 66;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::curves::StudentPoints;
-use crate::report::html::escaped;
-use crate::report::svg::Scale;
-use crate::report::words::tick;
+use crate::html::escaped;
+use crate::svg::Scale;
+use crate::words::tick;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 340.0;

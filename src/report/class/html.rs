@@ -9,9 +9,9 @@ use super::guesses::{asked, pitfalls};
 use super::ranking::{RankedStudent, ranked};
 use super::words::finding_in_words;
 use super::{ClassView, RunVerdict};
-use crate::notation::percent;
-use crate::report::html::{STYLE, escaped};
-use crate::report::words::{count, money};
+use crate::html::{STYLE, escaped};
+use crate::words::{count, money};
+use novamind_base::notation::percent;
 
 /// What the page has besides the style of every report.
 const OWN_STYLE: &str = include_str!("../../../assets/class.css");

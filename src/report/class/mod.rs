@@ -17,11 +17,11 @@ pub use ranking::{RankedStudent, ranked};
 pub use table::{columns_table, rows};
 pub use words::{collected_in_words, score_in_words, shown_in_words, state_in_words};
 
-use crate::session::{
+use novamind_base::nearest;
+use novamind_session::{
     Class, ClassCollection, ClassRun, CollectedClass, Evidence, GoalBound, Lesson, LessonPart, RunVerdict,
     ranked_goal, share_of_good,
 };
-use novamind_base::nearest;
 
 /// The figure of the scatter that is shown where none is named.
 const CASH: &str = "cash";

@@ -4,10 +4,10 @@ use super::ClassView;
 use super::curves::{curves, scatter};
 use super::guesses::{asked, pitfalls};
 use super::ranking::{RankedStudent, ranked};
-use crate::notation::{compact, percent, printable};
-use crate::report::plot::{Drawn, plot};
-use crate::report::words::{count, money};
-use crate::session::{ClassFinding, RunVerdict};
+use crate::plot::{Drawn, plot};
+use crate::words::{count, money};
+use novamind_base::notation::{compact, percent, printable};
+use novamind_session::{ClassFinding, RunVerdict};
 
 /// What should be known, in a sentence that says what to do.
 pub fn finding_in_words(finding: &ClassFinding) -> String {

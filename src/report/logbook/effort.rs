@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::session::record::{DialogOutcome, DraftOutcome};
-use crate::session::{Activity, TimeSpent};
+use novamind_session::record::{DialogOutcome, DraftOutcome};
+use novamind_session::{Activity, TimeSpent};
 
 /// What was done between two weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

@@ -17,8 +17,8 @@ pub use timeline::Pause;
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use crate::session::record::FiledForecast;
-use crate::session::{
+use novamind_session::record::FiledForecast;
+use novamind_session::{
     Attendance, Consent, Ended, Line, Mode, ModelStamp, Record, ScoredForecast, Session, SittingCount,
     StudyStamp, TimeSpent, end_of, policy_of,
 };
@@ -245,7 +245,7 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
     let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
     let scored = |filed: &FiledForecast| ScoredForecast::of(span.decision_day, &filed.said(), cash);
     WeekLog {
-        week: crate::session::week_of(span.day),
+        week: novamind_session::week_of(span.day),
         decision_day: span.decision_day,
         day: span.day,
         days_run: span.days_run,
@@ -287,7 +287,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit;
+    use crate::test_kit;
 
     #[test]
     fn a_logbook_counts_what_was_done() {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{Effort, Logbook, WeekLog};
-use crate::report::page::{Block, Fact, Page, Table};
-use crate::report::words::{count, money, whole};
-use crate::session::{BREAK_SECONDS, Ended, ModelStamp, TimeSpent};
+use crate::page::{Block, Fact, Page, Table};
+use crate::words::{count, money, whole};
+use novamind_session::{BREAK_SECONDS, Ended, ModelStamp, TimeSpent};
 
 /// The page that tells how a run was played.
 pub fn page_of(book: &Logbook) -> Page {
@@ -166,7 +166,7 @@ fn screens(total: &Effort) -> Block {
     let sorted = by_length(&total.screens);
     let all: f64 = sorted.iter().map(|(_, seconds)| seconds).sum();
     let row = |(name, seconds): (&str, f64)| {
-        let share = crate::notation::percent(seconds / all.max(f64::MIN_POSITIVE), 0);
+        let share = novamind_base::notation::percent(seconds / all.max(f64::MIN_POSITIVE), 0);
         vec![name.to_owned(), time(seconds), share]
     };
     Block::Table(Table {
@@ -237,9 +237,9 @@ mod tests {
 
     #[test]
     fn a_session_is_told_on_a_page() {
-        let (session, lines) = crate::report::test_kit::recorded();
+        let (session, lines) = crate::test_kit::recorded();
         let book = Logbook::of(&session, &lines, &[]);
-        let text = crate::report::markdown::write(&page_of(&book));
+        let text = crate::markdown::write(&page_of(&book));
         for part in [
             "P 07 played 2 weeks",
             "none was asked for",

@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::Effort;
-use crate::session::record::{Closing, FiledForecast, LimitEvent, Outcome, View};
-use crate::session::{
+use novamind_session::record::{Closing, FiledForecast, LimitEvent, Outcome, View};
+use novamind_session::{
     Activity, Attendance, AttendedWeek, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
 };
 
@@ -182,8 +182,8 @@ impl Timeline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Via;
-    use crate::session::record::{Advance, Branch, Call, Memo, Query};
+    use novamind_session::Via;
+    use novamind_session::record::{Advance, Branch, Call, Memo, Query};
     use serde_json::json;
 
     fn lines(all: &[(&str, Record)]) -> Vec<Line> {
@@ -200,7 +200,7 @@ mod tests {
     fn call() -> Record {
         let outcome = Outcome::Accepted(json!({}));
         Record::Call(Call {
-            tool: crate::session::ToolId::SetPrices.into(),
+            tool: novamind_session::ToolId::SetPrices.into(),
             args: json!({}),
             outcome,
             via: Via::Form,

@@ -4,11 +4,11 @@ use serde_json::{Map, Value, json};
 
 use super::selling::{Missing, Offers};
 use super::{AHEAD, Need, Place, Problem, Situation};
-use crate::notation::{cents, json_number};
-use crate::report::lead_costs::{AdSpell, PairCost, pair_costs};
-use crate::report::words::{count, money};
-use crate::session::ToolId;
-use crate::world::identifiers::{Channel, Group};
+use crate::lead_costs::{AdSpell, PairCost, pair_costs};
+use crate::words::{count, money};
+use novamind_base::notation::{cents, json_number};
+use novamind_session::ToolId;
+use novamind_session::identifiers::{Channel, Group};
 
 /// Companies of four weeks from which on it counts that none asks.
 const ENOUGH_COMPANIES: u32 = 3;

@@ -14,12 +14,12 @@ mod tests;
 
 use serde_json::Value;
 
-use crate::session::ToolId;
-use crate::session::{
+use novamind_session::ToolId;
+use novamind_session::identifiers::{ByGroup, Channel, Group};
+use novamind_session::{
     CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolLimits,
     WeekFigures,
 };
-use crate::world::identifiers::{ByGroup, Channel, Group};
 
 /// What is wrong. Of two needs with the same money at risk the one that stands first here comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,11 +3,11 @@
 use serde_json::{Map, Value, json};
 
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
-use crate::notation::json_number;
-use crate::report::words::{count, money, whole};
-use crate::session::ModelTier;
-use crate::session::ToolId;
-use crate::world::identifiers::{Group, Plan};
+use crate::words::{count, money, whole};
+use novamind_base::notation::json_number;
+use novamind_session::ModelTier;
+use novamind_session::ToolId;
+use novamind_session::identifiers::{Group, Plan};
 
 /// Weeks of cash below which it is urgent.
 const SHORT: f64 = 8.0;

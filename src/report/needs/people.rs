@@ -3,12 +3,12 @@
 use serde_json::{Map, Value};
 
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
-use crate::notation::{json_number, percent};
-use crate::report::chapters::change_in_words;
-use crate::report::words::{count, money, whole};
-use crate::session::ToolId;
-use crate::session::{Change, Decisions};
-use crate::world::identifiers::{Group, Plan};
+use crate::chapters::change_in_words;
+use crate::words::{count, money, whole};
+use novamind_base::notation::{json_number, percent};
+use novamind_session::ToolId;
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{Change, Decisions};
 
 /// Cancellations of a week below which nobody speaks of a wave.
 const FEW: f64 = 20.0;
@@ -40,7 +40,7 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     let lowest =
         Plan::ALL.into_iter().map(|plan| situation.settings.prices[plan]).filter(|price| *price > 0.0);
     let lowest = lowest.fold(f64::INFINITY, f64::min);
-    let value = |thread: &crate::session::WaitingThread| {
+    let value = |thread: &novamind_session::WaitingThread| {
         let price = thread.asked.unwrap_or(if lowest.is_finite() { lowest } else { 0.0 });
         f64::from(thread.seats) * price
     };

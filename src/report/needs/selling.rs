@@ -3,12 +3,12 @@
 use serde_json::{Map, Value, json};
 
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
-use crate::notation::{cents, json_number, percent};
-use crate::report::fit::TruthRange;
-use crate::report::words::{count, money, whole};
-use crate::session::ToolId;
-use crate::session::{DeliveredQuality, Estimates, GroupWeek};
-use crate::world::identifiers::{Channel, Group, Plan};
+use crate::fit::TruthRange;
+use crate::words::{count, money, whole};
+use novamind_base::notation::{cents, json_number, percent};
+use novamind_session::ToolId;
+use novamind_session::identifiers::{Channel, Group, Plan};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 
 /// Leads of a week from which on it counts how few sign.
 const ENOUGH_LEADS: u32 = 20;

@@ -3,12 +3,12 @@
 use serde_json::json;
 
 use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
-use crate::notation::{json_number, percent};
-use crate::report::peak::PeakProjection;
-use crate::report::words::{count, money, whole};
-use crate::session::SettingId;
-use crate::session::ToolId;
-use crate::session::{CapacityTier, WeekFigures};
+use crate::peak::PeakProjection;
+use crate::words::{count, money, whole};
+use novamind_base::notation::{json_number, percent};
+use novamind_session::SettingId;
+use novamind_session::ToolId;
+use novamind_session::{CapacityTier, WeekFigures};
 
 /// Weeks ahead in which capacity must not run out.
 const SOON: f64 = 2.0;

@@ -3,10 +3,10 @@
 use serde_json::{Value, json};
 
 use super::*;
-use crate::session::Mode;
-use crate::session::ToolId;
-use crate::session::{Configuration, NewRun, Storage, Via};
-use crate::world::identifiers::Plan;
+use novamind_session::Mode;
+use novamind_session::ToolId;
+use novamind_session::identifiers::Plan;
+use novamind_session::{Configuration, NewRun, Storage, Via};
 
 /// A company that can be bought from, is heard of and has room to grow.
 fn sound() -> Vec<(&'static str, Value)> {
@@ -360,7 +360,7 @@ fn four_weeks_of_cash_come_before_everything_else() {
     );
     let Place::Call(ToolId::SetTargetedDevSpend, arguments) = &need.place else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let told = format!("at {} a day cash lasts 8 weeks", crate::report::words::money(proposed));
+    let told = format!("at {} a day cash lasts 8 weeks", crate::words::money(proposed));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
@@ -402,7 +402,7 @@ fn a_budget_of_many_cells_is_told_as_the_form_holds_it() {
     let mut mended = session;
     mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
     let kept = mended.settings().targeted_ads.total();
-    let told = format!("at {} a day", crate::report::words::money(kept));
+    let told = format!("at {} a day", crate::words::money(kept));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
 }
 
@@ -437,7 +437,7 @@ fn companies_that_ask_for_nothing_although_the_plans_are_good_enough_cost_their_
         saved > 0.0
             && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
     );
-    let told = format!("without these ads {} a day stay in cash", crate::report::words::money(saved));
+    let told = format!("without these ads {} a day stay in cash", crate::words::money(saved));
     assert!(need.in_words().contains(&told), "{}: {told}", need.in_words());
 }
 
@@ -470,14 +470,14 @@ fn leads_that_become_dear_are_named_with_what_they_cost_before() {
             "SELECT sum(spend) / sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND \
              group_id = 'S1' AND (day + 6) / 7 BETWEEN {from} AND {upto}"
         );
-        crate::session::number_at(&session.query(&sql).expect("rows").rows[0], 0)
+        novamind_session::number_at(&session.query(&sql).expect("rows").rows[0], 0)
     };
     let last = session.weeks().len() as u32;
     let now = cost(last - 3, last, &mut session);
     let before = (1..=last - 7).map(|from| cost(from, from + 3, &mut session)).fold(f64::INFINITY, f64::min);
     assert!(now >= 2.0 * before, "{now} {before}");
     let told = |each: f64| {
-        if each < 100.0 { crate::notation::cents(each) } else { crate::report::words::money(each) }
+        if each < 100.0 { novamind_base::notation::cents(each) } else { crate::words::money(each) }
     };
     for words in ["content_marketing × S1: in the last 4 weeks", &told(now), &told(before), "a first bill"] {
         assert!(need.text.contains(words), "{words} in {}", need.text);

@@ -1,10 +1,10 @@
 //! The charts of a story.
 
-use crate::report::page::{Band, Block, Chart, Curve, Part, Plot};
-use crate::report::story::Story;
-use crate::report::turn::{COSTS, INCOME};
-use crate::report::words::{count, money, whole};
-use crate::session::ScoredForecast;
+use crate::page::{Band, Block, Chart, Curve, Part, Plot};
+use crate::story::Story;
+use crate::turn::{COSTS, INCOME};
+use crate::words::{count, money, whole};
+use novamind_session::ScoredForecast;
 
 /// Groups that a chart can tell apart.
 const MOST_GROUPS: usize = 6;
@@ -108,7 +108,7 @@ pub fn people(story: &Story) -> Option<Block> {
     if story.weeks.len() < 2 {
         return None;
     }
-    let through = |figure: fn(&crate::session::WeekFigures) -> u32| -> Vec<(f64, f64)> {
+    let through = |figure: fn(&novamind_session::WeekFigures) -> u32| -> Vec<(f64, f64)> {
         story.weeks.iter().map(|week| (f64::from(week.day) / 7.0, f64::from(figure(week)))).collect()
     };
     let mut curves =
@@ -230,7 +230,7 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::test_kit::finished;
+    use crate::test_kit::finished;
 
     #[test]
     fn people_stand_at_the_end_of_their_week() {

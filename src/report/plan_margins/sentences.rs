@@ -1,9 +1,9 @@
 //! The same margins in sentences, for whoever listens: the model that is set first, the others in a line.
 
 use super::{Lever, NOTHING_MEASURED, PlanTerms, PlanUse, Sales, differs, margin};
-use crate::notation::{cents, grouped, percent};
-use crate::report::words::whole;
-use crate::world::identifiers::{ByPlan, Plan};
+use crate::words::whole;
+use novamind_base::notation::{cents, grouped, percent};
+use novamind_session::identifiers::{ByPlan, Plan};
 
 /// The margins of every plan under its terms, in sentences.
 pub fn margin_sentences(
@@ -110,7 +110,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::report::test_kit::played;
+    use crate::test_kit::played;
 
     #[test]
     fn margins_are_told_without_places_and_brackets() {

@@ -2,8 +2,8 @@
 
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading};
-use crate::session::record::{Answered, Asked};
-use crate::session::{Activity, Record};
+use novamind_session::record::{Answered, Asked};
+use novamind_session::{Activity, Record};
 use serde_json::Value;
 
 const OWN: [Heading; 12] = [

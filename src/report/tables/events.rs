@@ -3,9 +3,9 @@
 use super::answers::value_in_words;
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading, number, word};
-use crate::notation::json_number;
-use crate::session::record::{Call, DialogStep, Draft, Outcome, Presence, Start, VoiceAnswer};
-use crate::session::{Activity, Record, Reversal};
+use novamind_base::notation::json_number;
+use novamind_session::record::{Call, DialogStep, Draft, Outcome, Presence, Start, VoiceAnswer};
+use novamind_session::{Activity, Record, Reversal};
 
 const OWN: [Heading; 8] = [
     heading("afterwards", "0 or 1", "1: the line stands in afterwards.jsonl"),
@@ -201,9 +201,9 @@ impl Event {
             }
             Activity::Lesson(note) => {
                 (event.what, event.which) =
-                    (crate::report::lesson::word(note.event).to_owned(), note.step.to_string());
+                    (crate::lesson::word(note.event).to_owned(), note.step.to_string());
                 event.value = note.value.map(|value| json_number(value).to_string()).unwrap_or_default();
-                event.text = crate::report::lesson::in_words(note);
+                event.text = crate::lesson::in_words(note);
             }
             Activity::Look(look) => (event.what, event.text) = (look.command.clone(), look.detail.clone()),
             Activity::Xray(look) => {

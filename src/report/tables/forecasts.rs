@@ -1,8 +1,8 @@
 //! `forecasts.csv`: a row for each forecast that was filed.
 
 use super::{Heading, flag, heading, maybe, number};
-use crate::report::logbook::{Logbook, WeekLog};
-use crate::session::ScoredForecast;
+use crate::logbook::{Logbook, WeekLog};
+use novamind_session::ScoredForecast;
 
 /// The columns.
 pub(super) const HEADINGS: [Heading; 17] = [

@@ -1,7 +1,7 @@
 //! The tables of a study: runs, weeks, forecasts, queries, events, answers, notes and visits, each column with its unit and
 //! meaning.
 //!
-//! Cells hold texts as people wrote them; [`crate::notation::csv_cell`] makes them harmless when a file is written.
+//! Cells hold texts as people wrote them; [`novamind_base::notation::csv_cell`] makes them harmless when a file is written.
 
 mod answers;
 mod events;
@@ -16,7 +16,7 @@ mod weeks;
 use serde::Serialize;
 
 use super::logbook::{Logbook, WeekLog};
-use crate::session::{ForecastScore, FoundVisit, Line};
+use novamind_session::{ForecastScore, FoundVisit, Line};
 
 pub use runs::RUNS;
 pub use weeks::WEEKS;
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn cells_hold_what_the_logbook_says() {
-        let (session, lines) = crate::report::test_kit::recorded();
+        let (session, lines) = crate::test_kit::recorded();
         let book = Logbook::of(&session, &lines, &[]);
         let mut tables = StudyTables::default();
         tables.add(&book, &lines, &[]);

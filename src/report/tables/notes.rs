@@ -2,8 +2,8 @@
 
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading};
-use crate::report::measures::Wording;
-use crate::session::Record;
+use crate::measures::Wording;
+use novamind_session::Record;
 
 const OWN: [Heading; 8] = [
     heading("version", "number", "how often they had been kept with this time, from 1"),

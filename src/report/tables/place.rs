@@ -1,8 +1,8 @@
 //! Where a line stands: in which run, when, in which week, before or after the end.
 
 use super::{Heading, heading, rounded};
-use crate::report::logbook::Logbook;
-use crate::session::{Line, week_of};
+use crate::logbook::Logbook;
+use novamind_session::{Line, week_of};
 
 /// A line with its place.
 pub(super) struct Placed<'a> {

@@ -2,8 +2,8 @@
 
 use super::place::{PLACE, Placed, with_place};
 use super::{Heading, flag, heading, number, word};
-use crate::session::Record;
-use crate::session::record::Query;
+use novamind_session::Record;
+use novamind_session::record::Query;
 
 const OWN: [Heading; 8] = [
     heading("via", "word", "typed, library, drill_down, derived or script; empty in format 1"),

@@ -3,9 +3,9 @@
 use super::{
     Column, RunColumn, flag, heading, in_console, maybe, number, pairs, rounded, score, screens, seen, tools,
 };
-use crate::report::logbook::Logbook;
-use crate::report::measures::ChannelSkill;
-use crate::session::{ConsentGiven, ConsentMeans, StudyStamp, TimeSpent};
+use crate::logbook::Logbook;
+use crate::measures::ChannelSkill;
+use novamind_session::{ConsentGiven, ConsentMeans, StudyStamp, TimeSpent};
 
 fn scored<const DAYS: u32>(run: &Logbook) -> String {
     score(&run.measures.forecasts, DAYS).map_or(0, |score| score.scored).to_string()

@@ -1,8 +1,8 @@
 //! The columns of `weeks.csv`.
 
 use super::{Column, WeekColumn, flag, heading, in_console, maybe, number, screens, seen, tools};
-use crate::report::logbook::{Logbook, WeekLog};
-use crate::session::ScoredForecast;
+use crate::logbook::{Logbook, WeekLog};
+use novamind_session::ScoredForecast;
 
 /// Something of the forecast this many days ahead; empty if there is none.
 fn said(week: &WeekLog, horizon_days: u32, part: impl Fn(&ScoredForecast) -> Option<f64>) -> String {

@@ -6,8 +6,8 @@ use time::format_description::well_known::Rfc3339;
 
 use super::atif::atif;
 use super::{Surroundings, Transcript};
-use crate::notation::dollars;
-use crate::session::{Ended, Manifest};
+use novamind_base::notation::dollars;
+use novamind_session::{Ended, Manifest};
 
 const VERSION: u32 = 2;
 const TASK: &str = "novamind";

@@ -20,8 +20,8 @@ pub use plain_script::plain_script;
 pub use python_script::python_script;
 pub use told::Surroundings;
 
-use crate::session::record::{CalledTool, End, FiledForecast, Outcome, RefusalRecord};
-use crate::session::{
+use novamind_session::record::{CalledTool, End, FiledForecast, Outcome, RefusalRecord};
+use novamind_session::{
     FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, QuerySource, Record, RunError, Session,
     rows_as_json,
 };

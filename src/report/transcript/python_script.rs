@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::plain_script::{judge_in_words, new_run, refused_in_words};
 use super::{Deed, Transcript, predictions};
-use crate::session::RunError;
+use novamind_session::RunError;
 
 /// The program.
 ///

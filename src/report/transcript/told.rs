@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::session::{Line, QuerySource, Reversal, Via};
+use novamind_session::{Line, QuerySource, Reversal, Via};
 
 /// What whoever plays is told before the first action.
 #[derive(Debug, Clone, Default)]

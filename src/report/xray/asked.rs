@@ -4,13 +4,13 @@
 use serde_json::Value;
 
 use super::{days_in_words, found_in_words, writes_in_words};
-use crate::notation::written::{Argument, Problem, Reader};
-use crate::report::parameters::{changed_in_words, set_in_words};
-use crate::session::{
+use crate::parameters::{changed_in_words, set_in_words};
+use novamind_base::nearest;
+use novamind_base::notation::written::{Argument, Problem, Reader};
+use novamind_session::{
     ChangedParameter, ChangedParameters, Condition, ConditionProblem, Difference, Judged, Refusal, Session,
     WhoWrites, WriteTarget,
 };
-use novamind_base::nearest;
 
 const USAGE_OF_DIFF: &str = "name two days: diff 83 84";
 const USAGE_OF_SET: &str =

@@ -1,9 +1,9 @@
 //! Conditions, why a run stopped, and since when they hold, in words.
 
 use super::settled;
-use crate::notation::point_number;
-use crate::report::words::count;
-use crate::session::{
+use crate::words::count;
+use novamind_base::notation::point_number;
+use novamind_session::{
     Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore,
 };
 

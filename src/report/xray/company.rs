@@ -1,8 +1,8 @@
 //! A company from within, in words.
 
 use super::{settled, table};
-use crate::session::{CompanyAnswer, CompanyDay, CompanyLens};
-use crate::world::identifiers::Plan;
+use novamind_session::identifiers::Plan;
+use novamind_session::{CompanyAnswer, CompanyDay, CompanyLens};
 
 /// Its open threads on the day that is shown: what it perceives, what it accepts, what it would answer.
 pub fn company_in_words(lens: &CompanyLens) -> Vec<String> {

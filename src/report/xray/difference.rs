@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::table;
-use crate::notation::grouped;
-use crate::session::{CustomerDifference, Difference, RunDifference};
+use novamind_base::notation::grouped;
+use novamind_session::{CustomerDifference, Difference, RunDifference};
 
 /// Figures that are told; a state has some hundred.
 const FIGURES_TOLD: usize = 40;
@@ -163,7 +163,7 @@ fn cells_apart(one: &str, other: &str) -> (String, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::identifiers::Group;
+    use novamind_session::identifiers::Group;
 
     #[test]
     fn a_difference_names_parts_then_figures_then_customers() {

@@ -1,7 +1,7 @@
 //! Rivals and drift, in words.
 
 use super::{settled, table};
-use crate::session::{DriftState, GroupDrifted, NextRivalMove, RivalState};
+use novamind_session::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
 /// Moves that are listed.
 const LISTED_MOVES: usize = 10;

@@ -30,7 +30,7 @@ pub use streams::streams_in_words;
 pub use writes::{writes_in_words, written_by};
 
 use self::settled::{settle, settled};
-use crate::report::words::count;
+use crate::words::count;
 
 /// How the line begins that tells of the last evenings of a group.
 pub const EVENINGS: &str = "  evenings of the last";

@@ -1,8 +1,8 @@
 //! What moved the reputation of a group, in words.
 
 use super::{evenings_in_words, settled, table};
-use crate::session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill};
-use crate::world::identifiers::Group;
+use novamind_session::identifiers::Group;
+use novamind_session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill};
 
 /// The reputation of a group: before, every term, after; and what was dropped.
 pub fn reputation_in_words(own: &ReputationEquation) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! How numbers of a line are settled once it is written: no zero has a sign, and none has more digits than it tells.
 
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 /// Digits before the point from which a number is written in powers of ten.
 const MOST_DIGITS: usize = 16;

@@ -2,8 +2,8 @@
 
 use super::reputation::{dropped_in_words, small};
 use super::{settled, table};
-use crate::session::{Spill, Spillover};
-use crate::world::identifiers::Group;
+use novamind_session::identifiers::Group;
+use novamind_session::{Spill, Spillover};
 
 /// Marks of a heat map, from the smallest share of the largest spill to the largest.
 pub const HEAT: [&str; 4] = ["░", "▒", "▓", "█"];

@@ -1,9 +1,9 @@
 //! Who wrote a figure on a day, in words.
 
 use super::{settled, table};
-use crate::notation::{cents, grouped};
-use crate::report::words::{category_name, whole};
-use crate::session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
+use crate::words::{category_name, whole};
+use novamind_base::notation::{cents, grouped};
+use novamind_session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
 
 /// The figure before and after the day, and each write with its amount and what the figure was after it.
 pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {

@@ -5,56 +5,56 @@
 //! Everything here is computed from what a player may see: observations, the journal, and guarded queries. Each measure
 //! is one pure function. `outline` turns a story into a `page::Page`; the writers know nothing of companies.
 
-pub(crate) mod anonymised;
-pub(crate) mod books;
+pub mod anonymised;
+pub mod books;
 mod card;
-pub(crate) mod chapters;
+pub mod chapters;
 pub mod class;
-pub(crate) mod collection;
-pub(crate) mod comparable;
-pub(crate) mod curve;
-pub(crate) mod deals;
-pub(crate) mod debrief;
-pub(crate) mod fit;
-pub(crate) mod funnel;
-pub(crate) mod highlights;
-pub(crate) mod html;
-pub(crate) mod insights;
-pub(crate) mod lead_costs;
-pub(crate) mod lesson;
-pub(crate) mod logbook;
+pub mod collection;
+pub mod comparable;
+pub mod curve;
+pub mod deals;
+pub mod debrief;
+pub mod fit;
+pub mod funnel;
+pub mod highlights;
+pub mod html;
+pub mod insights;
+pub mod lead_costs;
+pub mod lesson;
+pub mod logbook;
 mod markdown;
-pub(crate) mod measures;
+pub mod measures;
 mod movement;
-pub(crate) mod needs;
-pub(crate) mod opponents;
+pub mod needs;
+pub mod opponents;
 mod outline;
-pub(crate) mod page;
-pub(crate) mod parameters;
-pub(crate) mod peak;
-pub(crate) mod plan_margins;
-pub(crate) mod plot;
-pub(crate) mod post_leads;
-pub(crate) mod prose;
+pub mod page;
+pub mod parameters;
+pub mod peak;
+pub mod plan_margins;
+pub mod plot;
+pub mod post_leads;
+pub mod prose;
 pub mod protocol;
-pub(crate) mod ranking;
-pub(crate) mod research;
-pub(crate) mod review;
+pub mod ranking;
+pub mod research;
+pub mod review;
 mod story;
-pub(crate) mod svg;
-pub(crate) mod tables;
+pub mod svg;
+pub mod tables;
 pub mod term_picture;
-#[cfg(test)]
-pub(crate) mod test_kit;
+#[cfg(any(test, feature = "test-kit"))]
+pub mod test_kit;
 pub mod transcript;
 mod turn;
-pub(crate) mod week;
-pub(crate) mod whatif;
-pub(crate) mod why;
+pub mod week;
+pub mod whatif;
+pub mod why;
 mod words;
-pub(crate) mod xray;
+pub mod xray;
 
-use crate::session::Debrief;
+use novamind_session::Debrief;
 
 pub use logbook::Logbook;
 pub use story::Story;
@@ -102,8 +102,8 @@ pub fn session_as_html(logbook: &Logbook) -> String {
 }
 
 /// The logbook of a short run on the disk.
-#[cfg(test)]
-pub(crate) fn logbook_of_tests() -> Logbook {
+#[cfg(any(test, feature = "test-kit"))]
+pub fn logbook_of_tests() -> Logbook {
     let (session, lines) = test_kit::recorded();
     Logbook::of(&session, &lines, &[])
 }

@@ -47,22 +47,26 @@
 //! ```
 
 pub mod cli;
-pub mod console;
-pub mod lab;
-pub mod plain;
-#[cfg(feature = "server")]
-pub mod server;
 
 use novamind_assets as shipped;
 use novamind_base::{notation, statistics};
+#[doc(inline)]
+pub use novamind_console as console;
 #[doc(inline)]
 pub use novamind_database as database;
 #[doc(inline)]
 pub use novamind_glossary as glossary;
 #[doc(inline)]
+pub use novamind_lab as lab;
+#[doc(inline)]
+pub use novamind_plain as plain;
+#[doc(inline)]
 pub use novamind_report as report;
 #[doc(inline)]
 pub use novamind_rules as rules;
+#[cfg(feature = "server")]
+#[doc(inline)]
+pub use novamind_server as server;
 #[doc(inline)]
 pub use novamind_session as session;
 #[doc(inline)]

@@ -10,8 +10,8 @@ use super::action::Action;
 use super::canvas::{Canvas, rows_of};
 use super::theme::Role;
 use super::widgets::Scroll;
-use crate::report::prose::{Face, laid_out};
-use crate::session::{ConsentGiven, ConsentMeans, steady};
+use novamind_report::prose::{Face, laid_out};
+use novamind_session::{ConsentGiven, ConsentMeans, steady};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 100;
@@ -102,7 +102,7 @@ impl Agreement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::painted;
+    use crate::test_kit::painted;
 
     fn drawn(agreement: &Agreement, height: u16) -> String {
         painted(60, height, |canvas, area| agreement.draw(canvas, area, "Consent", "y agree", "n not"))

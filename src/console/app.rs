@@ -47,10 +47,10 @@ use super::tour::Tour;
 use super::viewer::Viewer;
 use super::visit::{VisitPage, VisitState};
 use super::worker::{Job, Question};
-use crate::console::request::Request;
-use crate::report::Story;
-use crate::report::opponents::PlayOpponents;
-use crate::session::{CodeCheck, Configuration, Library, TimeLeft};
+use crate::request::Request;
+use novamind_report::Story;
+use novamind_report::opponents::PlayOpponents;
+use novamind_session::{CodeCheck, Configuration, Library, TimeLeft};
 
 pub use super::attention::Layer;
 pub use busy::Busy;
@@ -127,7 +127,7 @@ pub struct Run {
     /// What there is to see.
     pub company: Arc<Company>,
     /// Stops the person's query.
-    pub interrupt: Option<crate::session::Interrupt>,
+    pub interrupt: Option<novamind_session::Interrupt>,
     /// The screen that is shown.
     pub here: ScreenId,
     /// Screens shown before, the last one last.

@@ -66,7 +66,7 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::console::photograph::text;
+    use crate::photograph::text;
 
     #[test]
     fn a_terminal_shows_each_frame_at_its_time() {

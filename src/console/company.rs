@@ -7,21 +7,21 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 use super::posts::{self, Posts};
-use crate::report::WeekReport;
-use crate::report::fit::{Fit, fits};
-use crate::report::funnel::{Funnel, funnels};
-use crate::report::lead_costs::{PairCost, pair_costs};
-use crate::report::needs::{Need, needs};
-use crate::session::{
+use novamind_report::WeekReport;
+use novamind_report::fit::{Fit, fits};
+use novamind_report::funnel::{Funnel, funnels};
+use novamind_report::lead_costs::{PairCost, pair_costs};
+use novamind_report::needs::{Need, needs};
+use novamind_session::identifiers::{ByGroup, Group};
+use novamind_session::{
     CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, HiddenValues, JournalEntry,
     LessonPage, Mode, Numbers, Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp,
     ToolLimits, WeekFigures,
 };
-use crate::tools::{
+use novamind_tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
     PriceList, ResearchProjects, ToolId,
 };
-use crate::world::identifiers::{ByGroup, Group};
 
 /// The company as a player may know it.
 #[derive(Debug, Clone)]
@@ -206,7 +206,7 @@ impl Company {
     }
 
     /// The forecasts that were filed last: decision day and forecasts.
-    pub fn last_forecasts(&self) -> Option<(u32, &[crate::tools::Forecast])> {
+    pub fn last_forecasts(&self) -> Option<(u32, &[novamind_tools::Forecast])> {
         self.journal.iter().rev().find_map(|entry| match entry {
             JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.as_slice())),
             _ => None,
@@ -236,7 +236,7 @@ fn insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::played;
+    use crate::test_kit::played;
 
     #[test]
     fn a_trend_has_as_many_weeks_as_were_asked_for_and_the_mean_those_of_four() {

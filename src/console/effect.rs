@@ -11,10 +11,10 @@ use super::readings::Reading;
 use super::request::{Recorded, Request};
 use super::resimulation::BranchesQuestion;
 use super::screens::{Figure, ScreenId};
-use crate::glossary::Subject;
-use crate::session::{Goal, Study};
-use crate::tools::ToolId;
-use crate::world::identifiers::Group;
+use novamind_glossary::Subject;
+use novamind_session::identifiers::Group;
+use novamind_session::{Goal, Study};
+use novamind_tools::ToolId;
 
 impl Effect {
     /// Whether it would change the run.

@@ -7,7 +7,7 @@ use std::sync::mpsc::Sender;
 
 use super::message::{Message, News};
 use super::worker::answer_on_thread;
-use crate::session::{Configuration, Library, Refusal, library};
+use novamind_session::{Configuration, Library, Refusal, library};
 
 /// Writes files on a thread of its own and reports where they are.
 pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {

@@ -16,8 +16,8 @@ use super::text::{arrow, short_dollars, wrapped};
 use super::theme::Role;
 use super::viewer::EntriesShown;
 use super::widgets::spark::bar;
-use crate::notation::{compact, dollars, grouped};
-use crate::session::{Ended, TimeLeft};
+use novamind_base::notation::{compact, dollars, grouped};
+use novamind_session::{Ended, TimeLeft};
 
 /// Smallest window that is drawn.
 pub const LEAST: (u16, u16) = (60, 16);
@@ -430,8 +430,8 @@ fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::app::DaysRun;
-    use crate::console::message::DayTold;
+    use crate::app::DaysRun;
+    use crate::message::DayTold;
 
     #[test]
     fn a_week_that_runs_tells_its_days() {

@@ -17,8 +17,8 @@ use super::keys::Chord;
 use super::message::{Message, News, VisitNews};
 use super::request::{Recorded, Request, VisitRequest};
 use super::worker::{Job, Workers};
-use crate::session::record::LeavingCause;
-use crate::session::{Access, Goal, PlaybackPosition, Study};
+use novamind_session::record::LeavingCause;
+use novamind_session::{Access, Goal, PlaybackPosition, Study};
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);

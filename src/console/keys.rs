@@ -194,7 +194,7 @@ impl Keys {
     ///
     /// # Errors
     /// What is wrong with the file, with its name.
-    pub fn of_user(configuration: &crate::session::Configuration) -> Result<Keys, String> {
+    pub fn of_user(configuration: &novamind_session::Configuration) -> Result<Keys, String> {
         let mut keys = Keys::shipped();
         if let Some(source) = configuration.file("keys.toml").map_err(|error| error.to_string())? {
             keys.patch(&source.text).map_err(|problem| format!("{}: {problem}", source.name))?;
@@ -307,7 +307,7 @@ pub fn written(chords: &[Chord]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::action::ACTIONS;
+    use crate::action::ACTIONS;
 
     #[test]
     fn chords_read_back_as_they_are_written() {

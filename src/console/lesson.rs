@@ -10,8 +10,8 @@ use super::screens::{Look, ScreenId};
 use super::text::wrapped;
 use super::theme::Role;
 use super::widgets::spark::bar;
-use crate::report::lesson::{goal_at, guess_and_outcome};
-use crate::session::{GoalPage, LessonPage, LessonQuestion, ToolId};
+use novamind_report::lesson::{goal_at, guess_and_outcome};
+use novamind_session::{GoalPage, LessonPage, LessonQuestion, ToolId};
 
 /// Columns of the task beside the screen.
 pub const COLUMNS: u16 = 38;

@@ -9,15 +9,15 @@ use super::company::Company;
 use super::look_inside::{DaysRan, LookFound};
 use super::readings::Reading;
 use super::resimulation::BranchesFound;
-use crate::report::Story;
-use crate::report::class::Shown;
-use crate::report::opponents::Opponents;
-use crate::session::record::Limit;
-use crate::session::{
+use novamind_report::Story;
+use novamind_report::class::Shown;
+use novamind_report::opponents::Opponents;
+use novamind_session::record::Limit;
+use novamind_session::{
     Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library,
     NextStep, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
-use crate::tools::{Answer, ToolId};
+use novamind_tools::{Answer, ToolId};
 
 /// Something that arrives.
 pub enum Message {
@@ -51,7 +51,7 @@ pub enum Instead {
     /// It is damaged: its good beginning can be opened as a branch.
     Rescue(String),
     /// A participant has to agree to a text before this run begins.
-    Agree(Box<crate::session::NewRun>),
+    Agree(Box<novamind_session::NewRun>),
 }
 
 /// What a simulated day came to.
@@ -66,11 +66,11 @@ pub struct DayTold {
 /// What a thread behind the screen reports.
 pub enum News {
     /// The runs of the folder.
-    Runs(Result<Vec<crate::session::RunSummary>, String>),
+    Runs(Result<Vec<novamind_session::RunSummary>, String>),
     /// How a run went; with its id.
-    Preview(String, Result<crate::session::RunPreview, String>),
+    Preview(String, Result<novamind_session::RunPreview, String>),
     /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
-    Kept(Result<String, String>, Result<Vec<crate::session::RunSummary>, String>),
+    Kept(Result<String, String>, Result<Vec<novamind_session::RunSummary>, String>),
     /// A class was read, to be shown in some way.
     Class(Box<Result<(CollectedClass, Shown), String>>),
     /// The runs are those of a student from now on, because a hand-out of theirs was opened.

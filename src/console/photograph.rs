@@ -8,7 +8,7 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 use unicode_width::UnicodeWidthStr;
 
-use crate::report::html::escaped;
+use novamind_report::html::escaped;
 
 /// Width of a cell, pixels.
 const WIDTH: f64 = 8.4;

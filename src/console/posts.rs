@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::session::Session;
-use crate::tools::{GetSocialPosts, PostLimit, SocialPost};
-use crate::world::identifiers::Group;
+use novamind_session::Session;
+use novamind_session::identifiers::Group;
+use novamind_tools::{GetSocialPosts, PostLimit, SocialPost};
 
 /// Who writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -159,8 +159,8 @@ mod tests {
         assert_eq!(who(told("S1", None)), (PostKind::Press, "press".to_owned()));
         assert_eq!(who(told("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
-    use crate::console::test_kit::played;
-    use crate::session::Via;
+    use crate::test_kit::played;
+    use novamind_session::Via;
 
     #[test]
     fn only_what_is_new_is_read_and_it_is_the_same_as_everything() {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::glyphs::Glyphs;
-use crate::session::{Configuration, RunError};
+use novamind_session::{Configuration, RunError};
 
 const FILE: &str = "console.toml";
 

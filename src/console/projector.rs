@@ -10,7 +10,7 @@ use super::theme::Role;
 use super::viewer::{EntriesShown, Viewer};
 use super::widgets::chart::zero_if_near;
 use super::widgets::{Axis, Line, Side, Unit, chart};
-use crate::notation::compact;
+use novamind_base::notation::compact;
 
 /// Rows of a letter, in points.
 const POINTS: usize = 5;
@@ -155,7 +155,7 @@ fn letter_points(letter: char) -> [u8; POINTS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::painted;
+    use crate::test_kit::painted;
 
     #[test]
     fn a_figure_is_large_where_it_has_room() {

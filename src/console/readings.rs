@@ -43,7 +43,7 @@ readings! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::played;
+    use crate::test_kit::played;
 
     #[test]
     fn every_statement_is_answered_before_the_first_week_and_after_the_second() {

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::report::class::Shown;
-use crate::session::{Access, ConsentGiven, DecisionEdit, DueQuestion, Forecasts, Goal, Mode, NewRun, Study};
-use crate::tools::ToolId;
+use novamind_report::class::Shown;
+use novamind_session::{
+    Access, ConsentGiven, DecisionEdit, DueQuestion, Forecasts, Goal, Mode, NewRun, Study,
+};
+use novamind_tools::ToolId;
 
 /// Work that a person asked for.
 #[derive(Debug, Clone)]

@@ -128,10 +128,10 @@ impl Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::glyphs::Glyphs;
-    use crate::console::keys::Keys;
-    use crate::console::theme::Theme;
-    use crate::session::{Configuration, NewRun, Session, Storage};
+    use crate::glyphs::Glyphs;
+    use crate::keys::Keys;
+    use crate::theme::Theme;
+    use novamind_session::{Configuration, NewRun, Session, Storage};
 
     fn settings(runs: &std::path::Path) -> Settings {
         let configuration = Configuration::shipped();
@@ -156,8 +156,8 @@ mod tests {
         drop(session);
         keys_during_weeks(settings(runs.path()), "latest", 2).expect("two weeks");
         let session = Session::open(
-            &crate::session::find_run(runs.path(), "latest").expect("the run"),
-            crate::session::Access::Write,
+            &novamind_session::find_run(runs.path(), "latest").expect("the run"),
+            novamind_session::Access::Write,
             false,
         );
         assert_eq!(session.expect("the run").day(), 14);

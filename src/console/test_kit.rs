@@ -14,7 +14,7 @@ use super::keys::Keys;
 use super::readings::Reading;
 use super::screens::{Look, Screen};
 use super::theme::Theme;
-use crate::session::{Configuration, NewRun, Rows, Session, Storage, Via};
+use novamind_session::{Configuration, NewRun, Rows, Session, Storage, Via};
 
 /// A run in memory on its first day.
 pub fn session() -> Session {

@@ -3,8 +3,7 @@
 use ratatui::style::{Color, Modifier, Style};
 use serde::Deserialize;
 
-use crate::session::Configuration;
-use crate::shipped;
+use novamind_session::Configuration;
 
 /// What a piece of the screen means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -128,11 +127,11 @@ impl Theme {
         if let Some(source) = own {
             return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
         }
-        match shipped::themes().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::themes().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => Theme::parse(name, text),
             None => {
                 let own = configuration.names("themes");
-                let known: Vec<&str> = shipped::themes()
+                let known: Vec<&str> = novamind_assets::themes()
                     .into_iter()
                     .map(|(shipped, _)| shipped)
                     .chain(own.iter().map(String::as_str))
@@ -146,7 +145,7 @@ impl Theme {
     /// what is wrong with it.
     pub fn all(configuration: &Configuration) -> Vec<Theme> {
         let own = configuration.names("themes");
-        let shipped: Vec<&str> = shipped::themes().into_iter().map(|(name, _)| name).collect();
+        let shipped: Vec<&str> = novamind_assets::themes().into_iter().map(|(name, _)| name).collect();
         let others = own.iter().map(String::as_str).filter(|own| !shipped.contains(own));
         shipped
             .iter()
@@ -208,7 +207,7 @@ mod tests {
 
     #[test]
     fn the_shipped_themes_are_read_and_mono_has_no_colour() {
-        for (name, _) in shipped::themes() {
+        for (name, _) in novamind_assets::themes() {
             Theme::find(name, &Configuration::shipped()).expect(name);
         }
         let mono = Theme::find("mono", &Configuration::shipped()).expect("mono");

@@ -14,8 +14,8 @@ use super::keys::Keys;
 use super::screens::ScreenId;
 use super::text::wrapped;
 use super::theme::Role;
-use crate::session::NewRun;
-use crate::tools::{Numbers, ToolId};
+use novamind_session::NewRun;
+use novamind_tools::{Numbers, ToolId};
 
 /// How a step shows that it was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -231,12 +231,12 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::console::company::Company;
-    use crate::console::test_kit::{company, painted, played};
-    use crate::report::fit::Beside;
-    use crate::report::needs::Place;
-    use crate::session::{Configuration, Session, Via};
-    use crate::world::identifiers::Group;
+    use crate::company::Company;
+    use crate::test_kit::{company, painted, played};
+    use novamind_report::fit::Beside;
+    use novamind_report::needs::Place;
+    use novamind_session::identifiers::Group;
+    use novamind_session::{Configuration, Session, Via};
 
     fn facts(company: &Company) -> TourFacts<'_> {
         TourFacts {

@@ -39,16 +39,16 @@ use super::message::{Message, News};
 use super::preferences::Preferences;
 use super::request::Request;
 use super::resimulation::{BranchesAsked, WhyAsked};
-use crate::report::opponents::PlayOpponents;
-use crate::session::record::{LeavingCause, PresenceEvent};
-use crate::session::{
+use answering::words_of;
+use desk::Desk;
+use novamind_report::opponents::PlayOpponents;
+use novamind_session::identifiers::Group;
+use novamind_session::record::{LeavingCause, PresenceEvent};
+use novamind_session::{
     Activity, Causes, Configuration, Goal, Interface, Interrupt, LastRead, Playback, QuerySource, Refusal,
     Rows, RunError, Session, UnsentTexts, WhatIf,
 };
-use crate::tools::ToolId;
-use crate::world::identifiers::Group;
-use answering::words_of;
-use desk::Desk;
+use novamind_tools::ToolId;
 use queries::QueryThreads;
 use run::OpenRun;
 

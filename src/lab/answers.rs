@@ -3,10 +3,10 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::session::WaitingThread;
-use crate::tools::ToolId;
-use crate::world::events::ThreadKind;
-use crate::world::identifiers::Plan;
+use novamind_session::WaitingThread;
+use novamind_tools::ToolId;
+use novamind_world::events::ThreadKind;
+use novamind_world::identifiers::Plan;
 
 /// Answers every waiting thread on every decision day.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -5,11 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::policy::{Policy, PriceBook};
-use crate::session::{Configuration, best_starting_channel};
-use crate::shipped;
-use crate::tools::CATALOGUE;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_session::{Configuration, best_starting_channel};
+use novamind_tools::CATALOGUE;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// The page that says what the policies are.
 const OF_POLICIES: &str = "docs/interfaces/policies.md";
@@ -34,7 +33,7 @@ fn answers() -> Answers {
     let channels = ["S1", "S3"].map(|group| (group, best(group))).to_vec();
     let mut found = Answers { sets: Vec::new(), development: Vec::new(), ads: Vec::new(), channels };
     let mut books = vec![];
-    for (name, _) in shipped::policies() {
+    for (name, _) in novamind_assets::policies() {
         let policy = Policy::find(name, &Configuration::shipped()).expect(name);
         let Some(routine) = policy.rule_based else { continue };
         books.push(routine.price_book.clone());

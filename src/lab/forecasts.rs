@@ -3,8 +3,8 @@
 
 use super::policy::Policy;
 use super::runner::{RunError, RunSpec, weeks_of};
-use crate::session::{Bands, Configuration, Coverage, Hindcast, Stage, WeekFigures, hindcasts};
-use crate::world::params::Params;
+use novamind_session::{Bands, Configuration, Coverage, Hindcast, Stage, WeekFigures, hindcasts};
+use novamind_world::params::Params;
 
 /// Days ahead that forecasts are asked for.
 pub fn horizons() -> Vec<u32> {
@@ -69,7 +69,7 @@ pub fn policies_of(runs: &[PlayedWeeks]) -> Vec<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::JournalEntry;
+    use novamind_session::JournalEntry;
 
     /// What the game offers before a week is what the back-test takes for it afterwards.
     #[test]

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::metrics::Figure;
-use crate::statistics::{Sample, median};
+use novamind_base::statistics::{Sample, median};
 
 /// A cell: figure, group, checkpoint day.
 type Cell = (String, String, u32);

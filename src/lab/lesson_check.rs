@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::rules::answers_to_companies;
-use crate::session::{
+use novamind_rules::answers_to_companies;
+use novamind_session::{
     Lesson, MEASURED_SEEDS, MeasuredFigure, PartPlay, ReferencePlay, RunError, Session, play_part,
     play_part_telling,
 };

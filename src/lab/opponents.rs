@@ -8,8 +8,8 @@ use super::policy::Policy;
 use super::runner::{advance, decide};
 use super::strong::STRONG;
 use super::{RunError, RunSpec};
-use crate::report::opponents::{Opponent, Opponents};
-use crate::session::{Configuration, Ended, Refusal, SameWorld, Session};
+use novamind_report::opponents::{Opponent, Opponents};
+use novamind_session::{Configuration, Ended, Refusal, SameWorld, Session};
 
 /// Plays the strong policies and the baseline in the world of the run in a folder, with its luck; demand surges, days and cash
 /// are those of the run. None if it was not to go on.
@@ -68,8 +68,8 @@ fn week(policy: &Policy, spec: &RunSpec, session: &mut Session) -> Result<(), Ru
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::{Collector, play};
-    use crate::session::Storage;
+    use crate::{Collector, play};
+    use novamind_session::Storage;
 
     #[test]
     fn an_opponent_does_in_the_world_of_a_run_what_it_does_in_a_run_of_its_own() {
@@ -97,7 +97,7 @@ mod tests {
     fn the_world_of_a_run_that_goes_on_is_closed() {
         let runs = tempfile::tempdir().expect("a folder");
         let new =
-            crate::session::NewRun { storage: Storage::Runs(runs.path().to_owned()), ..Default::default() };
+            novamind_session::NewRun { storage: Storage::Runs(runs.path().to_owned()), ..Default::default() };
         let session = Session::create(new, &Configuration::shipped()).expect("a run");
         let closed = play_opponents(session.folder().expect("a folder"), &Configuration::shipped(), &|| true);
         assert_eq!(closed.expect_err("it goes on").code, "not_in_this_mode");

@@ -3,10 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use super::policy::{CapacityRule, OperationsRule, RuleBased, Target};
-use crate::session::{Observation, Session, best_starting_channel};
-use crate::tools::ToolId;
-use crate::world::identifiers::{Group, Plan};
-use crate::world::params::Params;
+use novamind_session::{Observation, Session, best_starting_channel};
+use novamind_tools::ToolId;
+use novamind_world::identifiers::{Group, Plan};
+use novamind_world::params::Params;
 
 /// Ads wait for this day.
 const ADS_FROM_DAY: u32 = 20;

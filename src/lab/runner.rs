@@ -11,11 +11,11 @@ use super::metrics::Collector;
 use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
-use crate::session::{
+use novamind_session::{
     Configuration, DayReport, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
     WeekFigures, policy_rationale,
 };
-use crate::tools::{Answer, ToolId};
+use novamind_tools::{Answer, ToolId};
 
 /// What to run.
 #[derive(Debug, Clone)]
@@ -105,9 +105,9 @@ impl fmt::Display for Outcome {
             "seed {}  day {}  cash {}  subscribers {}  seats {}  ",
             self.seed,
             self.day,
-            crate::notation::dollars(self.cash),
-            crate::notation::grouped(f64::from(self.subscribers), 0),
-            crate::notation::grouped(f64::from(self.seats), 0),
+            novamind_base::notation::dollars(self.cash),
+            novamind_base::notation::grouped(f64::from(self.subscribers), 0),
+            novamind_base::notation::grouped(f64::from(self.seats), 0),
         )?;
         match self.ended {
             RunEnd::Bankruptcy => write!(formatter, "bankrupt on day {}", self.day),

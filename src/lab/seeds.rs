@@ -1,6 +1,6 @@
 //! Seeds as people name them.
 
-use crate::notation::grouped;
+use novamind_base::notation::grouped;
 
 /// Most seeds that a range holds: more of them is a mistake of typing.
 const MOST_SEEDS: u64 = 1_000_000;

@@ -8,9 +8,8 @@ mod tests {
     use rayon::prelude::*;
 
     use super::STRONG;
-    use crate::lab::{Collector, Policy, RunEnd, RunSpec, play};
-    use crate::session::Configuration;
-    use crate::shipped;
+    use crate::{Collector, Policy, RunEnd, RunSpec, play};
+    use novamind_session::Configuration;
 
     /// Seeds that no strong policy was tuned on; the second has a surge while companies sign.
     const SEEDS: [u64; 2] = [113, 114];
@@ -38,7 +37,7 @@ mod tests {
 
     #[test]
     fn each_is_shipped_and_shares_no_name_with_another() {
-        let mut names: Vec<&str> = shipped::policies().into_iter().map(|(name, _)| name).collect();
+        let mut names: Vec<&str> = novamind_assets::policies().into_iter().map(|(name, _)| name).collect();
         assert!(STRONG.iter().all(|strong| names.contains(strong)), "{names:?}");
         names.sort_unstable();
         assert!(names.windows(2).all(|two| !two[0].eq_ignore_ascii_case(two[1])), "{names:?}");

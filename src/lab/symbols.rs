@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::world::identifiers::{Channel, Group};
+use novamind_world::identifiers::{Channel, Group};
 
 /// What symbols stand for.
 pub struct Symbols {

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::database::text::aligned;
-use crate::notation::plain_numbers;
-use crate::session::Refusal;
+use novamind_base::notation::plain_numbers;
+use novamind_database::text::aligned;
+use novamind_session::Refusal;
 
 /// The answer to a line.
 #[derive(Debug, Clone, PartialEq)]
@@ -196,9 +196,9 @@ fn without_long_words(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::database::text::table;
-    use crate::session::{Cell, Rows};
-    use crate::tools::DealResult;
+    use novamind_database::text::table;
+    use novamind_session::{Cell, Rows};
+    use novamind_tools::DealResult;
 
     #[test]
     fn calls_refusals_and_rows_have_their_forms() {

@@ -33,14 +33,14 @@ use super::grammar::{self, Argument, Line, Problem, as_object};
 use super::lines::Lines;
 use super::next;
 use super::signals::{Phase, Watch};
-use crate::database::text::table;
-use crate::report::research::late_in_words;
-use crate::session::record::{Help, Select};
-use crate::session::{
+use novamind_base::nearest;
+use novamind_database::text::table;
+use novamind_report::research::late_in_words;
+use novamind_session::record::{Help, Select};
+use novamind_session::{
     Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
 };
-use crate::tools::{self, AnyTool, Kind, Module, ToolId};
-use novamind_base::nearest;
+use novamind_tools::{AnyTool, Kind, Module, ToolId};
 
 /// Words that run a week: the command, and the tool as agents call it.
 const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
@@ -191,7 +191,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// An interpreter with named queries; `prompts` says that a person types and can be asked.
     pub fn new(mut session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
-        session.answer_companies_by(crate::rules::answers_to_companies);
+        session.answer_companies_by(novamind_rules::answers_to_companies);
         Interpreter {
             session,
             library,
@@ -269,7 +269,7 @@ impl Interpreter {
 
     fn explain(&mut self, word: &str, rest: &str) -> Answer {
         let answer = explain(word, rest, &self.session.numbers());
-        if let Ok(subject) = crate::glossary::find(rest) {
+        if let Ok(subject) = novamind_glossary::find(rest) {
             let help = Help { term: subject.name(), place: "plain".to_owned() };
             self.session.note_activity(Activity::Help(help));
         }
@@ -371,8 +371,8 @@ impl Interpreter {
     }
 
     /// A warning where the project that was started runs beyond the last day.
-    fn late_projects(&self, started: &tools::Answer) -> Vec<String> {
-        let tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
+    fn late_projects(&self, started: &novamind_tools::Answer) -> Vec<String> {
+        let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
         let is_late = started.expected_completion_day > last_day;
         is_late
@@ -410,7 +410,7 @@ fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
         None => (None, word),
     };
     let fits = |module: &str, own: Module| own.id() == module;
-    tools::find(name)
+    novamind_tools::find(name)
         .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name() != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
@@ -443,9 +443,9 @@ fn only_required(tool: &'static dyn AnyTool) -> Option<&'static str> {
 
 fn unknown(word: &str, column: usize) -> Problem {
     let commands = COMMANDS.iter().map(|(name, _)| *name);
-    let tools = tools::CATALOGUE.iter().map(|tool| tool.spec().name());
+    let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
     let name = word.rsplit('.').next().unwrap_or(word);
-    if tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
+    if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
         let text = format!(
             "{word} cannot be called by its name here; next \"WHY\" naive runs a week, and help next \
              explains more"

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use crate::notation::written::Reader;
-pub use crate::notation::written::{Argument, Problem};
+use novamind_base::notation::written::Reader;
+pub use novamind_base::notation::written::{Argument, Problem};
 
 /// What a line says.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,11 +9,11 @@ use super::grammar::{Argument, Problem};
 use super::input::Read;
 use super::lines::Lines;
 use super::prompt;
-use crate::notation::{dollars, grouped, signed_dollars};
-use crate::report::research::late_lines;
-use crate::report::review::alike_lines;
-use crate::session::{Mode, Refusal, Session, TIME_LIMIT, Via, Week};
-use crate::tools::{FORECAST_KEYS, Forecast};
+use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_report::research::late_lines;
+use novamind_report::review::alike_lines;
+use novamind_session::{Mode, Refusal, Session, TIME_LIMIT, Via, Week};
+use novamind_tools::{FORECAST_KEYS, Forecast};
 
 /// What is filed before a week.
 #[derive(Debug, Clone, PartialEq)]
@@ -293,13 +293,13 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::session::{Configuration, Lesson, LessonEntry, NewRun};
+    use novamind_session::{Configuration, Lesson, LessonEntry, NewRun};
 
     /// The lesson of two weeks, in memory; its access may be another.
     fn in_lesson(access: &str) -> Session {
         let place = tempfile::tempdir().expect("a folder");
         let file = place.path().join("two-weeks.toml");
-        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/lessons/two-weeks.toml");
         let plan = std::fs::read_to_string(shipped).expect("a plan");
         std::fs::write(&file, plan.replace("forecasts = \"naive\"\nrationale = \"off\"", access))
             .expect("a file");

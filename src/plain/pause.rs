@@ -8,8 +8,8 @@ use super::answers::Answer;
 use super::commands::Interpreter;
 use super::grammar::Line;
 use super::next::{self, Filing};
-use crate::session::record::{Limit, LimitEvent};
-use crate::session::{Refusal, TIME_LIMIT};
+use novamind_session::record::{Limit, LimitEvent};
+use novamind_session::{Refusal, TIME_LIMIT};
 
 /// What can be done while the clock stands.
 const WHILE_STOPPED: [&str; 4] = ["resume", "help", "quit", "exit"];

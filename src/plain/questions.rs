@@ -8,8 +8,8 @@ use super::ending::End;
 use super::input::Read;
 use super::lines::Lines;
 use super::{Style, withdraws};
-use crate::notation::printable;
-use crate::session::{DueQuestion, Form, Session, Study, steady};
+use novamind_base::notation::printable;
+use novamind_session::{DueQuestion, Form, Session, Study, steady};
 
 /// Asks everything that is due; how the dialogue ends, if it ends before all of it is answered.
 ///

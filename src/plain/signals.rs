@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use crate::session::Interrupt;
+use novamind_session::Interrupt;
 
 /// What the dialogue is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,9 +8,9 @@ use serde_json::json;
 use super::input::Read;
 use super::lines::Lines;
 use super::{End, Style, dialogue, prompt, withdraws};
-use crate::notation::printable;
-use crate::report::prose::as_plain;
-use crate::session::{
+use novamind_base::notation::printable;
+use novamind_report::prose::as_plain;
+use novamind_session::{
     Agreed, Configuration, ConsentGiven, ConsentMeans, DECLINED, Library, NextStep, RunError, Session, Study,
     Visit, steady,
 };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::{RunError, SERVER_FILE, write_whole};
+use novamind_session::{RunError, SERVER_FILE, write_whole};
 
 /// Where a run is served.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

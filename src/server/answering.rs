@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::request::{Answer, Request, Status};
-use crate::session::{QuerySource, Refusal, Session, Via, WeekRequest, rows_as_json};
-use crate::tools::{Kept, ToolId};
+use novamind_session::{QuerySource, Refusal, Session, Via, WeekRequest, rows_as_json};
+use novamind_tools::{Kept, ToolId};
 
 /// Tools whose arguments older programs send as null where they mean to leave them out.
 const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
@@ -67,7 +67,7 @@ fn next_week(session: &mut Session, request: &WeekRequest<'_>, via: Via) -> Answ
             let mut fields = Map::from_iter([
                 ("day".to_owned(), week.figures.day.into()),
                 ("dashboard".to_owned(), week.dashboard.clone().into()),
-                ("cash".to_owned(), crate::notation::json_number(week.figures.cash)),
+                ("cash".to_owned(), novamind_base::notation::json_number(week.figures.cash)),
                 ("figures".to_owned(), Value::Object(week.figures.as_json())),
                 ("ended".to_owned(), json!(week.ended)),
             ]);

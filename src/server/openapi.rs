@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::schema;
-use crate::tools::{Numbers, ToolId};
+use novamind_tools::{Numbers, ToolId};
 
 /// The whole description.
 pub fn document(numbers: &Numbers) -> Value {
@@ -88,7 +88,7 @@ fn calls() -> Vec<Value> {
 }
 
 fn schemas(numbers: &Numbers) -> Map<String, Value> {
-    let one = |spec: &crate::tools::Spec| {
+    let one = |spec: &novamind_tools::Spec| {
         let mut arguments = schema::arguments(spec, numbers);
         arguments.insert("description".to_owned(), numbers.fill(spec.summary).into());
         (spec.name().to_owned(), Value::Object(arguments))

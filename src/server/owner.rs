@@ -13,9 +13,9 @@ use tokio::sync::oneshot;
 use super::answering::answer;
 use super::request::{Answer, Request, Status};
 use super::running::Running;
-use crate::session::record::LeavingCause;
-use crate::session::{Access, Interface, ModelSettings, RunError, Session, Via};
-use crate::tools::Kept;
+use novamind_session::record::LeavingCause;
+use novamind_session::{Access, Interface, ModelSettings, RunError, Session, Via};
+use novamind_tools::Kept;
 
 /// Hears of defects of ours.
 pub type OnDefect = fn(&str);

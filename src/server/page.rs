@@ -9,11 +9,11 @@ use serde_json::json;
 
 use super::client::module_name;
 use super::schema::specs;
-use crate::database::tables;
-use crate::notation::dollars;
-use crate::session::RunError;
-use crate::tools::describe::{ToolDocument, document, manual};
-use crate::tools::{Module, Numbers};
+use novamind_base::notation::dollars;
+use novamind_database::tables;
+use novamind_session::RunError;
+use novamind_tools::describe::{ToolDocument, document, manual};
+use novamind_tools::{Module, Numbers};
 
 const PAGE: &str = include_str!("../../assets/agent/page.md");
 const SHELL: &str = include_str!("../../assets/agent/shell.md");

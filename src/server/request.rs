@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::schema::REQUEST_ID;
-use crate::session::Refusal;
-use crate::session::record::RefusalRecord;
-use crate::tools::{ToolId, find};
+use novamind_session::Refusal;
+use novamind_session::record::RefusalRecord;
+use novamind_tools::{ToolId, find};
 
 /// What a program asks of a run.
 #[derive(Debug, Clone, PartialEq)]

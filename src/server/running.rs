@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::session::Interrupt;
+use novamind_session::Interrupt;
 
 /// A request that is answered.
 struct Held {

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
+use novamind_tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
 
 /// Field of a request that holds its id.
 pub const REQUEST_ID: &str = "request_id";

@@ -6,8 +6,8 @@ use super::answering::answer;
 use super::inspect_log;
 use super::request::Request;
 use super::zip::ZipArchive;
-use crate::session::{PYTHON_NOT_RUN, Session, Via};
-use crate::tools::{ToolId, find};
+use novamind_session::{PYTHON_NOT_RUN, Session, Via};
+use novamind_tools::{ToolId, find};
 
 /// Largest file that is read from an archive, bytes: 500 days of an agent take a few megabytes.
 const MAX_FILE_BYTES: u64 = 512 << 20;
@@ -187,7 +187,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::session::{Configuration, NewRun};
+    use novamind_session::{Configuration, NewRun};
 
     #[test]
     fn names_are_read_as_clients_write_them() {

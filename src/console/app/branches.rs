@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::{App, Order};
-use crate::console::dialogs::branches::BranchesPage;
-use crate::console::resimulation::{BranchesAsked, BranchesQuestion};
-use crate::console::worker::Job;
-use crate::session::week_of;
+use crate::dialogs::branches::BranchesPage;
+use crate::resimulation::{BranchesAsked, BranchesQuestion};
+use crate::worker::Job;
+use novamind_session::week_of;
 
 /// Weeks before the end of a run that is over at which a what-if begins.
 const WEEKS_BEFORE_END: u32 = 12;

@@ -1,9 +1,9 @@
 //! The curve explorer over the screen.
 
 use super::{App, Order};
-use crate::console::dialogs::curve::CurvePage;
-use crate::console::worker::Job;
-use crate::world::identifiers::Group;
+use crate::dialogs::curve::CurvePage;
+use crate::worker::Job;
+use novamind_session::identifiers::Group;
 
 impl App {
     /// The curve of a group beside the plans; of the first known one if none is named.

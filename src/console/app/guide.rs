@@ -1,16 +1,16 @@
 //! Explanations, the glossary and the tour.
 
 use super::{App, Layer, Stage};
-use crate::console::action::Action;
-use crate::console::dialogs::explain::Explain;
-use crate::console::dialogs::glossary::Glossary;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::{Look, ScreenId, ScreenState};
-use crate::console::tour::{self, TourFacts};
-use crate::console::visit::VisitState;
-use crate::glossary::Subject;
-use crate::session::Access;
+use crate::action::Action;
+use crate::dialogs::explain::Explain;
+use crate::dialogs::glossary::Glossary;
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::{Look, ScreenId, ScreenState};
+use crate::tour::{self, TourFacts};
+use crate::visit::VisitState;
+use novamind_glossary::Subject;
+use novamind_session::Access;
 
 impl App {
     /// Explains the figure that is selected, or the screen if none is.

@@ -7,24 +7,24 @@ use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, M
 use ratatui::layout::Position;
 
 use super::{App, Closing, Layer, Order, Stage};
-use crate::console::action::{Action, Scope};
-use crate::console::attention::Edit;
-use crate::console::canvas::Click;
-use crate::console::dialogs::help::Help;
-use crate::console::dialogs::palette::Palette;
-use crate::console::dialogs::reader::Reader;
-use crate::console::dialogs::report::Report;
-use crate::console::dialogs::rows::RowsBehind;
-use crate::console::dialogs::why::WhyBox;
-use crate::console::dialogs::{Dialog, Outcome};
-use crate::console::effect::Effect;
-use crate::console::keys::{Chord, Meaning, written};
-use crate::console::preferences::Preferences;
-use crate::console::request::Request;
-use crate::console::resimulation::WhyAsked;
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::number;
-use crate::console::worker::Job;
+use crate::action::{Action, Scope};
+use crate::attention::Edit;
+use crate::canvas::Click;
+use crate::dialogs::help::Help;
+use crate::dialogs::palette::Palette;
+use crate::dialogs::reader::Reader;
+use crate::dialogs::report::Report;
+use crate::dialogs::rows::RowsBehind;
+use crate::dialogs::why::WhyBox;
+use crate::dialogs::{Dialog, Outcome};
+use crate::effect::Effect;
+use crate::keys::{Chord, Meaning, written};
+use crate::preferences::Preferences;
+use crate::request::Request;
+use crate::resimulation::WhyAsked;
+use crate::screens::{Figure, Look, ScreenId};
+use crate::text::number;
+use crate::worker::Job;
 
 /// What stops a script that runs.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
@@ -468,7 +468,7 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         let seen = &run.company.seen;
         let width = seen.changes.iter().map(|change| change.setting.to_string().len()).max().unwrap_or(0);
-        let line = |change: &crate::session::Change| {
+        let line = |change: &novamind_session::Change| {
             format!(
                 "{:<width$}  {:>12} → {:<12} {}",
                 change.setting.to_string(),

@@ -1,14 +1,14 @@
 //! Leaving a run: what is open counts as left, the run is saved and closed, and then comes the menu or the shell.
 
 use super::{App, Busy, Order, Stage};
-use crate::console::dialogs::confirm::Confirm;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::ScreenId;
-use crate::console::screens::menu::Menu;
-use crate::console::worker::Job;
-use crate::session::Access;
-use crate::session::record::LeavingCause;
+use crate::dialogs::confirm::Confirm;
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::ScreenId;
+use crate::screens::menu::Menu;
+use crate::worker::Job;
+use novamind_session::Access;
+use novamind_session::record::LeavingCause;
 
 /// What follows once the run is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

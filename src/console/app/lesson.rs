@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use super::{App, Layer, Run, Stage};
-use crate::console::action::Action;
-use crate::console::company::Company;
-use crate::console::dialogs::again::TryAgain;
-use crate::console::dialogs::confirm::Confirm;
-use crate::console::dialogs::debrief::DebriefPage;
-use crate::console::dialogs::lesson::LessonDialog;
-use crate::console::effect::Effect;
-use crate::console::lesson::{WIDE, why_closed};
-use crate::console::request::{LessonRequest, Request};
-use crate::console::screens::ScreenId;
-use crate::report::count;
-use crate::session::{Debrief, LessonPage, Refusal};
+use crate::action::Action;
+use crate::company::Company;
+use crate::dialogs::again::TryAgain;
+use crate::dialogs::confirm::Confirm;
+use crate::dialogs::debrief::DebriefPage;
+use crate::dialogs::lesson::LessonDialog;
+use crate::effect::Effect;
+use crate::lesson::{WIDE, why_closed};
+use crate::request::{LessonRequest, Request};
+use crate::screens::ScreenId;
+use novamind_report::count;
+use novamind_session::{Debrief, LessonPage, Refusal};
 
 /// The rationale of a week for which the lesson asks for none.
 const NO_RATIONALE: &str = "the lesson asks for none";
@@ -82,7 +82,7 @@ impl App {
         let Some(page) = run.company.running_lesson() else { return false };
         let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
         let at_once = page.runs_at_once;
-        let forecasts = crate::session::Forecasts { filled_naively: [true; 4], ..run.company.naive };
+        let forecasts = novamind_session::Forecasts { filled_naively: [true; 4], ..run.company.naive };
         if open {
             self.open(LessonDialog::asking());
             return true;

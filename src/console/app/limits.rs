@@ -1,10 +1,10 @@
 //! Time limits: the person is warned, and what the study says happens when one is reached.
 
 use super::App;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::session::record::{DraftOutcome, Limit, LimitEvent, LimitScope};
-use crate::session::{DraftsKept, SessionRules, TIME_LIMIT, TimeLeft};
+use crate::effect::Effect;
+use crate::request::Request;
+use novamind_session::record::{DraftOutcome, Limit, LimitEvent, LimitScope};
+use novamind_session::{DraftsKept, SessionRules, TIME_LIMIT, TimeLeft};
 
 /// What was told of time limits.
 #[derive(Default)]

@@ -5,23 +5,23 @@ use std::sync::Arc;
 
 use super::lesson::LessonView;
 use super::{App, Layer, Order, Run, Stage};
-use crate::console::action::Action;
-use crate::console::company::Company;
-use crate::console::dialogs::filing::FilingDialog;
-use crate::console::dialogs::final_page::FinalPage;
-use crate::console::dialogs::report::Report;
-use crate::console::effect::Effect;
-use crate::console::look_inside::DaysRan;
-use crate::console::message::{Instead, News};
-use crate::console::request::Request;
-use crate::console::screens::{Look, ScreenId, Screens};
-use crate::console::text::number;
-use crate::console::tour::Tour;
-use crate::console::viewer::Viewer;
-use crate::notation::{dollars, signed_dollars};
-use crate::report::Story;
-use crate::report::class::Shown;
-use crate::session::{Change, CollectedClass, Interrupt, Refusal, Week};
+use crate::action::Action;
+use crate::company::Company;
+use crate::dialogs::filing::FilingDialog;
+use crate::dialogs::final_page::FinalPage;
+use crate::dialogs::report::Report;
+use crate::effect::Effect;
+use crate::look_inside::DaysRan;
+use crate::message::{Instead, News};
+use crate::request::Request;
+use crate::screens::{Look, ScreenId, Screens};
+use crate::text::number;
+use crate::tour::Tour;
+use crate::viewer::Viewer;
+use novamind_base::notation::{dollars, signed_dollars};
+use novamind_report::Story;
+use novamind_report::class::Shown;
+use novamind_session::{Change, CollectedClass, Interrupt, Refusal, Week};
 
 impl App {
     pub(super) fn news(&mut self, news: News) {

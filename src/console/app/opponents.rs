@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::{App, Order};
-use crate::console::dialogs::opponents::OpponentsPage;
-use crate::console::worker::Job;
+use crate::dialogs::opponents::OpponentsPage;
+use crate::worker::Job;
 
 impl App {
     /// The strong policies beside the run that is over.

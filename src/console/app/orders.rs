@@ -1,15 +1,15 @@
 //! From effects to orders.
 
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
-use crate::console::company::Company;
-use crate::console::dialogs::confirm::Confirm;
-use crate::console::dialogs::reader::Reader;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::ScreenId;
-use crate::console::worker::{Job, Question};
-use crate::session::record::DraftOutcome;
-use crate::session::{Goal, QuerySource};
+use crate::company::Company;
+use crate::dialogs::confirm::Confirm;
+use crate::dialogs::reader::Reader;
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::ScreenId;
+use crate::worker::{Job, Question};
+use novamind_session::record::DraftOutcome;
+use novamind_session::{Goal, QuerySource};
 
 /// Days of a week, of which starts of lessons are made.
 const DAYS_PER_WEEK: u32 = 7;
@@ -113,7 +113,7 @@ impl App {
                 self.load();
             }
             Effect::Copy(text) => {
-                self.say(format!("copied: {}", crate::console::canvas::fit(&text, 60)));
+                self.say(format!("copied: {}", crate::canvas::fit(&text, 60)));
                 self.orders.push(Order::Copy(text));
             }
             Effect::ShowText(title, text) => {

@@ -2,10 +2,10 @@
 //! that is recorded.
 
 use super::{App, Order, Run, Stage};
-use crate::console::company::Company;
-use crate::console::screens::ScreenId;
-use crate::console::worker::Job;
-use crate::session::{HiddenValues, REFUSED_LOOK, Refusal};
+use crate::company::Company;
+use crate::screens::ScreenId;
+use crate::worker::Job;
+use novamind_session::{HiddenValues, REFUSED_LOOK, Refusal};
 use std::sync::Arc;
 
 /// Whether they are shown, and which were asked for.

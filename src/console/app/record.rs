@@ -6,15 +6,15 @@ use std::time::Duration;
 use crossterm::event::{Event, KeyEventKind, MouseEventKind};
 
 use super::{App, Layer, Order, Run, Stage};
-use crate::console::attention::Edit;
-use crate::console::request::Request;
-use crate::console::screens::ScreenId;
-use crate::console::worker::Job;
-use crate::session::record::{
+use crate::attention::Edit;
+use crate::request::Request;
+use crate::screens::ScreenId;
+use crate::worker::Job;
+use novamind_session::record::{
     Activity, DialogOutcome, Draft, DraftOutcome, Help, PresenceEvent, Select, View,
 };
-use crate::session::{DraftsKept, Interface};
-use crate::tools::ToolId;
+use novamind_session::{DraftsKept, Interface};
+use novamind_tools::ToolId;
 
 /// Texts of the dialog before a week.
 const OF_FILING: [&str; 2] = ["rationale", "forecasts"];
@@ -94,7 +94,7 @@ impl App {
     fn edited(&self) -> Option<(String, String)> {
         let run = self.run().filter(|run| run.viewer.is_none())?;
         match self.layers.last() {
-            Some(Layer::Filing) => crate::console::dialogs::Dialog::edited(&run.filing),
+            Some(Layer::Filing) => crate::dialogs::Dialog::edited(&run.filing),
             Some(Layer::Dialog(dialog)) => dialog.edited(),
             None => run.screens.get(run.here).edited(),
         }
@@ -127,7 +127,7 @@ impl App {
     /// The dialog on top may have gone on to another step.
     pub(super) fn note_step(&mut self) {
         let step = match (self.layers.last(), &self.stage) {
-            (Some(Layer::Filing), Stage::Run(run)) => crate::console::dialogs::Dialog::step(&run.filing),
+            (Some(Layer::Filing), Stage::Run(run)) => crate::dialogs::Dialog::step(&run.filing),
             (Some(Layer::Dialog(dialog)), _) => dialog.step(),
             _ => None,
         };
@@ -223,7 +223,7 @@ impl App {
     /// The object that is open on the screen.
     fn look_at_screen(&self) -> Option<(&'static str, String)> {
         let run = self.run()?;
-        let look = crate::console::screens::Look { company: &run.company, keys: &self.keys, page: self.page };
+        let look = crate::screens::Look { company: &run.company, keys: &self.keys, page: self.page };
         run.screens.get(run.here).open_object(&look)
     }
 
@@ -271,7 +271,7 @@ impl App {
         self.keep_texts_in_time(now);
     }
 
-    /// After how long [`crate::console::message::Message::Time`] is due; none while nothing depends on it.
+    /// After how long [`crate::message::Message::Time`] is due; none while nothing depends on it.
     pub fn wakes_after(&self) -> Option<Duration> {
         if !self.is_played() || self.stopwatch.is_halted() {
             return None;

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::console::glyphs::Glyphs;
-use crate::console::keys::Keys;
-use crate::console::theme::Theme;
-use crate::report::opponents::PlayOpponents;
-use crate::session::Configuration;
+use crate::glyphs::Glyphs;
+use crate::keys::Keys;
+use crate::theme::Theme;
+use novamind_report::opponents::PlayOpponents;
+use novamind_session::Configuration;
 
 /// How the console looks and where it keeps things.
 pub struct Settings {

@@ -5,13 +5,13 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::{App, Closing, Order, Stage};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::dialogs::pause::PauseReason;
-use crate::console::keys::{Chord, Keys};
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::worker::Job;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::dialogs::pause::PauseReason;
+use crate::keys::{Chord, Keys};
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::worker::Job;
 
 /// What lies over everything while the clock is stopped.
 pub struct Cover {

@@ -1,8 +1,8 @@
 //! Where enter led: the places one came from, and the way back along them.
 
 use super::{App, Run, Stage};
-use crate::console::action::Action;
-use crate::console::screens::{Look, ScreenId};
+use crate::action::Action;
+use crate::screens::{Look, ScreenId};
 
 /// Most places that are remembered.
 const LONGEST: usize = 8;

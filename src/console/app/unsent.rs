@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use super::{App, Layer, Order, Stage};
-use crate::console::dialogs::restore::Restore;
-use crate::console::worker::Job;
-use crate::session::UnsentTexts;
-use crate::session::record::{Draft, DraftOutcome};
+use crate::dialogs::restore::Restore;
+use crate::worker::Job;
+use novamind_session::UnsentTexts;
+use novamind_session::record::{Draft, DraftOutcome};
 
 /// Texts that change are kept this often.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);

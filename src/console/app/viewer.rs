@@ -3,14 +3,14 @@
 use std::sync::atomic::Ordering;
 
 use super::{App, Busy, Closing, DaysRun, Order, Run, Stage};
-use crate::console::action::{Action, Scope};
-use crate::console::dialogs::reader::Reader;
-use crate::console::dialogs::seek::Seek;
-use crate::console::dialogs::take_over::TakeOver;
-use crate::console::message::Arrival;
-use crate::console::viewer::{Viewer, told};
-use crate::console::worker::Job;
-use crate::session::Goal;
+use crate::action::{Action, Scope};
+use crate::dialogs::reader::Reader;
+use crate::dialogs::seek::Seek;
+use crate::dialogs::take_over::TakeOver;
+use crate::message::Arrival;
+use crate::viewer::{Viewer, told};
+use crate::worker::Job;
+use novamind_session::Goal;
 
 /// What only the person who plays can do.
 const OF_PLAYERS: [Action; 17] = [

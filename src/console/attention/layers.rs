@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::stopwatch::ms;
-use crate::console::dialogs::Dialog;
-use crate::session::record::{DialogOutcome, DialogStep, DialogUse};
+use crate::dialogs::Dialog;
+use novamind_session::record::{DialogOutcome, DialogStep, DialogUse};
 
 /// A dialog over the screen.
 pub enum Layer {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::session::steady;
+use novamind_session::steady;
 
 /// A watch that can be halted. Everything the record measures is measured with it.
 #[derive(Debug)]

@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::effect::Effect;
-use crate::console::request::{LessonRequest, Request};
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::effect::Effect;
+use crate::request::{LessonRequest, Request};
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
 
 /// The question.
 pub struct TryAgain {

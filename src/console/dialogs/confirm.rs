@@ -4,12 +4,12 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
 
 /// A question.
 pub struct Confirm {

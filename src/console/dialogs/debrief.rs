@@ -6,18 +6,18 @@ use ratatui::layout::Rect;
 
 use super::lesson::begin_part;
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Align, Canvas, centered};
-use crate::console::effect::Effect;
-use crate::console::lesson::{draw_lines, step_to_try};
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, Scroll, Side, Unit, chart};
-use crate::report::count;
-use crate::report::debrief::{headline, in_words};
-use crate::report::{debrief_as_html, debrief_as_markdown};
-use crate::session::{Debrief, FigureUnit, Refusal};
+use crate::action::{Action, Scope};
+use crate::canvas::{Align, Canvas, centered};
+use crate::effect::Effect;
+use crate::lesson::{draw_lines, step_to_try};
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::{Axis, Line, Scroll, Side, Unit, chart};
+use novamind_report::count;
+use novamind_report::debrief::{headline, in_words};
+use novamind_report::{debrief_as_html, debrief_as_markdown};
+use novamind_session::{Debrief, FigureUnit, Refusal};
 
 /// Widest page that reads well.
 const WIDEST: u16 = 160;

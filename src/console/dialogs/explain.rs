@@ -6,15 +6,15 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{Dialog, Outcome, term_picture};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::glossary::{self, Explanation, Subject};
-use crate::session::Numbers;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::effect::Effect;
+use crate::screens::{Figure, Look, ScreenId};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_glossary::{Explanation, Subject};
+use novamind_session::Numbers;
 
 /// Something that can be chosen below the text.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +81,7 @@ impl Explain {
 
     /// Explains the figure that is selected on a screen.
     pub fn figure(figure: &Figure, numbers: Arc<Numbers>) -> Explain {
-        let mut page = match glossary::subject(figure.term) {
+        let mut page = match novamind_glossary::subject(figure.term) {
             Some(subject) => OpenPage::of(subject, &numbers),
             None => OpenPage {
                 term: figure.term.to_owned(),
@@ -112,7 +112,7 @@ impl Explain {
             title: entry.title.to_owned(),
             note: "screen".to_owned(),
             parts: vec![(String::new(), entry.doc.to_owned()), (String::new(), help.to_owned())],
-            links: glossary::terms_of(entry.name).map(Subject::Term).map(Link::To).collect(),
+            links: novamind_glossary::terms_of(entry.name).map(Subject::Term).map(Link::To).collect(),
             selected: 0,
         };
         Explain { pages: vec![page], rows: false, numbers }
@@ -283,7 +283,7 @@ fn lines_of(page: &OpenPage, width: usize) -> Vec<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+    use crate::test_kit::{company, dialog_picture, in_dialog};
 
     fn figure(term: &'static str, sql: Option<&str>) -> Figure {
         Figure { title: "cancellations of S1".to_owned(), term, sql: sql.map(str::to_owned), why: None }
@@ -291,13 +291,13 @@ mod tests {
 
     #[test]
     fn every_place_of_the_glossary_is_an_action() {
-        for term in glossary::terms() {
+        for term in novamind_glossary::terms() {
             for name in &term.places {
                 assert!(Action::named(Scope::Global, name).is_some(), "{} is at {name}", term.id);
             }
         }
         for screen in ScreenId::ALL {
-            assert!(glossary::terms_of(screen.id()).count() >= 2, "{screen:?} has no terms");
+            assert!(novamind_glossary::terms_of(screen.id()).count() >= 2, "{screen:?} has no terms");
         }
     }
 
@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn every_term_fits_every_window() {
         let company = company();
-        for term in glossary::terms() {
+        for term in novamind_glossary::terms() {
             let dialog = Explain::subject(Subject::Term(term), Numbers::shipped().into());
             for (width, height) in [(0, 0), (3, 2), (60, 13), (80, 21), (200, 57)] {
                 let shown = dialog_picture(&dialog, &company, width, height);

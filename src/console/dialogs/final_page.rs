@@ -8,21 +8,21 @@ use ratatui::text::Line as TextLine;
 use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered, fit};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
-use crate::console::screens::Look;
-use crate::console::text::{fitting, wrapped};
-use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart};
-use crate::notation::{dollars, grouped, percent};
-use crate::report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
-use crate::report::ranking::{Standing, Whose, published_targeted_shares, standing};
-use crate::report::{Story, card_as_svg, card_as_text};
-use crate::session::{Ended, ForecastScore, Goal, ResultsShown};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered, fit};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::request::Recorded;
+use crate::request::Request;
+use crate::screens::Look;
+use crate::text::{fitting, wrapped};
+use crate::theme::Role;
+use crate::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_base::notation::{dollars, grouped, percent};
+use novamind_report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
+use novamind_report::ranking::{Standing, Whose, published_targeted_shares, standing};
+use novamind_report::{Story, card_as_svg, card_as_text};
+use novamind_session::{Ended, ForecastScore, Goal, ResultsShown};
 
 /// Widest that reads well.
 const WIDEST: u16 = 124;
@@ -246,7 +246,7 @@ impl FinalPage {
         if highlights.is_empty() {
             return;
         }
-        let line = |one: &crate::report::highlights::Highlight| {
+        let line = |one: &novamind_report::highlights::Highlight| {
             TextLine::from(vec![
                 canvas.span(format!("day {:>3}  ", one.day), Role::Dim),
                 canvas.span(one.text.clone(), Role::Text),
@@ -422,9 +422,9 @@ fn tools(measures: &Measures, room: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::dialogs::picture;
-    use crate::report::test_kit;
-    use crate::session::Session;
+    use crate::dialogs::picture;
+    use novamind_report::test_kit;
+    use novamind_session::Session;
 
     fn page(session: &Session) -> (FinalPage, Company) {
         (FinalPage::new(Some(Arc::new(Story::of(session)))), Company::of(session))

@@ -6,15 +6,15 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome, term_picture};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::glossary::{Subject, Term, terms};
-use crate::session::Numbers;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered, rows_of};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_glossary::{Subject, Term, terms};
+use novamind_session::Numbers;
 
 /// The list of terms.
 pub struct Glossary {
@@ -174,8 +174,8 @@ impl Glossary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::company::Company;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog, played};
+    use crate::company::Company;
+    use crate::test_kit::{company, dialog_picture, in_dialog, played};
 
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {

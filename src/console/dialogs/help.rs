@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{ACTIONS, Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::keys::Keys;
-use crate::console::screens::{Look, PaneKeys, ScreenId};
-use crate::console::theme::Role;
-use crate::console::widgets::editor::EDITING;
-use crate::console::widgets::{Cell, Column, Table};
+use crate::action::{ACTIONS, Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::keys::Keys;
+use crate::screens::{Look, PaneKeys, ScreenId};
+use crate::theme::Role;
+use crate::widgets::editor::EDITING;
+use crate::widgets::{Cell, Column, Table};
 
 /// The keys of a place.
 pub struct Help {

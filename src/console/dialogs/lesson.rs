@@ -4,17 +4,17 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::lesson::{Where, draw_lines, lines_of, step_to_try};
-use crate::console::request::{LessonRequest, Request};
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::{Field, Scroll};
-use crate::report::lesson::typed_guess;
-use crate::session::{LessonPage, LessonQuestion};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::effect::Effect;
+use crate::lesson::{Where, draw_lines, lines_of, step_to_try};
+use crate::request::{LessonRequest, Request};
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::{Field, Scroll};
+use novamind_report::lesson::typed_guess;
+use novamind_session::{LessonPage, LessonQuestion};
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;

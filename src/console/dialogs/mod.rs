@@ -33,8 +33,8 @@ use super::canvas::Canvas;
 use super::effect::Effect;
 use super::message::News;
 use super::screens::Look;
-use crate::report::Story;
-use crate::session::{Debrief, Refusal};
+use novamind_report::Story;
+use novamind_session::{Debrief, Refusal};
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -150,7 +150,7 @@ fn picture(dialog: &dyn Dialog, company: &super::company::Company, width: u16, h
     use super::theme::Theme;
     let area = Rect::new(0, 0, width, height);
     let mut buffer = ratatui::buffer::Buffer::empty(area);
-    let theme = Theme::find("mono", &crate::session::Configuration::shipped()).expect("a theme");
+    let theme = Theme::find("mono", &novamind_session::Configuration::shipped()).expect("a theme");
     let keys = Keys::shipped();
     dialog.draw(&mut Canvas::new(&mut buffer, &theme), area, &Look { company, keys: &keys, page: 5 });
     let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();

@@ -7,17 +7,17 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::screens::Look;
-use crate::console::text::{fitting, wrapped};
-use crate::console::theme::Role;
-use crate::notation::dollars;
-use crate::report::opponents::{Opponent, Opponents};
-use crate::session::{Ended, Refusal};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::screens::Look;
+use crate::text::{fitting, wrapped};
+use crate::theme::Role;
+use novamind_base::notation::dollars;
+use novamind_report::opponents::{Opponent, Opponents};
+use novamind_session::{Ended, Refusal};
 
 /// Widest that reads well, and its rows.
 const SIZE: (u16, u16) = (96, 16);
@@ -126,8 +126,8 @@ fn ranked<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::dialogs::picture;
-    use crate::report::test_kit;
+    use crate::dialogs::picture;
+    use novamind_report::test_kit;
 
     fn page(found: Result<Opponents, Refusal>) -> OpponentsPage {
         OpponentsPage { found: Some(found), ..OpponentsPage::default() }

@@ -4,21 +4,20 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{ACTIONS, Action, Scope};
-use crate::console::canvas::{Align, Canvas, Click, centered, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::fuzzy::{self, Found};
-use crate::console::keys::Keys;
-use crate::console::lesson::why_closed;
-use crate::console::screens::{Look, ScreenId};
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::table::first_row;
-use crate::database;
-use crate::glossary::{self, Subject};
-use crate::session::{JournalEntry, Library};
-use crate::tools::{CATALOGUE, Kind, ToolId};
+use crate::action::{ACTIONS, Action, Scope};
+use crate::canvas::{Align, Canvas, Click, centered, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::fuzzy::{self, Found};
+use crate::keys::Keys;
+use crate::lesson::why_closed;
+use crate::screens::{Look, ScreenId};
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::table::first_row;
+use novamind_glossary::Subject;
+use novamind_session::{JournalEntry, Library};
+use novamind_tools::{CATALOGUE, Kind, ToolId};
 
 /// Tools that stand first before anything is typed.
 const RECENT: usize = 5;
@@ -281,7 +280,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
         keys: String::new(),
         effect: Effect::RunSql(query.sql.clone()),
     }));
-    list.extend(database::tables().iter().map(|table| PaletteEntry {
+    list.extend(novamind_database::tables().iter().map(|table| PaletteEntry {
         kind: "table",
         code: "",
         title: table.name.clone(),
@@ -289,7 +288,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
         keys: String::new(),
         effect: Effect::EditSql(format!("SELECT * FROM {} LIMIT 100", table.name)),
     }));
-    list.extend(glossary::terms().iter().map(|term| PaletteEntry {
+    list.extend(novamind_glossary::terms().iter().map(|term| PaletteEntry {
         kind: "term",
         code: "",
         title: term.title.clone(),
@@ -394,7 +393,7 @@ impl Palette {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::company;
+    use crate::test_kit::company;
 
     #[test]
     fn a_code_finds_its_tool_before_anything_else() {
@@ -443,13 +442,13 @@ mod tests {
 
     #[test]
     fn tools_used_last_stand_first_and_what_cannot_be_done_says_why() {
-        let mut session = crate::console::test_kit::session();
+        let mut session = crate::test_kit::session();
         let fresh = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
         let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
         assert!(report.doc.starts_with("not now, no week has run yet: "), "{}", report.doc);
         for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
             let arguments = serde_json::from_str(arguments).expect("JSON");
-            session.call(tool, &arguments, crate::session::Via::Form).expect(tool);
+            session.call(tool, &arguments, novamind_session::Via::Form).expect(tool);
         }
         let palette = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
         let first: Vec<&str> =

@@ -4,12 +4,12 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::theme::Role;
+use crate::widgets::Field;
 
 /// The question.
 #[derive(Default)]

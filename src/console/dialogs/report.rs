@@ -6,21 +6,21 @@ use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered, fit};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::overview::figures::{self, METRICS};
-use crate::console::screens::overview::needs::screen_of;
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::{arrow, flowed, short_dollars, wrapped};
-use crate::console::theme::Role;
-use crate::notation::{dollars, grouped, signed_dollars};
-use crate::report::WeekReport;
-use crate::report::needs::Need;
-use crate::report::week::Move;
-use crate::session::{ScoredForecast, Verdict, WeekFigure};
-use crate::tools::Forecast;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered, fit};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::overview::figures::{self, METRICS};
+use crate::screens::overview::needs::screen_of;
+use crate::screens::{Figure, Look, ScreenId};
+use crate::text::{arrow, flowed, short_dollars, wrapped};
+use crate::theme::Role;
+use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_report::WeekReport;
+use novamind_report::needs::Need;
+use novamind_report::week::Move;
+use novamind_session::{ScoredForecast, Verdict, WeekFigure};
+use novamind_tools::Forecast;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -429,9 +429,9 @@ fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::company::Company;
-    use crate::console::dialogs::picture;
-    use crate::console::test_kit;
+    use crate::company::Company;
+    use crate::dialogs::picture;
+    use crate::test_kit;
 
     #[test]
     fn the_report_fits_small_windows_and_uses_large_ones() {

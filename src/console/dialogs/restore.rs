@@ -4,12 +4,12 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered, fit};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered, fit};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
 
 /// Widest that reads well.
 const WIDEST: u16 = 76;
@@ -86,8 +86,8 @@ fn last_lines(text: &str, width: usize, most: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::dialogs::picture;
-    use crate::console::test_kit::company;
+    use crate::dialogs::picture;
+    use crate::test_kit::company;
 
     #[test]
     fn the_end_of_every_text_is_shown_in_the_smallest_window() {

@@ -4,17 +4,17 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::screens::Look;
-use crate::console::screens::sql::values;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Table;
-use crate::notation::grouped;
-use crate::session::{Refusal, Rows};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered, rows_of};
+use crate::effect::Effect;
+use crate::message::News;
+use crate::screens::Look;
+use crate::screens::sql::values;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Table;
+use novamind_base::notation::grouped;
+use novamind_session::{Refusal, Rows};
 
 /// Most lines of the query that are shown above its rows.
 const QUERY_LINES: usize = 6;

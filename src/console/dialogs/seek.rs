@@ -4,13 +4,13 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::session::Goal;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::theme::Role;
+use crate::widgets::Field;
+use novamind_session::Goal;
 
 /// Asks for the number of a week.
 pub struct Seek {
@@ -98,7 +98,7 @@ impl Dialog for Seek {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, in_dialog};
+    use crate::test_kit::{company, in_dialog};
 
     #[test]
     fn only_a_recorded_week_is_gone_to() {

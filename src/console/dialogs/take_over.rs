@@ -3,14 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::session::Mode;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_session::Mode;
 
 /// Modes that are offered; a branch is never a baseline.
 const MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
@@ -96,7 +96,7 @@ impl Dialog for TakeOver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog};
+    use crate::test_kit::{company, dialog_picture, in_dialog};
 
     #[test]
     fn the_mode_is_chosen_and_nothing_happens_without_a_yes() {

@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::company::Company;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
-use crate::console::widgets::scale::Unit;
-use crate::notation::{compact, dollars};
-pub use crate::report::term_picture::has_picture;
-use crate::report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, TermPicture, term_picture};
+use crate::canvas::{Align, Canvas, rows_of};
+use crate::company::Company;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
+use crate::widgets::scale::Unit;
+use novamind_base::notation::{compact, dollars};
+pub use novamind_report::term_picture::has_picture;
+use novamind_report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, TermPicture, term_picture};
 
 /// Lowest picture that can be read.
 pub const LEAST_ROWS: u16 = 7;
@@ -64,7 +64,7 @@ fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
     };
     let x = Axis { write: &write, holds: &[] };
     let y = Side { unit: Unit::Number, holds: &[0.0] };
-    let sign = |(plan, x, y): &(crate::world::identifiers::Plan, f64, f64)| Sign {
+    let sign = |(plan, x, y): &(novamind_session::identifiers::Plan, f64, f64)| Sign {
         x: *x,
         y: *y,
         text: plan.id(),

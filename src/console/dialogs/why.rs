@@ -7,16 +7,16 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, centered, fit, rows_of};
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::spark::bar;
-use crate::report::why::{CauseLine, equation, heading, lines};
-use crate::session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, centered, fit, rows_of};
+use crate::effect::Effect;
+use crate::message::News;
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::spark::bar;
+use novamind_report::why::{CauseLine, equation, heading, lines};
+use novamind_session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;
@@ -212,8 +212,8 @@ impl Dialog for WhyBox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog};
-    use crate::session::{Detail, InputDetail, ToolId, WeekFigure, WhyPart};
+    use crate::test_kit::{company, dialog_picture, in_dialog};
+    use novamind_session::{Detail, InputDetail, ToolId, WeekFigure, WhyPart};
 
     fn cancellations() -> WeekQuantity {
         WeekQuantity::of_company(WeekFigure::Cancellations).expect("a figure of the company")
@@ -246,7 +246,7 @@ mod tests {
     fn answered(answer: Result<Why, Refusal>) -> WhyBox {
         let mut dialog = WhyBox::new(asked(), cancellations(), 20, Arc::default());
         let company = company();
-        let keys = crate::console::keys::Keys::shipped();
+        let keys = crate::keys::Keys::shipped();
         let look = Look { company: &company, keys: &keys, page: 5 };
         dialog.hear(&News::Why(1, Box::new(answer)), &look);
         dialog
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn another_week_is_asked_about_and_none_without_a_week_before_it() {
-        let company = crate::console::company::Company::of(&crate::console::test_kit::played(4));
+        let company = crate::company::Company::of(&crate::test_kit::played(4));
         let stop = Arc::new(AtomicBool::new(false));
         let mut dialog = WhyBox::new(asked(), cancellations(), 3, stop.clone());
         assert!(dialog_picture(&dialog, &company, 80, 24).contains("other week"));

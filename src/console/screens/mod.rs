@@ -14,7 +14,7 @@ use super::effect::Effect;
 use super::keys::Keys;
 use super::message::News;
 use super::readings::Reading;
-use crate::session::{Rows, WeekQuantity};
+use novamind_session::{Rows, WeekQuantity};
 
 /// The list of screens, in the order of their keys: a screen, and the room it lives in.
 macro_rules! screens {

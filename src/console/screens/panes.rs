@@ -6,10 +6,10 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Figure, Look, PaneKeys, Screen, ScreenState};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click};
-use crate::console::effect::Effect;
-use crate::console::widgets::{Field, Table};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click};
+use crate::effect::Effect;
+use crate::widgets::{Field, Table};
 
 /// What stands in the border of a pane.
 #[derive(Default)]

@@ -1,9 +1,9 @@
 //! What a person did besides acting, in few words.
 
 use super::told::time;
-use crate::console::theme::Role;
-use crate::session::Activity;
-use crate::session::record::{
+use crate::theme::Role;
+use novamind_session::Activity;
+use novamind_session::record::{
     ClockEvent, DialogOutcome, DraftOutcome, LeavingCause, LimitEvent, LimitScope, Presence, PresenceEvent,
 };
 
@@ -64,7 +64,7 @@ pub(super) fn brief(activity: &Activity) -> (String, Role) {
         Activity::Question(asked) => format!("asked: {}", asked.text),
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),
         Activity::Answer(answer) => format!("{}: {}", answer.id, answer.value),
-        Activity::Lesson(note) => crate::report::lesson::in_words(note),
+        Activity::Lesson(note) => novamind_report::lesson::in_words(note),
         Activity::Look(look) => format!("read from outside: {} {}", look.command, look.detail),
         Activity::Xray(look) => format!("x-ray of day {}: {} {}", look.shown_day, look.what, look.which),
     };
@@ -101,7 +101,7 @@ fn presence_in_words(presence: &Presence) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::record::{Clock, DialogStep, DialogUse, Draft, Help, Select};
+    use novamind_session::record::{Clock, DialogStep, DialogUse, Draft, Help, Select};
 
     #[test]
     fn activities_say_what_counts() {

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use pane::EntriesShown;
 
-use crate::session::PlaybackPosition;
+use novamind_session::PlaybackPosition;
 
 /// Pauses between two weeks, in milliseconds, and how fast that is.
 const SPEEDS: [(u64, &str); 6] = [

@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 
 use super::Viewer;
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::session::{Record, RecordView};
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_session::{Record, RecordView};
 
 /// Columns a screen needs beside the decisions.
 const OF_SCREEN: u16 = 80;

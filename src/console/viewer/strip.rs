@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::Viewer;
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click};
-use crate::console::theme::Role;
+use crate::action::Action;
+use crate::canvas::{Canvas, Click};
+use crate::theme::Role;
 
 /// Least columns of the bar.
 const LEAST_BAR: u16 = 8;

@@ -1,14 +1,14 @@
 //! Decisions of a week in words: in few for the pane, in full to read.
 
 use super::activities;
-use crate::console::screens::journal::entries::in_words;
-use crate::console::text::short_dollars;
-use crate::console::theme::Role;
-use crate::notation::{dollars, grouped};
-use crate::report::count;
-use crate::report::deals::deals_in_words;
-use crate::session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
-use crate::session::{
+use crate::screens::journal::entries::in_words;
+use crate::text::short_dollars;
+use crate::theme::Role;
+use novamind_base::notation::{dollars, grouped};
+use novamind_report::count;
+use novamind_report::deals::deals_in_words;
+use novamind_session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
+use novamind_session::{
     Chapter, CompanyNames, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively,
 };
 
@@ -209,16 +209,16 @@ pub(super) fn time(milliseconds: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Activity;
-    use crate::session::record::{End, RefusalRecord, View};
-    use crate::session::{Ended, Parent, Via};
-    use crate::tools::Forecast;
+    use novamind_session::Activity;
+    use novamind_session::record::{End, RefusalRecord, View};
+    use novamind_session::{Ended, Parent, Via};
+    use novamind_tools::Forecast;
     use serde_json::json;
 
     fn said(record: Record) -> Vec<String> {
         let at = "2026-11-21T10:42:07Z".to_owned();
         let entry = RecordView { seq: 1, day: 14, at, record, forecasts: Vec::new(), today: 14 };
-        let names = CompanyNames::new(1, &crate::world::params::Params::shipped().personas.email);
+        let names = CompanyNames::new(1, &novamind_world::params::Params::shipped().personas.email);
         brief(&entry, &names).into_iter().map(|(text, _)| text).collect()
     }
 
@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn lines_are_told_in_few_words() {
         let call = |args, outcome, reversal| {
-            let tool = crate::tools::ToolId::SetPrices.into();
+            let tool = novamind_tools::ToolId::SetPrices.into();
             Record::Call(Call { tool, args, outcome, via: Via::Form, took_ms: 0.1, reversal, request: None })
         };
         let accepted = |reversal| call(json!({"A": 12}), Outcome::Accepted(json!({})), reversal);

@@ -5,10 +5,10 @@ use std::time::Duration;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::Value;
 
-use crate::console::action::Action;
-use crate::console::request::GivenAnswer;
-use crate::console::widgets::{Editor, Field};
-use crate::session::{DueQuestion, Form, steady};
+use crate::action::Action;
+use crate::request::GivenAnswer;
+use crate::widgets::{Editor, Field};
+use novamind_session::{DueQuestion, Form, steady};
 
 /// What was entered so far.
 #[derive(Debug, Clone)]

@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 
 use super::{PageKind, VisitPage, WITHDRAW};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, centered, rows_of};
-use crate::console::keys::Keys;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::session::DECLINED;
+use crate::action::Action;
+use crate::canvas::{Canvas, centered, rows_of};
+use crate::keys::Keys;
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_session::DECLINED;
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;

@@ -7,16 +7,16 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::answer::{AnswerDraft, Entered};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::dialogs::{Dialog, Outcome};
-use crate::console::effect::Effect;
-use crate::console::keys::{Chord, Keys, written};
-use crate::console::request::{Request, VisitRequest};
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::session::{DueQuestion, Form};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::dialogs::{Dialog, Outcome};
+use crate::effect::Effect;
+use crate::keys::{Chord, Keys, written};
+use crate::request::{Request, VisitRequest};
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_session::{DueQuestion, Form};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 92;
@@ -374,8 +374,8 @@ fn draw_options(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::{company, dialog_picture, in_dialog};
-    use crate::session::Question;
+    use crate::test_kit::{company, dialog_picture, in_dialog};
+    use novamind_session::Question;
 
     fn page(text: &str, forms: &[Form]) -> QuestionPage {
         let due = |(at, form): (usize, &Form)| DueQuestion {

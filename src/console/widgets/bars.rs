@@ -3,8 +3,8 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use crate::console::canvas::{Align, Canvas};
-use crate::console::theme::Role;
+use crate::canvas::{Align, Canvas};
+use crate::theme::Role;
 
 /// Signs that bars of several series are made of: told apart without colour, and in ASCII too.
 pub const SIGNS: [&str; 4] = ["█", "▒", "━", "•"];

@@ -5,9 +5,9 @@ use unicode_width::UnicodeWidthStr;
 
 use super::raster::Raster;
 use super::scale::{Unit, ticks, widened};
-use crate::console::canvas::{Align, Canvas};
-use crate::console::text::arrow;
-use crate::console::theme::Role;
+use crate::canvas::{Align, Canvas};
+use crate::text::arrow;
+use crate::theme::Role;
 
 /// What stands where a chart has no data.
 pub const NO_DATA: &str = "no data yet: run a week (n)";

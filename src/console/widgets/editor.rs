@@ -6,8 +6,8 @@ use ratatui::style::Style;
 use ratatui::widgets::Widget;
 use tui_textarea::{CursorMove, TextArea, WrapMode};
 
-use crate::console::canvas::Canvas;
-use crate::console::theme::Role;
+use crate::canvas::Canvas;
+use crate::theme::Role;
 
 /// An editor of several lines.
 #[derive(Debug, Clone)]

@@ -4,10 +4,10 @@ use ratatui::layout::Rect;
 
 use super::chart::{Axis, Band, Line, Plot, Side, zero_if_near};
 use super::scale::Unit;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::theme::Role;
-use crate::tools::Forecast;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::theme::Role;
+use novamind_tools::Forecast;
 
 /// Forecasts that look as far ahead as half of what lies behind: farther ones would leave the past no room.
 pub fn near(company: &Company, forecasts: &[Forecast]) -> Vec<Forecast> {

@@ -5,8 +5,8 @@ use ratatui::layout::{Position, Rect};
 use unicode_segmentation::UnicodeSegmentation;
 use unicode_width::UnicodeWidthStr;
 
-use crate::console::canvas::Canvas;
-use crate::console::theme::Role;
+use crate::canvas::Canvas;
+use crate::theme::Role;
 
 /// A line of text with a cursor between its graphemes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -167,7 +167,7 @@ fn in_a_number(letter: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::notation::parse_number;
+    use novamind_base::notation::parse_number;
 
     fn typed(keys: &[KeyCode]) -> Field {
         let mut field = Field::of("añ日");

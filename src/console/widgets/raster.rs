@@ -3,8 +3,8 @@
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
 
-use crate::console::canvas::Canvas;
-use crate::console::theme::Role;
+use crate::canvas::Canvas;
+use crate::theme::Role;
 
 /// Bits of the dots of a braille character, by column and row.
 const BRAILLE: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];

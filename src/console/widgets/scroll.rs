@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::console::action::Action;
+use crate::action::Action;
 
 /// The row that stands first, and the farthest that may.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -7,9 +7,9 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::field::Field;
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, fit};
-use crate::console::theme::Role;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, fit};
+use crate::theme::Role;
 
 /// Narrowest part of a column of words that is worth showing.
 const LEAST_WORDS: u16 = 8;

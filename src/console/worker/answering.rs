@@ -4,8 +4,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
 use std::sync::{Mutex, MutexGuard};
 
-use crate::console::message::{Message, News};
-use crate::session::Refusal;
+use crate::message::{Message, News};
+use novamind_session::Refusal;
 
 /// Runs `work` on its own thread and reports its result. A panic is reported as a refusal, so that no pane waits forever.
 /// Nothing is reported if `work` returns `None`: the user has stopped it.

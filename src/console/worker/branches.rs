@@ -8,10 +8,10 @@ use std::time::Instant;
 use super::answering::{answer_on_thread, lock_kept};
 use super::causes::folder_of;
 use super::{BETWEEN_DAYS, Open, SessionThread};
-use crate::console::message::{Message, News};
-use crate::console::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
-use crate::session::record::LeavingCause;
-use crate::session::{Access, DecisionEdit, Refusal, Session, WhatIf, unless_stopped};
+use crate::message::{Message, News};
+use crate::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
+use novamind_session::record::LeavingCause;
+use novamind_session::{Access, DecisionEdit, Refusal, Session, WhatIf, unless_stopped};
 
 impl SessionThread {
     /// Finds what would have been, and reports how far that has come.

@@ -6,9 +6,9 @@ use std::sync::mpsc::Sender;
 
 use super::answering::{answer_on_thread, lock_kept};
 use super::{Open, SessionThread};
-use crate::console::message::{Message, News};
-use crate::console::resimulation::WhyAsked;
-use crate::session::{Causes, LastRead, Refusal, WeekQuestion, Why, unless_stopped};
+use crate::message::{Message, News};
+use crate::resimulation::WhyAsked;
+use novamind_session::{Causes, LastRead, Refusal, WeekQuestion, Why, unless_stopped};
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{Open, SessionThread};
-use crate::console::message::News;
-use crate::session::{CurveExplorer, Refusal};
-use crate::world::identifiers::Group;
+use crate::message::News;
+use novamind_session::identifiers::Group;
+use novamind_session::{CurveExplorer, Refusal};
 
 impl SessionThread {
     /// Draws the curve of a group, and says what was found; the number says which question it answers.

@@ -1,6 +1,6 @@
 //! The desk of a study: who has come, and what comes next for them.
 
-use crate::session::{Agreed, DueQuestion, NextStep, RunError, Study, Visit};
+use novamind_session::{Agreed, DueQuestion, NextStep, RunError, Study, Visit};
 
 /// A study that is being visited.
 pub(super) struct Desk {

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::run::tell_days;
 use super::{Open, SessionThread};
-use crate::console::company::Company;
-use crate::console::message::{Instead, News};
-use crate::rules::answers_to_companies;
-use crate::session::record::LeavingCause;
-use crate::session::{
+use crate::company::Company;
+use crate::message::{Instead, News};
+use novamind_rules::answers_to_companies;
+use novamind_session::record::LeavingCause;
+use novamind_session::{
     Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
     find_run, find_run_to_read, list_runs, rescue, run_preview,
 };

@@ -4,15 +4,15 @@ use std::sync::PoisonError;
 use std::time::Instant;
 
 use super::{Open, SessionThread};
-use crate::console::look_inside::{BreakpointWork, LookCurve, LookFound, LookQuestion};
-use crate::console::message::News;
-use crate::report::xray::{
+use crate::look_inside::{BreakpointWork, LookCurve, LookFound, LookQuestion};
+use crate::message::News;
+use novamind_report::xray::{
     EVENINGS, SATISFACTION, SpillMap, breakpoints_in_words, company_in_words, customer_in_words,
     drift_in_words, leads_in_words, line_of_factor, look_back_in_words, quality_in_words,
     reputation_in_words, rivals_in_words, satisfaction_in_words, spillover_in_words, streams_in_words,
 };
-use crate::session::{Access, LeadEquation, LeadFactor, Lens, REFUSED_LOOK, Refusal, Session};
-use crate::world::identifiers::Group;
+use novamind_session::identifiers::Group;
+use novamind_session::{Access, LeadEquation, LeadFactor, Lens, REFUSED_LOOK, Refusal, Session};
 
 impl SessionThread {
     /// Looks at hidden state, and says what was seen or why nothing is shown; where that has changed the run, with the company

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
-use crate::console::message::News;
-use crate::session::branches_of;
+use crate::message::News;
+use novamind_session::branches_of;
 
 impl SessionThread {
     /// Reads the tree of branches. It is empty where other runs are nobody's business here: in sessions of a study, and where

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
-use crate::console::message::News;
-use crate::console::request::LessonRequest;
-use crate::rules::answers_to_companies;
-use crate::session::record::LeavingCause;
-use crate::session::{Refusal, Session};
+use crate::message::News;
+use crate::request::LessonRequest;
+use novamind_rules::answers_to_companies;
+use novamind_session::record::LeavingCause;
+use novamind_session::{Refusal, Session};
 
 impl SessionThread {
     /// Does what a person asks of a lesson.

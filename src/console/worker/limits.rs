@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use super::{Open, SessionThread};
-use crate::console::message::News;
-use crate::session::TimeLeft;
+use crate::message::News;
+use novamind_session::TimeLeft;
 
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 

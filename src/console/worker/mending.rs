@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::{Open, SessionThread};
-use crate::console::message::News;
+use crate::message::News;
 
 /// Time between two tries: each may simulate weeks again.
 const BETWEEN_TRIES: Duration = Duration::from_secs(3);

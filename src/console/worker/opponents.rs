@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::SessionThread;
 use super::answering::answer_on_thread;
-use crate::console::message::News;
-use crate::report::opponents::PlayOpponents;
-use crate::session::Refusal;
+use crate::message::News;
+use novamind_report::opponents::PlayOpponents;
+use novamind_session::Refusal;
 
 impl SessionThread {
     /// Plays the opponents of the run that is open, and reports what became of them.

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::{BETWEEN_DAYS, Open, SessionThread};
-use crate::console::company::Company;
-use crate::console::message::{Arrival, Instead, Message, News};
-use crate::console::request::Recorded;
-use crate::session::record::LeavingCause;
-use crate::session::{Goal, Mode, Playback, RunError, SeekResult, find_run, find_run_to_read};
+use crate::company::Company;
+use crate::message::{Arrival, Instead, Message, News};
+use crate::request::Recorded;
+use novamind_session::record::LeavingCause;
+use novamind_session::{Goal, Mode, Playback, RunError, SeekResult, find_run, find_run_to_read};
 
 /// Lines of somebody else are looked for this often.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);

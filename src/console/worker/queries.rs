@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use super::Job;
 use super::answering::catch_defect;
-use crate::console::message::{Message, News};
-use crate::console::readings::Reading;
-use crate::database::query::Limits;
-use crate::session::{
+use crate::message::{Message, News};
+use crate::readings::Reading;
+use novamind_database::query::Limits;
+use novamind_session::{
     Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket, query_refusal,
 };
 
@@ -149,7 +149,7 @@ fn ask((connection, limits): &Connection, question: &Question) -> Result<Rows, R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::played;
+    use crate::test_kit::played;
 
     /// Panics on one statement.
     fn ask_or_panic(connection: &Connection, question: &Question) -> Result<Rows, Refusal> {

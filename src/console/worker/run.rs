@@ -8,13 +8,13 @@ use serde_json::Value;
 
 use super::BETWEEN_DAYS;
 use super::queries::QueryThreads;
-use crate::console::company::Company;
-use crate::console::look_inside::DaysRan;
-use crate::console::message::{DayTold, Message, News};
-use crate::report::xray::stop_in_words;
-use crate::report::{Story, as_html, as_markdown};
-use crate::session::{Breakpoint, DayReport, Forecasts, Interrupt, Session, Via};
-use crate::tools::ToolId;
+use crate::company::Company;
+use crate::look_inside::DaysRan;
+use crate::message::{DayTold, Message, News};
+use novamind_report::xray::stop_in_words;
+use novamind_report::{Story, as_html, as_markdown};
+use novamind_session::{Breakpoint, DayReport, Forecasts, Interrupt, Session, Via};
+use novamind_tools::ToolId;
 
 /// The run that is open, and where news of it go.
 pub(super) struct OpenRun<'a> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::SessionThread;
-use crate::console::message::News;
+use crate::message::News;
 
 impl SessionThread {
     /// Looks at the true values of a day, and says what was seen or why nothing is shown.

@@ -2,9 +2,9 @@
 
 use super::desk::Desk;
 use super::{Open, SessionThread};
-use crate::console::message::{News, VisitNews};
-use crate::console::request::{GivenAnswer, VisitRequest};
-use crate::session::{NextStep, RunError, Visit, record_refused_code};
+use crate::message::{News, VisitNews};
+use crate::request::{GivenAnswer, VisitRequest};
+use novamind_session::{NextStep, RunError, Visit, record_refused_code};
 
 impl SessionThread {
     /// Does what a participant's way asks for.

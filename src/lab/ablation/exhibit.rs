@@ -1,12 +1,12 @@
 //! What each step of the rivals costs: figures of the arms, differences seed by seed, curves.
 
 use super::rivals::{RivalSetting, reference};
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::lab::experiment::{ExperimentResults, RunResult};
-use crate::report::count;
-use crate::statistics::{Interval, LEAST, PairedDifference, mean, median};
+use crate::experiment::{ExperimentResults, RunResult};
+use novamind_base::statistics::{Interval, LEAST, PairedDifference, mean, median};
+use novamind_report::count;
 
 /// One axis of the ablation, played.
 pub struct Axis<'a> {

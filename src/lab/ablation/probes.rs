@@ -1,8 +1,8 @@
 //! The policies that rivals are shown against.
 
-use crate::lab::baseline::{Grid, PAPER};
-use crate::lab::policy::{Policy, PolicyError, RuleBased};
-use crate::world::params::ParameterSource;
+use crate::baseline::{Grid, PAPER};
+use crate::policy::{Policy, PolicyError, RuleBased};
+use novamind_world::params::ParameterSource;
 
 /// The probe whose development is shared by all groups.
 ///

@@ -1,7 +1,7 @@
 //! Rivals that copy more and more, and rivals that drain more and more.
 
-use crate::lab::experiment::Arm;
-use crate::lab::policy::Policy;
+use crate::experiment::Arm;
+use crate::policy::Policy;
 
 /// How rivals behave in an arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

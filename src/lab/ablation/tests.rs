@@ -1,6 +1,6 @@
 use super::*;
-use crate::lab::experiment::{ExperimentResults, test_kit};
-use crate::lab::policy::Policy;
+use crate::experiment::{ExperimentResults, test_kit};
+use crate::policy::Policy;
 
 /// A policy against rivals, until a day of a run of so many.
 fn played(policy: &Policy, settings: &[RivalSetting], (days, until): (u32, u32)) -> ExperimentResults {

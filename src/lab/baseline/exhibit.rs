@@ -1,14 +1,14 @@
 //! The configurations as a table: as the paper's for one seed, with spread and stability for many.
 
 use super::grid::Grid;
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation, column_name,
 };
-use crate::lab::experiment::{ExperimentResults, RunResult};
-use crate::lab::ranks::{concordance, places};
-use crate::notation::dollars;
-use crate::report::ranking::published;
-use crate::statistics::{Interval, Quartiles, mean, median};
+use crate::experiment::{ExperimentResults, RunResult};
+use crate::ranks::{concordance, places};
+use novamind_base::notation::dollars;
+use novamind_base::statistics::{Interval, Quartiles, mean, median};
+use novamind_report::ranking::published;
 
 /// The configurations of a grid with what became of them.
 pub fn baseline_exhibit(grid: &Grid, is_published: bool, results: &ExperimentResults) -> Exhibit {

@@ -3,10 +3,9 @@
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
-use crate::lab::exhibit::column_name;
-use crate::lab::policy::{Policy, PolicyError};
-use crate::shipped;
-use crate::world::params::ParameterSource;
+use crate::exhibit::column_name;
+use crate::policy::{Policy, PolicyError};
+use novamind_world::params::ParameterSource;
 
 /// Most combinations of a grid.
 pub const MOST: usize = 2_000;
@@ -91,13 +90,13 @@ impl Grid {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return Grid::parse(&ParameterSource { name: name.to_owned(), text });
         }
-        match shipped::grids().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::grids().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/grids/{name}.toml");
                 Grid::parse(&ParameterSource { name: file, text: text.to_owned() })
             }
             None => {
-                let known: Vec<&str> = shipped::grids().into_iter().map(|(name, _)| name).collect();
+                let known: Vec<&str> = novamind_assets::grids().into_iter().map(|(name, _)| name).collect();
                 let problem = format!("there is no such grid; there are {}, and files", known.join(", "));
                 Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
@@ -315,7 +314,7 @@ mod tests {
             own.policy.rule_based.clone()
         };
         // The published best one is what the routine does by itself.
-        assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::lab::policy::RuleBased::default()));
+        assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::policy::RuleBased::default()));
         for (at, own) in grid.configurations.iter().enumerate() {
             let same = |other: &&GridPoint| other.policy.rule_based == own.policy.rule_based;
             assert_eq!(grid.configurations.iter().filter(same).count(), 1, "{}", labels[at]);

@@ -2,8 +2,8 @@
 //! once.
 
 use super::grid::GridPoint;
-use crate::lab::experiment::RunResult;
-use crate::lab::policy::{Policy, RuleBased};
+use crate::experiment::RunResult;
+use crate::policy::{Policy, RuleBased};
 
 /// For each configuration, the one with the lowest floor that is like it in everything else.
 pub fn leaders(points: &[GridPoint]) -> Vec<usize> {

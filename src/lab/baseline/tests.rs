@@ -1,5 +1,5 @@
 use super::*;
-use crate::lab::experiment::{Arm, ExperimentResults, test_kit};
+use crate::experiment::{Arm, ExperimentResults, test_kit};
 
 /// The results of some configurations over a few days, all played.
 fn played(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{ObservedRun, who};
-use crate::lab::exhibit::{AxisScale, Graph, GraphAxis, GraphForm, Series};
+use crate::exhibit::{AxisScale, Graph, GraphAxis, GraphForm, Series};
 
 /// Most runs whose customers are drawn: each has a graph of its own.
 pub(super) const MOST_WITH_CUSTOMERS: usize = 4;

@@ -5,9 +5,9 @@ use std::time::Instant;
 use super::company::{Company, Keep, Lap, Market, POLICY, SEED};
 use super::machine::{folder_size, peak_memory};
 use super::{Bench, BenchError, BenchFigure, Case, Samples, Unit, queries, resimulation};
-use crate::lab::{Collector, Policy, RunSpec, play};
-use crate::session::{Access, Session, find_run};
-use crate::statistics::median;
+use crate::{Collector, Policy, RunSpec, play};
+use novamind_base::statistics::median;
+use novamind_session::{Access, Session, find_run};
 
 /// What is measured of the simulator.
 pub const CASES: &[Case] = &[

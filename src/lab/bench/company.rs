@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use super::{Bench, BenchError};
-use crate::lab::policy::Policy;
-use crate::lab::runner::{RunSpec, decide, new_run};
-use crate::session::{NewRun, Session, Storage, Via};
+use crate::policy::Policy;
+use crate::runner::{RunSpec, decide, new_run};
+use novamind_session::{NewRun, Session, Storage, Via};
 
 /// Policy of all figures.
 pub const POLICY: &str = "P1a";

@@ -73,7 +73,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::runner::RunError;
-use crate::session::{Configuration, Refusal, RunError as SessionError};
+use novamind_session::{Configuration, Refusal, RunError as SessionError};
 
 pub use cases::{CASES, keep_a_large_company};
 pub use machine::calibrate;

@@ -6,10 +6,10 @@ use serde_json::json;
 
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
-use crate::session::library::Library;
-use crate::session::{Session, Via};
-use crate::statistics::median;
-use crate::tools::ToolId;
+use novamind_base::statistics::median;
+use novamind_session::library::Library;
+use novamind_session::{Session, Via};
+use novamind_tools::ToolId;
 
 /// About the most subscribers that P1a ever has.
 const SUBSCRIBERS: u32 = 190_000;

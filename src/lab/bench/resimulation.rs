@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
-use crate::session::{Causes, ConditionProblem, DecisionEdit, OfRecord, Session, WhatIf};
+use novamind_session::{Causes, ConditionProblem, DecisionEdit, OfRecord, Session, WhatIf};
 
 /// Subscribers of the smaller company.
 const SMALL: u32 = 20_000;

@@ -5,8 +5,8 @@ use super::premises::Premises;
 use super::published::AccountLine;
 use super::requirement::overload_penalty;
 use super::{customers, improving, knowing, renewals, running, targeted, winning};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// A group in the account.
 #[derive(Debug, Clone, PartialEq)]

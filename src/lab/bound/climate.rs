@@ -1,13 +1,13 @@
 //! q_shared and what rivals do about it: the mean of some lucks of the world's own mechanism.
 
 use super::premises::Premises;
-use crate::world::identifiers::{ByGroup, Group};
-use crate::world::market::competitors::react;
-use crate::world::market::drift::DriftTotals;
-use crate::world::params::Params;
-use crate::world::product::Product;
-use crate::world::product::development::development_gain;
-use crate::world::random::Streams;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::competitors::react;
+use novamind_world::market::drift::DriftTotals;
+use novamind_world::params::Params;
+use novamind_world::product::Product;
+use novamind_world::product::development::development_gain;
+use novamind_world::random::Streams;
 
 /// Lucks whose mean is taken: the seeds from 1 on.
 pub const LUCKS: u64 = 64;

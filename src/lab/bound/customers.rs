@@ -1,7 +1,7 @@
 //! N and p: the largest attainable market of a group and the highest price it supports.
 
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// Customers of a group that pay: individuals, or seats of companies.
 pub fn attainable(group: Group, params: &Params) -> f64 {

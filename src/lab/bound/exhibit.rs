@@ -3,11 +3,11 @@
 use super::account::{BoundAccount, NEARLY_ALL, SlackRow};
 use super::premises::PUBLISHED_SLACK;
 use super::published::AccountLine;
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::notation::percent;
-use crate::report::ranking::published;
+use novamind_base::notation::percent;
+use novamind_report::ranking::published;
 
 /// The account, with the same account under other slacks.
 pub fn bound_exhibit(account: &BoundAccount, slacks: &[SlackRow]) -> Exhibit {

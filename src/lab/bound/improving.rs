@@ -1,7 +1,7 @@
 //! What improves the product: general development and R&D.
 
 use super::premises::Premises;
-use crate::world::params::Params;
+use novamind_world::params::Params;
 
 /// Dollars of general development.
 pub fn global_development(premises: &Premises) -> f64 {

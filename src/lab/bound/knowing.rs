@@ -1,8 +1,8 @@
 //! What finds and studies the groups.
 
 use super::premises::Premises;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// Dollars of market research that find every unknown group, in the mean.
 pub fn market_research(params: &Params) -> f64 {

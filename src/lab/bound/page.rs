@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use super::{BoundAccount, Premises, bound_exhibit, sensitivity};
-use crate::lab::exhibit::{Datum, Tabulation};
-use crate::world::params::Params;
+use crate::exhibit::{Datum, Tabulation};
+use novamind_world::params::Params;
 
 /// The rows of a table in Markdown, numbers with a decimal.
 fn as_markdown(table: &Tabulation, columns: &[usize]) -> String {
@@ -51,7 +51,7 @@ fn tables_in_documents_are_those_of_the_account() {
         ("slack", table("slack", &[0, 1, 3, 4, 5])),
         ("assumptions", table("assumptions", &[0, 1])),
     ];
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/laboratory/bound.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/laboratory/bound.md");
     let page = fs::read_to_string(&path).expect("a page");
     let expected = filled(&page, &tables);
     assert!(expected.matches("<!-- ").count() == 3 && tables.iter().all(|(_, rows)| expected.contains(rows)));

@@ -77,7 +77,7 @@ impl Premises {
                 "everybody stays",
                 format!(
                     "all {} groups are known and full by day {first}, and all who are satisfied renew on {} days, the last of them day {last}; nobody is lost to failed payments",
-                    crate::world::identifiers::Group::all().len(),
+                    novamind_world::identifiers::Group::all().len(),
                     self.renewals.len()
                 ),
             ),

@@ -4,9 +4,9 @@ use super::account::BoundAccount;
 use super::customers;
 use super::published::AccountLine;
 use super::winning;
-use crate::notation::{grouped, percent};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_base::notation::{grouped, percent};
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 impl BoundAccount {
     /// Why a line differs from the published one.

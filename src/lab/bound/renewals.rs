@@ -3,10 +3,10 @@
 use super::climate::Climate;
 use super::premises::Premises;
 use super::requirement::{required, risen};
-use crate::lab::normal::normal_share;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::product::development::targeted_development_gain;
+use crate::normal::normal_share;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::product::development::targeted_development_gain;
 
 /// The share that renews on each renewal day under a targeted spending, dollars a day, and an overload.
 pub fn renewing(
@@ -33,7 +33,7 @@ pub fn renewing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::bound::climate::climate;
+    use crate::bound::climate::climate;
 
     #[test]
     fn a_renewal_follows_the_equation_of_the_paper() {

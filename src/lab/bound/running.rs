@@ -1,7 +1,7 @@
 //! What runs the product: compute, capacity, operations.
 
 use super::premises::Premises;
-use crate::world::params::Params;
+use novamind_world::params::Params;
 
 /// Dollars of compute for units a day over the days of the account.
 pub fn compute(daily_usage: f64, premises: &Premises, params: &Params) -> f64 {

@@ -3,8 +3,8 @@
 use super::climate::Climate;
 use super::premises::Premises;
 use super::requirement::{required, risen};
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
 
 /// The widest gap, over the renewals, between what the mean customer requires and what shared quality delivers: in
 /// quality before the model's multiplier.
@@ -34,7 +34,7 @@ pub fn least_spending(gap: f64, premises: &Premises, params: &Params) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::product::development::targeted_development_gain;
+    use novamind_world::product::development::targeted_development_gain;
 
     #[test]
     fn the_least_spending_closes_the_gap_as_it_is_counted() {

@@ -1,10 +1,10 @@
 //! What wins the customers: advertising, and the charge for each lead.
 
 use super::premises::Premises;
-use crate::session::best_starting_channel;
-use crate::world::identifiers::Group;
-use crate::world::market::leads::market_cap;
-use crate::world::params::Params;
+use novamind_session::best_starting_channel;
+use novamind_world::identifiers::Group;
+use novamind_world::market::leads::market_cap;
+use novamind_world::params::Params;
 
 /// Steps in which the thinning of leads is added up.
 const STEPS: u32 = 20_000;

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::lab::exhibit::Measure;
-use crate::report::ranking::{Agent, published};
-use crate::session::Ended;
+use crate::exhibit::Measure;
+use novamind_report::ranking::{Agent, published};
+use novamind_session::Ended;
 
 /// A figure of all runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]

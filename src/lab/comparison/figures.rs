@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::compared::{Range, Row, range};
-use crate::report::Logbook;
-use crate::report::ranking::published;
-use crate::session::ForecastScore;
+use novamind_report::Logbook;
+use novamind_report::ranking::published;
+use novamind_session::ForecastScore;
 
 /// A figure: where its values come from.
 pub struct ComparedFigure {

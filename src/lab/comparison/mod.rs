@@ -9,9 +9,9 @@ pub use compared::{Comparison, Decided, measure_of};
 pub use figures::{ComparedFigure, FIGURES, figure_of};
 pub use table::{as_rows, as_text};
 
-use crate::report::Logbook;
-use crate::report::comparable::{RunTerms, left_out_in_words};
-use crate::report::ranking::by_result;
+use novamind_report::Logbook;
+use novamind_report::comparable::{RunTerms, left_out_in_words};
+use novamind_report::ranking::by_result;
 
 /// Puts runs side by side.
 pub fn beside(runs: &[Logbook]) -> Comparison {

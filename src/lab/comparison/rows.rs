@@ -1,9 +1,9 @@
 //! Many runs: one row each, the best result first.
 
 use super::compared::{Comparison, Row};
-use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
-use crate::notation::grouped;
-use crate::session::Ended;
+use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
+use novamind_base::notation::grouped;
+use novamind_session::Ended;
 
 /// A column of figures: the figure, its horizon, and its heading; the most telling ones first.
 const COLUMNS: [(&str, &str, &str); 10] = [
@@ -75,7 +75,7 @@ fn end_in_words((day, ended): (u32, Option<Ended>)) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::{as_text, beside};
-    use crate::report::{Logbook, logbook_of_tests};
+    use novamind_report::{Logbook, logbook_of_tests};
 
     /// Thirty runs with other names, players and results.
     fn thirty() -> Vec<Logbook> {

@@ -2,8 +2,8 @@
 
 use super::compared::{Comparison, Range, Row};
 use super::rows::one_a_row;
-use crate::notation::{dollars, grouped, percent};
-use crate::report::ranking::{published, published_terms};
+use novamind_base::notation::{dollars, grouped, percent};
+use novamind_report::ranking::{published, published_terms};
 
 /// Most days whose cash the text tells; of longer runs it leaves weeks out.
 const CASH_ROWS: usize = 20;

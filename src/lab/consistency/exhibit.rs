@@ -1,7 +1,7 @@
 //! The claims on common luck as an exhibit.
 
 use super::{ConsistencyCheck, TriedClaim};
-use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
 
 impl ConsistencyCheck {
     /// A row for each claim, and what the two plays came to.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::lab::policy::Policy;
-use crate::lab::runner::{RunError, RunSpec, advance, decide_telling, is_over, new_run};
-use crate::session::{Configuration, DayReport, DrawnPart, Follows, KeyedDraws, Refusal, Session, Xray};
-use crate::tools::{Answer, DiscoveryAttempt};
-use crate::world::identifiers::{Channel, Group};
+use crate::policy::Policy;
+use crate::runner::{RunError, RunSpec, advance, decide_telling, is_over, new_run};
+use novamind_session::{Configuration, DayReport, DrawnPart, Follows, KeyedDraws, Refusal, Session, Xray};
+use novamind_tools::{Answer, DiscoveryAttempt};
+use novamind_world::identifiers::{Channel, Group};
 
 /// What something is called: a day, an attempt, a customer of a group.
 pub type LuckKey = [u32; 2];

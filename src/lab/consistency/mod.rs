@@ -8,10 +8,10 @@ mod luck;
 
 use super::policy::{Policy, PolicyError};
 use super::runner::{RunError, RunSpec};
-use crate::session::Configuration;
-use crate::world::identifiers::{Channel, Group};
-use crate::world::params::ParameterSource;
 use luck::{Drawn, LuckKey, PlayedLuck, play_for_luck};
+use novamind_session::Configuration;
+use novamind_world::identifiers::{Channel, Group};
+use novamind_world::params::ParameterSource;
 use rayon::prelude::*;
 
 pub use luck::LuckEnd;

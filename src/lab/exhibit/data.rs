@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::{Column, Datum, Exhibit, Graph, Holds, Tabulation};
-use crate::notation::json_number;
-use crate::statistics::{Interval, LEVEL, RESAMPLES};
+use novamind_base::notation::json_number;
+use novamind_base::statistics::{Interval, LEVEL, RESAMPLES};
 
 impl Exhibit {
     /// The table of a name; none if there is none.

@@ -2,9 +2,9 @@
 
 use super::Exhibit;
 use super::text::broken;
-use crate::report::page::{Chart, Curve, Part, Plot};
-use crate::report::plot::{AxisScale, Drawn, Frame, bars, plot_in};
-use crate::report::svg::{Axes, ChartPart, standing_alone};
+use novamind_report::page::{Chart, Curve, Part, Plot};
+use novamind_report::plot::{AxisScale, Drawn, Frame, bars, plot_in};
+use novamind_report::svg::{Axes, ChartPart, standing_alone};
 
 /// Named series over two axes.
 #[derive(Debug, Clone, PartialEq)]

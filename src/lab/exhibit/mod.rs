@@ -7,11 +7,11 @@ mod data;
 mod graph;
 mod text;
 
-pub use crate::report::plot::AxisScale;
 pub use graph::{Graph, GraphAxis, GraphForm, Series};
+pub use novamind_report::plot::AxisScale;
 
-use crate::notation::{dollars, grouped, percent, short_dollars};
-use crate::statistics::Interval;
+use novamind_base::notation::{dollars, grouped, percent, short_dollars};
+use novamind_base::statistics::Interval;
 
 /// Widest table, unless more is asked for.
 pub const WIDTH: usize = 100;

@@ -3,7 +3,7 @@
 use unicode_width::UnicodeWidthStr;
 
 use super::{Column, Exhibit, Holds, Tabulation};
-use crate::notation::printable;
+use novamind_base::notation::printable;
 
 /// Between two columns.
 const GAP: usize = 2;

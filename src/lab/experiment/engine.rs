@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use super::key::ArmKey;
 use super::result::DayWatch;
 use super::{Arm, Experiment, ResultStore, RunResult};
-use crate::lab::runner::{self, RunError, RunSpec};
-use crate::session::{Configuration, DayReport};
+use crate::runner::{self, RunError, RunSpec};
+use novamind_session::{Configuration, DayReport};
 
 /// What an experiment is conducted with.
 pub struct Conduct<'a> {

@@ -1,8 +1,8 @@
 //! What names a run of an experiment: everything its result depends on.
 
 use super::{Arm, Wanted};
-use crate::session::{Configuration, RunError};
-use crate::world::MECHANICS;
+use novamind_session::{Configuration, RunError};
+use novamind_world::MECHANICS;
 
 /// What the runs of an arm have in common.
 pub(super) struct ArmKey {

@@ -22,8 +22,8 @@ use key::ArmKey;
 
 use super::policy::Policy;
 use super::runner::{RunSpec, new_run};
-use crate::session::{Configuration, RunError};
-use crate::world::params::Params;
+use novamind_session::{Configuration, RunError};
+use novamind_world::params::Params;
 
 /// One way to play that is compared with others.
 #[derive(Debug, Clone)]

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Wanted;
-use crate::lab::metrics::Collector;
-use crate::lab::runner::{Outcome, RunEnd};
-use crate::session::{DayReport, WeekFigures};
+use crate::metrics::Collector;
+use crate::runner::{Outcome, RunEnd};
+use novamind_session::{DayReport, WeekFigures};
 
 /// What is kept of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

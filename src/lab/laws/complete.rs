@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::*;
-use crate::world::params::{Params, shipped_sources};
-use crate::world::random::{Part, Streams};
+use novamind_world::params::{Params, shipped_sources};
+use novamind_world::random::{Part, Streams};
 
 /// Ways to draw from a stream.
 const WAYS: [&str; 12] = [
@@ -56,7 +56,7 @@ fn drawing_files(folder: &Path, below: &Path, found: &mut BTreeMap<String, usize
 
 #[test]
 fn every_draw_of_the_world_is_in_the_table() {
-    let below = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/world");
+    let below = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../src/world");
     let mut found = BTreeMap::new();
     drawing_files(&below, &below, &mut found);
     let mut listed: BTreeMap<String, usize> = BTreeMap::new();

@@ -2,13 +2,13 @@
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, Luck, WorldDraw, group_at};
-use crate::world::customers::choice::Offer;
-use crate::world::customers::traits::{Negotiator, Traits, draw_traits};
-use crate::world::identifiers::{ByPlan, Channel};
-use crate::world::market::arrivals::FirstLook;
-use crate::world::market::leads::LeadFactors;
-use crate::world::params::Params;
-use crate::world::random::Part;
+use novamind_world::customers::choice::Offer;
+use novamind_world::customers::traits::{Negotiator, Traits, draw_traits};
+use novamind_world::identifiers::{ByPlan, Channel};
+use novamind_world::market::arrivals::FirstLook;
+use novamind_world::market::leads::LeadFactors;
+use novamind_world::params::Params;
+use novamind_world::random::Part;
 
 const TRAITS: &str = "customers/traits.rs";
 const INFINITE: f64 = f64::INFINITY;

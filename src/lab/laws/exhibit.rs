@@ -4,12 +4,12 @@ use super::histogram::Histogram;
 use super::law::{Law, Moments};
 use super::world_draw::{Luck, WorldDraw};
 use super::world_draws;
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::notation::grouped;
-use crate::report::plot::LEVELS;
-use crate::statistics::Sample;
+use novamind_base::notation::grouped;
+use novamind_base::statistics::Sample;
+use novamind_report::plot::LEVELS;
 
 /// Bins of a histogram.
 const BINS: usize = 40;

@@ -1,6 +1,6 @@
 //! The laws that the world draws from: how they are written, and their exact moments.
 
-use crate::lab::normal::normal_share;
+use crate::normal::normal_share;
 
 /// A law with its parameters. Ends are those to which what lies beyond is moved, not cut off.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,7 +158,7 @@ impl Law {
             Law::Among(values) => {
                 let total: f64 = values.iter().map(|(_, weight)| weight).sum();
                 let one = |(value, weight): &(f64, f64)| {
-                    format!("{} {}", number(value), crate::notation::percent(weight / total, 1))
+                    format!("{} {}", number(value), novamind_base::notation::percent(weight / total, 1))
                 };
                 values.iter().map(one).collect::<Vec<_>>().join(", ")
             }
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn exact_moments_are_those_of_the_quantiles() {
-        use crate::world::random::inverse_normal;
+        use novamind_world::random::inverse_normal;
         let infinite = f64::INFINITY;
         for (least, most) in [(-infinite, infinite), (15.0, infinite), (-infinite, 60.0), (30.0, 70.0)] {
             let law = Law::Normal { mean: 50.0, std: 32.4, least, most };

@@ -2,15 +2,15 @@
 
 use super::law::Law;
 use super::world_draw::{Family, Luck, WorldDraw, group_at};
-use crate::session::best_starting_channel;
-use crate::world::identifiers::Group;
-use crate::world::market::competitors::{draw_event, event_probability, magnitude_scale, sampled_boost};
-use crate::world::market::discovery::draw_attempt;
-use crate::world::market::economy::next_pmi;
-use crate::world::market::surges::draw_surge;
-use crate::world::market::yields::varied_yield;
-use crate::world::params::Params;
-use crate::world::random::Part;
+use novamind_session::best_starting_channel;
+use novamind_world::identifiers::Group;
+use novamind_world::market::competitors::{draw_event, event_probability, magnitude_scale, sampled_boost};
+use novamind_world::market::discovery::draw_attempt;
+use novamind_world::market::economy::next_pmi;
+use novamind_world::market::surges::draw_surge;
+use novamind_world::market::yields::varied_yield;
+use novamind_world::params::Params;
+use novamind_world::random::Part;
 
 const RIVALS: &str = "market/competitors.rs";
 const SURGES: &str = "market/surges.rs";
@@ -37,7 +37,7 @@ fn unknown_groups() -> Vec<Group> {
 
 /// Of a surge that is sure to come.
 fn surge(luck: &Luck, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
-    let law = crate::world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
+    let law = novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
     let day = n as u32;
     draw_surge(day, &law, &luck.streams).map_or(f64::NAN, |own| figure(own.end_day - day, own.multiplier))
 }

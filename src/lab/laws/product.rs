@@ -2,12 +2,12 @@
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, WorldDraw, group_at};
-use crate::world::params::Params;
-use crate::world::product::development::daily_noise;
-use crate::world::product::research::{project_boost, project_duration};
-use crate::world::product::service::{downtime, error_rate, outage_probability, p95_latency};
-use crate::world::product::usage::usage_rate;
-use crate::world::random::Part;
+use novamind_world::params::Params;
+use novamind_world::product::development::daily_noise;
+use novamind_world::product::research::{project_boost, project_duration};
+use novamind_world::product::service::{downtime, error_rate, outage_probability, p95_latency};
+use novamind_world::product::usage::usage_rate;
+use novamind_world::random::Part;
 
 const SERVICE: &str = "product/service.rs";
 const RESEARCH: &str = "product/research.rs";

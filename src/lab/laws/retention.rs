@@ -2,13 +2,13 @@
 
 use super::law::{Law, Rounding};
 use super::world_draw::{Family, WorldDraw, group_at};
-use crate::world::customers::columns::BLOCK;
-use crate::world::enterprise::letters::reply_delay;
-use crate::world::market::reputation::cancel_damage;
-use crate::world::params::Params;
-use crate::world::random::{Part, word_below};
-use crate::world::retention::issues::issue_probability;
-use crate::world::retention::renewal::{involuntary_rate, payment_rolls};
+use novamind_world::customers::columns::BLOCK;
+use novamind_world::enterprise::letters::reply_delay;
+use novamind_world::market::reputation::cancel_damage;
+use novamind_world::params::Params;
+use novamind_world::random::{Part, word_below};
+use novamind_world::retention::issues::issue_probability;
+use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
 
 const RENEWAL: &str = "retention/renewal.rs";
 const SUPPORT: &str = "retention/support_budget.rs";

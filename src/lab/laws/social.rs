@@ -2,11 +2,11 @@
 
 use super::law::Law;
 use super::world_draw::{Family, Luck, WorldDraw};
-use crate::world::identifiers::Group;
-use crate::world::market::social::engagement::engagement_ranges;
-use crate::world::market::social::press::estimated_boost;
-use crate::world::market::social::sentiment::{Sentiment, sentiment, sentiment_chances};
-use crate::world::random::Part;
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::engagement::engagement_ranges;
+use novamind_world::market::social::press::estimated_boost;
+use novamind_world::market::social::sentiment::{Sentiment, sentiment, sentiment_chances};
+use novamind_world::random::Part;
 
 const CROWD: &str = "market/social/crowd.rs";
 const ENGAGEMENT: &str = "market/social/engagement.rs";
@@ -18,7 +18,7 @@ const MOOD: f64 = 0.1;
 /// Subscribers of the example that somebody is picked of.
 const SUBSCRIBERS: usize = 100;
 
-fn post(luck: &Luck, n: u64) -> crate::world::random::Stream {
+fn post(luck: &Luck, n: u64) -> novamind_world::random::Stream {
     luck.streams.open(Part::CustomerPosts, [n])
 }
 

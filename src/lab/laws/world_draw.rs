@@ -1,10 +1,10 @@
 //! A draw of the world: what it is, its law under the parameters in force, and how the world itself makes it.
 
 use super::law::Law;
-use crate::world::identifiers::Group;
-use crate::world::params::Params;
-use crate::world::random::{Part, Streams};
 use novamind_base::nearest;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::random::{Part, Streams};
 
 /// What the world draws with.
 #[derive(Debug)]

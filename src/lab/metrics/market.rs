@@ -1,9 +1,9 @@
 //! Figures of the market: economy, posts, notices, negotiations and deals.
 
 use super::{Daily, Day, Kind, by_group, initial, now, push, sum};
-use crate::world::events::{DealClosed, EndCause, Notice, Post, SubscriptionStatus, ThreadKind};
-use crate::world::identifiers::{Group, Plan};
-use crate::world::market::social::sentiment::Sentiment;
+use novamind_world::events::{DealClosed, EndCause, Notice, Post, SubscriptionStatus, ThreadKind};
+use novamind_world::identifiers::{Group, Plan};
+use novamind_world::market::social::sentiment::Sentiment;
 
 /// What is averaged over deals.
 type PerDeal = fn(&DealClosed) -> f64;
@@ -13,7 +13,7 @@ impl Day<'_> {
         let market = &self.xray.world().market;
         let today = market.competitors.iter().filter(|event| event.day == self.report.figures.day);
         let total =
-            |value: fn(&crate::world::market::competitors::Event) -> f64| today.clone().map(value).sum();
+            |value: fn(&novamind_world::market::competitors::Event) -> f64| today.clone().map(value).sum();
         sum(list, "comp_events_cum", total(|_| 1.0));
         sum(list, "comp_boost_cum", total(|event| event.boost));
         sum(list, "comp_sampled_cum", total(|event| event.sampled));

@@ -4,10 +4,10 @@ mod market;
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::session::{DayReport, Xray};
-use crate::world::events::{Category, EndCause, Source, SubscriptionEnded, SubscriptionStatus};
-use crate::world::identifiers::{ByGroup, ByPlan, Group, Plan};
-use crate::world::market::economy::Dimension;
+use novamind_session::{DayReport, Xray};
+use novamind_world::events::{Category, EndCause, Source, SubscriptionEnded, SubscriptionStatus};
+use novamind_world::identifiers::{ByGroup, ByPlan, Group, Plan};
+use novamind_world::market::economy::Dimension;
 
 /// One value.
 #[derive(Debug, Clone, PartialEq)]

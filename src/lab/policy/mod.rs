@@ -12,10 +12,8 @@ pub use rule_based::PriceBook;
 pub use rule_based::{CapacityRule, OperationsRule, RuleBased, Target};
 
 use super::answers::EnterpriseRule;
-use crate::session::Configuration;
-use crate::shipped;
-use crate::tools;
-use crate::world::params::ParameterSource;
+use novamind_session::Configuration;
+use novamind_world::params::ParameterSource;
 
 /// What drives a run without a person.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,14 +153,14 @@ impl Policy {
         if let Some(source) = own {
             return Policy::parse(&source);
         }
-        match shipped::policies().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::policies().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/policies/{name}.toml");
                 Policy::parse(&ParameterSource { name: file, text: text.to_owned() })
             }
             None => {
                 let mut known: Vec<String> =
-                    shipped::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
+                    novamind_assets::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
                 known.extend(configuration.names("policies"));
                 let problem = format!("there is no such policy; there are {}", known.join(", "));
                 Err(PolicyError { is_unknown: true, ..wrong(problem) })
@@ -223,9 +221,10 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
     if entry.every_weeks == Some(0) || entry.repeat == 0 {
         return Err("every_weeks and repeat are at least 1".to_owned());
     }
-    let tool =
-        tools::find(&entry.tool).filter(|tool| tool.spec().kind != tools::Kind::Time).ok_or_else(|| {
-            let near = tools::catalogue::nearest(&entry.tool);
+    let tool = novamind_tools::find(&entry.tool)
+        .filter(|tool| tool.spec().kind != novamind_tools::Kind::Time)
+        .ok_or_else(|| {
+            let near = novamind_tools::catalogue::nearest(&entry.tool);
             let help = if near.is_empty() {
                 String::new()
             } else {
@@ -234,7 +233,7 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
             format!("there is no tool {} for policies{help}", entry.tool)
         })?;
     let arguments = serde_json::to_value(&entry.args).map_err(|error| error.to_string())?;
-    tools::Arguments::of(tool.spec(), &arguments, || tools::Numbers::shipped().into())
+    novamind_tools::Arguments::of(tool.spec(), &arguments, || novamind_tools::Numbers::shipped().into())
         .map_err(|refusal| refusal.to_string())?;
     if tool.spec().own_unknown {
         let known = |key: &String| tool.spec().arguments.iter().any(|argument| argument.name == key);
@@ -265,7 +264,7 @@ mod tests {
     #[test]
     fn all_shipped_policies_are_read() {
         let configuration = Configuration::shipped();
-        for (name, _) in shipped::policies() {
+        for (name, _) in novamind_assets::policies() {
             let policy = Policy::find(name, &configuration).expect("a shipped policy");
             assert_eq!(policy.name, name);
             assert!(!policy.description.is_empty());

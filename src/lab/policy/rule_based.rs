@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::world::identifiers::Plan;
+use novamind_world::identifiers::Plan;
 
 /// The cash floor that never stops the spending.
 const ALWAYS: f64 = -1.0;

@@ -1,7 +1,7 @@
 //! The results table as an exhibit.
 
 use super::{ResultsRow, ResultsTable};
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
 

@@ -10,11 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::metrics::Collector;
 use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play};
-use crate::report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
-use crate::report::measures::{survival_days, tool_use};
-use crate::report::ranking::{beaten, by_result, published};
-use crate::session::{Configuration, Ended, Line, Session, policy_of};
-use crate::statistics::Sample;
+use novamind_base::statistics::Sample;
+use novamind_report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
+use novamind_report::measures::{survival_days, tool_use};
+use novamind_report::ranking::{beaten, by_result, published};
+use novamind_session::{Configuration, Ended, Line, Session, policy_of};
 
 #[cfg(feature = "server")]
 pub use tries::{Try, tries_exhibit};

@@ -1,8 +1,8 @@
 //! Several tries of one program beside each other, and the one that counts by the rule of the published table.
 
 use super::{FinishedRun, best_of};
-use crate::lab::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
-use crate::statistics::Sample;
+use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation};
+use novamind_base::statistics::Sample;
 
 /// A fresh run that a program was given.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,12 +6,12 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::grid::{Level, crossed, flat, value_text};
-use crate::lab::experiment::{Arm, Experiment, Wanted};
-use crate::lab::policy::Policy;
-use crate::lab::runner::RunSpec;
-use crate::lab::seeds::parse_seeds;
-use crate::session::{Configuration, DEFAULT_SCENARIO, RunError, check_cash, check_days};
-use crate::world::params::{ParameterError, Params, Replayed, line_of_key};
+use crate::experiment::{Arm, Experiment, Wanted};
+use crate::policy::Policy;
+use crate::runner::RunSpec;
+use crate::seeds::parse_seeds;
+use novamind_session::{Configuration, DEFAULT_SCENARIO, RunError, check_cash, check_days};
+use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
 /// Most runs of a study.
 const MOST_RUNS: u64 = 1_000_000;

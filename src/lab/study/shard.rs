@@ -5,9 +5,9 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::StudyPlan;
-use crate::lab::experiment::ExperimentError;
-use crate::session::Configuration;
-use crate::world::MECHANICS;
+use crate::experiment::ExperimentError;
+use novamind_session::Configuration;
+use novamind_world::MECHANICS;
 
 /// What the first line of a shard begins with.
 const MARK: &str = "# novamind study shard ";

@@ -1,13 +1,13 @@
 //! What a study found, arm by arm: what a paper would print of it. The rows hold the rest.
 
 use super::StudyPlan;
-use crate::lab::exhibit::{
+use crate::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use crate::lab::experiment::{Experiment, RunResult, groups};
-use crate::report::count;
-use crate::session::{Configuration, RunError};
-use crate::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
+use crate::experiment::{Experiment, RunResult, groups};
+use novamind_base::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
+use novamind_report::count;
+use novamind_session::{Configuration, RunError};
 
 /// Most arms whose curves can be told apart.
 const MOST_CURVES: usize = 8;

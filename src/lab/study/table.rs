@@ -1,8 +1,8 @@
 //! The rows of a study: one for each run, or one for each run and day.
 
 use super::StudyPlan;
-use crate::lab::experiment::{DayPoint, RunResult};
-use crate::lab::runner::RunEnd;
+use crate::experiment::{DayPoint, RunResult};
+use crate::runner::RunEnd;
 
 const OF_RUN: [&str; 11] = [
     "start_cash",

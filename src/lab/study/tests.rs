@@ -2,8 +2,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::lab::experiment::test_kit;
-use crate::session::Configuration;
+use crate::experiment::test_kit;
+use novamind_session::Configuration;
 
 fn write(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("study.toml");
@@ -251,7 +251,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
 
 #[test]
 fn the_study_of_the_guide_is_one() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/laboratory/examples/copying.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/laboratory/examples/copying.toml");
     let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
     assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as its first line says");
 }

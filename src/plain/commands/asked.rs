@@ -6,8 +6,8 @@ use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
 use super::breakpoints::{judged_as_data, writes_as_data};
-use crate::report::xray::{AskedWords, WordsFound, difference_as_data};
-use crate::session::ChangedParameter;
+use novamind_report::xray::{AskedWords, WordsFound, difference_as_data};
+use novamind_session::ChangedParameter;
 
 impl Interpreter {
     /// Answers what is asked. Nothing is read of it before it is clear that it may be asked.

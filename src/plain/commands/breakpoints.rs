@@ -5,9 +5,11 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
-use crate::notation::json_number;
-use crate::report::xray::{AskedWords, breakpoints_in_words, look_back_in_words, stop_in_words, written_by};
-use crate::session::{
+use novamind_base::notation::json_number;
+use novamind_report::xray::{
+    AskedWords, breakpoints_in_words, look_back_in_words, stop_in_words, written_by,
+};
+use novamind_session::{
     Breakpoint, Condition, ConditionProblem, Judged, LookBack, ReputationCause, WhoWrites, Write, WrittenBy,
 };
 

@@ -5,14 +5,14 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{self, Line, Problem};
 use super::{COMMANDS, Interpreter, change_line, read_arguments, tool_called, unknown};
-use crate::notation::percent;
-use crate::report::count;
-use crate::report::peak::peak_beside_tier;
-use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_sentences};
-use crate::report::research::outlook_lines;
-use crate::report::review::terms_line;
-use crate::session::{Preview, ToolId};
-use crate::world::identifiers::ByPlan;
+use novamind_base::notation::percent;
+use novamind_report::count;
+use novamind_report::peak::peak_beside_tier;
+use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_sentences};
+use novamind_report::research::outlook_lines;
+use novamind_report::review::terms_line;
+use novamind_session::identifiers::ByPlan;
+use novamind_session::{Preview, ToolId};
 
 impl Interpreter {
     /// Reads the call in a line that begins with the word `check`, so that columns are those of the line.

@@ -5,14 +5,14 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::database::text::aligned;
-use crate::notation::price_to_cents;
-use crate::report::curve::{
+use novamind_base::nearest;
+use novamind_base::notation::price_to_cents;
+use novamind_database::text::aligned;
+use novamind_report::curve::{
     basis_in_words, columns, outcome_in_words, plan_in_words, quality, remarks, rows,
 };
-use crate::session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
-use crate::world::identifiers::{Group, Plan};
-use novamind_base::nearest;
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
 
 const USAGE: &str = "name a group, and a price with a quality or neither: curve S1, curve S1 30 0.4";
 

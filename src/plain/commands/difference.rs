@@ -3,7 +3,7 @@
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::Interpreter;
-use crate::report::xray::AskedWords;
+use novamind_report::xray::AskedWords;
 
 impl Interpreter {
     pub(super) fn difference(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {

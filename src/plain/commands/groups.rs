@@ -6,15 +6,14 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::notation::{cents, dollars, grouped};
-use crate::report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
-use crate::report::insights::{insights_as_ranges, overview_with_ages};
-use crate::report::lead_costs::{AdSpell, PairCost, pair_costs};
-use crate::report::research::projects_with_means;
-use crate::session::{GroupWeek, Session};
-use crate::tools;
-use crate::world::identifiers::{Group, Plan};
 use novamind_base::nearest;
+use novamind_base::notation::{cents, dollars, grouped};
+use novamind_report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
+use novamind_report::insights::{insights_as_ranges, overview_with_ages};
+use novamind_report::lead_costs::{AdSpell, PairCost, pair_costs};
+use novamind_report::research::projects_with_means;
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{GroupWeek, Session};
 
 impl Interpreter {
     pub(super) fn fit(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
@@ -80,15 +79,17 @@ fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Resu
 
 /// What a tool answered with ranges in place of estimates, the days they are of, and true means of projects; none where it
 /// holds none of them.
-pub(super) fn with_ranges(session: &Session, answer: &tools::Answer) -> Option<Value> {
+pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
-        tools::Answer::GetGroupInsights(insights) => {
+        novamind_tools::Answer::GetGroupInsights(insights) => {
             let all = fits(session);
             let fit = all.iter().find(|fit| fit.group == insights.group_id)?;
             Some(insights_as_ranges(&answer.to_json(), fit))
         }
-        tools::Answer::GetMarketOverview(_) => Some(overview_with_ages(&answer.to_json(), &fits(session))),
-        tools::Answer::ListResearchProjects(_) => {
+        novamind_tools::Answer::GetMarketOverview(_) => {
+            Some(overview_with_ages(&answer.to_json(), &fits(session)))
+        }
+        novamind_tools::Answer::ListResearchProjects(_) => {
             Some(projects_with_means(&answer.to_json(), &session.research_means()))
         }
         _ => None,

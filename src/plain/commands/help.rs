@@ -5,11 +5,9 @@ use serde_json::json;
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{COMMANDS, NEXT, inbox, parameters, problem, readings, rules, tool_called, words, xray};
-use crate::database;
-use crate::glossary;
-use crate::session::{Bands, Numbers};
-use crate::tools::{self, Kind};
 use novamind_base::nearest;
+use novamind_session::{Bands, Numbers};
+use novamind_tools::Kind;
 
 const NEEDS: &str = "\
 needs                     what costs money or is about to: each with the object, the amount and the call that addresses it
@@ -126,17 +124,17 @@ pub(super) fn help(
     if let Some((_, line)) = commands(led).find(|(command, _)| *command == name) {
         return Ok(Answer::done("help", line.to_owned(), json!({ "command": line })));
     }
-    if tools::find(name).is_some() || tool_called(name).is_some() {
+    if novamind_tools::find(name).is_some() || tool_called(name).is_some() {
         return readings::tools(Some(name), arguments, numbers);
     }
-    if database::table(name).is_some() {
+    if novamind_database::table(name).is_some() {
         return readings::tables(Some(name), arguments);
     }
-    if let Ok(found) = glossary::find(name) {
+    if let Ok(found) = novamind_glossary::find(name) {
         return Ok(words::answer("help", found, numbers));
     }
     let names = commands(led).map(|(name, _)| name).chain(callable());
-    let names = names.chain(database::tables().iter().map(|table| table.name.as_str()));
+    let names = names.chain(novamind_database::tables().iter().map(|table| table.name.as_str()));
     let where_to_look = "help lists the commands, glossary the terms";
     Err(problem(arguments, &not_there("nothing", name, nearest(name, names), where_to_look)))
 }
@@ -159,7 +157,7 @@ Naive forecasts: income, compute and lead costs go on as in the last four weeks,
 }
 
 fn callable() -> impl Iterator<Item = &'static str> {
-    tools::CATALOGUE
+    novamind_tools::CATALOGUE
         .iter()
         .map(|tool| tool.spec())
         .filter(|spec| spec.kind != Kind::Time)

@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::notation::{cents, grouped};
-use crate::report::count;
-use crate::report::funnel::{Funnel, funnels};
-use crate::rules::{AskingThread, Filter};
-use crate::session::CompanyNames;
-use crate::world::identifiers::Plan;
+use novamind_base::notation::{cents, grouped};
+use novamind_report::count;
+use novamind_report::funnel::{Funnel, funnels};
+use novamind_rules::{AskingThread, Filter};
+use novamind_session::CompanyNames;
+use novamind_session::identifiers::Plan;
 
 /// Threads that are read out unless all of them are asked for; programs get every row.
 const TOLD: usize = 20;
@@ -208,8 +208,8 @@ pub(super) fn offer_in_words(offered: &[(Plan, f64)]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::WaitingThread;
-    use crate::world::params::Params;
+    use novamind_session::WaitingThread;
+    use novamind_world::params::Params;
 
     fn thread(customer: u32, asked: Option<f64>, asked_plan: Option<Plan>) -> AskingThread {
         let waiting = WaitingThread {

@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::report::debrief::in_words;
-use crate::report::lesson::{page_in_words, typed_guess};
-use crate::rules::answers_to_companies;
-use crate::session::{
+use novamind_report::debrief::in_words;
+use novamind_report::lesson::{page_in_words, typed_guess};
+use novamind_rules::answers_to_companies;
+use novamind_session::{
     Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision,
     ReferenceCurve, Refusal, Session,
 };

@@ -3,7 +3,7 @@
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::Interpreter;
-use crate::report::xray::AskedWords;
+use novamind_report::xray::AskedWords;
 
 pub(super) const IN_FULL: &str = "\
 set                       what differs from the scenario, and what is set from a later day on

@@ -6,9 +6,9 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem, as_object};
 use super::super::signals::Phase;
 use super::{Interpreter, problem, unknown};
-use crate::session::library::NamedQuery;
-use crate::session::{QuerySource, Refusal, Via};
-use crate::tools::{self, ToolId};
+use novamind_session::library::NamedQuery;
+use novamind_session::{QuerySource, Refusal, Via};
+use novamind_tools::ToolId;
 
 impl Interpreter {
     /// `queries`
@@ -42,7 +42,7 @@ impl Interpreter {
     /// Records a call of a tool that does not exist: a word that is followed by the arguments of a call.
     pub(super) fn unknown_tool(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Problem {
         let args = as_object(arguments, None).ok().filter(|_| !arguments.is_empty());
-        if let Some(args) = args.filter(|_| tools::find(word).is_none()) {
+        if let Some(args) = args.filter(|_| novamind_tools::find(word).is_none()) {
             // What is shown names the commands of plain mode too.
             let _ = self.session.call(word, &args, Via::Plain);
         }
@@ -54,7 +54,7 @@ impl Interpreter {
         &mut self,
         tool: ToolId,
         arguments: &Value,
-    ) -> Result<tools::Answer, Refusal> {
+    ) -> Result<novamind_tools::Answer, Refusal> {
         if tool.runs_code()
             && let Ok(interrupt) = self.session.interrupt()
         {
@@ -67,7 +67,7 @@ impl Interpreter {
 }
 
 /// What a script says, as it is, line by line.
-pub(super) fn of_script(tool: ToolId, answer: &tools::Answer) -> Answer {
+pub(super) fn of_script(tool: ToolId, answer: &novamind_tools::Answer) -> Answer {
     let data = answer.to_json();
     let part = |name: &str| data[name].as_str().unwrap_or_default().trim_end().to_owned();
     let text = ["stdout", "stderr"].map(part).join("\n");

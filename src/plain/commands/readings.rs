@@ -9,20 +9,18 @@ use super::super::grammar::{Argument, Problem};
 use super::super::seed_in_words;
 use super::help::not_there;
 use super::{Interpreter, problem, tool_called};
-use crate::database;
-use crate::notation::{dollars, grouped, signed_dollars};
-use crate::report::cash_change_in_words;
-use crate::report::chapters::change_in_words;
-use crate::report::deals::deals_in_words;
-use crate::report::needs::{Need, Place, needs};
-use crate::report::parameters::entry_in_words;
-use crate::report::peak::PeakProjection;
-use crate::report::research::late_lines;
-use crate::report::review::{alike_lines, money_lines};
-use crate::session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
-use crate::tools;
-use crate::tools::describe::{self, ToolDocument, document};
 use novamind_base::nearest;
+use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_report::cash_change_in_words;
+use novamind_report::chapters::change_in_words;
+use novamind_report::deals::deals_in_words;
+use novamind_report::needs::{Need, Place, needs};
+use novamind_report::parameters::entry_in_words;
+use novamind_report::peak::PeakProjection;
+use novamind_report::research::late_lines;
+use novamind_report::review::{alike_lines, money_lines};
+use novamind_session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
+use novamind_tools::describe::{self, ToolDocument, document};
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> Answer {
@@ -198,17 +196,17 @@ pub(super) fn tools(
     numbers: &Numbers,
 ) -> Result<Answer, Problem> {
     let Some(name) = name else {
-        let all = tools::CATALOGUE.iter().map(|tool| document(tool.spec(), numbers));
+        let all = novamind_tools::CATALOGUE.iter().map(|tool| document(tool.spec(), numbers));
         let all: Vec<ToolDocument> = all.collect();
         return Ok(Answer::done("tools", describe::overview(), json!({ "tools": all })));
     };
-    let tool = tools::find(name)
+    let tool = novamind_tools::find(name)
         .or_else(|| tool_called(name))
-        .or_else(|| tools::catalogue::find_code(name))
+        .or_else(|| novamind_tools::catalogue::find_code(name))
         .ok_or_else(|| {
             problem(
                 arguments,
-                &not_there("no tool", name, tools::catalogue::nearest(name), "tools lists them"),
+                &not_there("no tool", name, novamind_tools::catalogue::nearest(name), "tools lists them"),
             )
         })?;
     Ok(Answer::done("tools", describe::manual(tool.spec(), numbers), json!(document(tool.spec(), numbers))))
@@ -217,13 +215,14 @@ pub(super) fn tools(
 /// `tables [NAME]`.
 pub(super) fn tables(name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
     let Some(name) = name else {
-        let width = database::tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
-        let line = |table: &database::Table| format!("{:<width$}  {}\n", table.name, table.description);
-        let text: String = database::tables().iter().map(line).collect();
-        return Ok(Answer::done("tables", text, json!({ "tables": database::tables() })));
+        let width = novamind_database::tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
+        let line =
+            |table: &novamind_database::Table| format!("{:<width$}  {}\n", table.name, table.description);
+        let text: String = novamind_database::tables().iter().map(line).collect();
+        return Ok(Answer::done("tables", text, json!({ "tables": novamind_database::tables() })));
     };
-    let table = database::table(name).ok_or_else(|| {
-        let names = database::tables().iter().map(|table| table.name.as_str());
+    let table = novamind_database::table(name).ok_or_else(|| {
+        let names = novamind_database::tables().iter().map(|table| table.name.as_str());
         problem(arguments, &not_there("no table", name, nearest(name, names), "tables lists them"))
     })?;
     Ok(Answer::done("tables", table.describe(), json!(table)))

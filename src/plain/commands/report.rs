@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
-use crate::notation::signed_dollars;
-use crate::report::{Story, WeekReport, as_markdown};
-use crate::session::{Refusal, Verdict};
+use novamind_base::notation::signed_dollars;
+use novamind_report::{Story, WeekReport, as_markdown};
+use novamind_session::{Refusal, Verdict};
 
 /// Moves that are told.
 const TOLD: usize = 6;
@@ -106,7 +106,7 @@ fn parts(parts: &[(&'static str, f64)]) -> Value {
 }
 
 fn as_data(report: &WeekReport) -> Value {
-    let moved = |moved: &crate::report::week::Move| {
+    let moved = |moved: &novamind_report::week::Move| {
         json!({
             "figure": moved.name,
             "old": moved.movement.old,
@@ -116,7 +116,7 @@ fn as_data(report: &WeekReport) -> Value {
             "split": parts(&moved.split),
         })
     };
-    let due = |due: &crate::session::ScoredForecast| {
+    let due = |due: &novamind_session::ScoredForecast| {
         json!({
             "horizon_days": due.forecast.horizon_days,
             "point": due.forecast.point,

@@ -4,10 +4,10 @@ use serde_json::{Value, json};
 
 use super::super::answers::Answer;
 use super::Interpreter;
-use crate::database::text::aligned;
-use crate::notation::{cents, grouped};
-use crate::rules::{self, AskingThread, Batch, RuledThread};
-use crate::session::{CompanyNames, Refusal, ToolId, Via};
+use novamind_base::notation::{cents, grouped};
+use novamind_database::text::aligned;
+use novamind_rules::{AskingThread, Batch, RuledThread};
+use novamind_session::{CompanyNames, Refusal, ToolId, Via};
 
 /// Threads that a preview lists; programs get all.
 const LISTED: usize = 20;
@@ -31,7 +31,7 @@ impl Interpreter {
             Some(("send", rest)) => (true, rest.trim_start(), text.len() - rest.trim_start().len()),
             _ => (false, text, 0),
         };
-        let rules = match rules::parse(text) {
+        let rules = match novamind_rules::parse(text) {
             Ok(rules) => rules,
             Err(problem) => return Answer::usage(problem.text, column + before + problem.column - 1),
         };

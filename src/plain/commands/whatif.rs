@@ -7,13 +7,13 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, Phase, count, problem};
-use crate::database::text::aligned;
-use crate::report::whatif::{
+use novamind_database::text::aligned;
+use novamind_report::whatif::{
     bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
     name, table,
 };
-use crate::session::record::LeavingCause;
-use crate::session::{
+use novamind_session::record::LeavingCause;
+use novamind_session::{
     BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastDecision, Refusal, Session,
     WhatIf, branches_of, unless_stopped,
 };
@@ -224,7 +224,7 @@ impl Interpreter {
         };
         let tree = branches_of(runs, id);
         let lines: Vec<String> = tree.iter().map(|kin| kin_line(kin, id)).collect();
-        let one = |kin: &crate::session::Kin| {
+        let one = |kin: &novamind_session::Kin| {
             json!({
                 "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.left_in_week,
                 "first_change": kin.first_change,

@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
-use crate::database::text::aligned;
-use crate::report::why::{equation, heading, lines};
-use crate::session::{ConditionProblem, Refusal, WeekQuestion, Why, unless_stopped};
-use crate::world::identifiers::Group;
+use novamind_database::text::aligned;
+use novamind_report::why::{equation, heading, lines};
+use novamind_session::identifiers::Group;
+use novamind_session::{ConditionProblem, Refusal, WeekQuestion, Why, unless_stopped};
 
 impl Interpreter {
     pub(super) fn why(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
@@ -36,7 +36,7 @@ impl Interpreter {
 }
 
 fn as_text(why: &Why) -> String {
-    let row = |line: crate::report::why::CauseLine| {
+    let row = |line: novamind_report::why::CauseLine| {
         vec![line.name.to_owned(), line.written, line.details.join(" · ")]
     };
     let rows: Vec<Vec<String>> = lines(why).into_iter().map(row).collect();
@@ -50,7 +50,7 @@ fn as_text(why: &Why) -> String {
 }
 
 fn as_data(why: &Why) -> Value {
-    let cause = |line: &crate::report::why::CauseLine| json!({ "cause": line.name, "amount": line.amount, "details": line.details });
+    let cause = |line: &novamind_report::why::CauseLine| json!({ "cause": line.name, "amount": line.amount, "details": line.details });
     json!({
         "figure": why.quantity.figure().id(),
         "group": why.quantity.group().map(Group::id),

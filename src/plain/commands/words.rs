@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::super::answers::Answer;
-use crate::glossary::{self, Explanation, Subject, Term, terms};
-use crate::report::term_picture::term_picture_of;
-use crate::session::{Numbers, Session};
+use novamind_glossary::{Explanation, Subject, Term, terms};
+use novamind_report::term_picture::term_picture_of;
+use novamind_session::{Numbers, Session};
 
 /// `explain TERM`, and `what TERM`.
 pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
@@ -13,7 +13,7 @@ pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
     if words.is_empty() {
         return Answer::usage(format!("{command} needs a term, for instance {command} runway"), column);
     }
-    match glossary::find(words) {
+    match novamind_glossary::find(words) {
         Ok(found) => answer("explain", found, numbers),
         Err(near) if near.is_empty() => {
             Answer::usage(format!("unknown term {words}; glossary lists every term"), column)
@@ -63,7 +63,7 @@ pub(super) fn glossary(word: &str, session: &Session) -> Answer {
         text += &format!("  {:<width$}  {}\n", term.id, term.text);
     }
     let count = if found.len() == 1 { "1 term".to_owned() } else { format!("{} terms", found.len()) };
-    let picture = match glossary::find(word) {
+    let picture = match novamind_glossary::find(word) {
         Ok(Subject::Term(term)) => term_picture_of(&term.id, session),
         _ => None,
     };
@@ -82,8 +82,8 @@ pub(super) fn glossary(word: &str, session: &Session) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Configuration, NewRun, Session, Via};
-    use crate::world::identifiers::Group;
+    use novamind_session::identifiers::Group;
+    use novamind_session::{Configuration, NewRun, Session, Via};
 
     /// Names of the fields of an answer; keys of maps by group are none.
     fn fields(value: &Value, found: &mut Vec<String>) {

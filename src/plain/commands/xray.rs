@@ -10,12 +10,12 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem, statement_of_xray};
 use super::super::signals::Phase;
 use super::{Interpreter, problem, usage};
-use crate::database::text::table;
-use crate::report::xray::{company_in_words, customer_in_words, leads_in_words};
-use crate::session::{LeadFactor, Lens, Refusal, rows_as_json};
-use crate::world::identifiers::Group;
 use data::{company_as_data, customer_as_data, leads_as_data};
 use novamind_base::nearest;
+use novamind_database::text::table;
+use novamind_report::xray::{company_in_words, customer_in_words, leads_in_words};
+use novamind_session::identifiers::Group;
+use novamind_session::{LeadFactor, Lens, Refusal, rows_as_json};
 
 /// What can be shown.
 const VIEWS: [&str; 9] =

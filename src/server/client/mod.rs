@@ -4,8 +4,8 @@ mod module;
 
 use std::path::{Path, PathBuf};
 
-use crate::session::{RunError, write_whole};
-use crate::tools::{Module, Numbers};
+use novamind_session::{RunError, write_whole};
+use novamind_tools::{Module, Numbers};
 
 pub use module::name as module_name;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::server::schema;
-use crate::tools::{Argument, ArgumentKind, Module, Numbers, Spec, ToolId};
+use crate::schema;
+use novamind_tools::{Argument, ArgumentKind, Module, Numbers, Spec, ToolId};
 
 /// Columns of a docstring.
 const WIDTH: usize = 116;

@@ -5,9 +5,9 @@ use std::time::Duration;
 use axum::body::{Body, to_bytes};
 use serde_json::{Map, Value};
 
-use crate::server::not_numbers;
-use crate::server::request::{Answer, Status};
-use crate::session::Refusal;
+use crate::not_numbers;
+use crate::request::{Answer, Status};
+use novamind_session::Refusal;
 
 /// Bytes of a body.
 const MOST_BYTES: usize = 1024 * 1024;

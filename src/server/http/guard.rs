@@ -8,8 +8,8 @@ use std::path::Path;
 use axum::http::HeaderMap;
 use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 
-use crate::server::request::{Answer, Status};
-use crate::session::RunError;
+use crate::request::{Answer, Status};
+use novamind_session::RunError;
 
 /// What requests must carry.
 #[derive(Debug, Clone)]

@@ -21,8 +21,8 @@ use tokio::sync::Semaphore;
 use super::announcement::Announcement;
 use super::owner::{Door, OnDefect, Owner};
 use super::request::{Answer, Status};
-use crate::session::{RunError, Session, Via};
 use guard::Guard;
+use novamind_session::{RunError, Session, Via};
 use routes::Served;
 use shutdown::Shutdown;
 

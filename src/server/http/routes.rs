@@ -14,12 +14,12 @@ use tokio::sync::Notify;
 
 use super::body::{Fields, read_object};
 use super::guard::Guard;
-use crate::database::tables;
-use crate::server::openapi;
-use crate::server::owner::Handle;
-use crate::server::request::{Answer, Request, Status};
-use crate::tools::describe::{ToolDocument, document};
-use crate::tools::{CATALOGUE, Numbers, ToolId};
+use crate::openapi;
+use crate::owner::Handle;
+use crate::request::{Answer, Request, Status};
+use novamind_database::tables;
+use novamind_tools::describe::{ToolDocument, document};
+use novamind_tools::{CATALOGUE, Numbers, ToolId};
 
 /// What the routes need.
 #[derive(Clone)]

@@ -23,8 +23,8 @@ use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use super::page::{PageOf, goal_and_rules};
 use super::request::Request;
-use crate::session::{RunError, Session, Via};
-use crate::tools::Numbers;
+use novamind_session::{RunError, Session, Via};
+use novamind_tools::Numbers;
 
 /// What a client is told first.
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \

@@ -3,11 +3,11 @@
 use rmcp::ErrorData;
 use rmcp::model::{ReadResourceResult, Resource, ResourceContents};
 
-use crate::database::tables;
-use crate::server::owner::Handle;
-use crate::server::request::Request;
-use crate::tools::describe::manual;
-use crate::tools::{CATALOGUE, Numbers};
+use crate::owner::Handle;
+use crate::request::Request;
+use novamind_database::tables;
+use novamind_tools::describe::manual;
+use novamind_tools::{CATALOGUE, Numbers};
 
 const GOAL: &str = "novamind://goal";
 const DASHBOARD: &str = "novamind://dashboard";

@@ -7,7 +7,7 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexS
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
 
-use crate::server::not_numbers;
+use crate::not_numbers;
 
 /// Bytes between the streams and the protocol.
 const BUFFER_BYTES: usize = 64 * 1024;

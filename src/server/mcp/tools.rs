@@ -5,10 +5,10 @@ use std::sync::Arc;
 use rmcp::model::{CallToolResult, Tool, ToolAnnotations};
 use serde_json::Value;
 
-use crate::server::request::Answer;
-use crate::server::schema;
-use crate::tools::describe::manual;
-use crate::tools::{Kind, Numbers, Spec};
+use crate::request::Answer;
+use crate::schema;
+use novamind_tools::describe::manual;
+use novamind_tools::{Kind, Numbers, Spec};
 
 /// Every tool.
 pub fn all(numbers: &Numbers) -> Vec<Tool> {

@@ -3,12 +3,12 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, fit, rows_of};
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::table::first_row;
-use crate::session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, fit, rows_of};
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::table::first_row;
+use novamind_session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
 
 /// Said where a parameter that the run sets is to be edited.
 const PARAMETER_IS_SET_ANEW: &str = "leave it out, and decide otherwise with set KEY VALUE";

@@ -10,16 +10,16 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, centered};
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::request::Request;
-use crate::console::resimulation::{BranchesFound, BranchesQuestion};
-use crate::console::screens::Look;
-use crate::console::theme::Role;
-use crate::session::{FORMS, Refusal};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, centered};
+use crate::effect::Effect;
+use crate::message::News;
+use crate::request::Request;
+use crate::resimulation::{BranchesFound, BranchesQuestion};
+use crate::screens::Look;
+use crate::theme::Role;
 use decisions::Decisions;
+use novamind_session::{FORMS, Refusal};
 use outcome::Figures;
 
 /// Futures that are drawn.

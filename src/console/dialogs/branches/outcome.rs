@@ -2,16 +2,16 @@
 
 use ratatui::layout::Rect;
 
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, fit, rows_of};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::chart;
-use crate::console::widgets::{Axis, Line, Side, Unit};
-use crate::report::whatif::{
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, fit, rows_of};
+use crate::theme::Role;
+use crate::widgets::chart::chart;
+use crate::widgets::{Axis, Line, Side, Unit};
+use novamind_report::whatif::{
     bankrupt, branch_line, cell, cell_in_two, decisions, difference_line, futures_cell, futures_cell_in_two,
     futures_heading, heading, week_of_milestone,
 };
-use crate::session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
+use novamind_session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
 
 /// Rows of a chart that is worth drawing.
 const LEAST_CHART: u16 = 6;

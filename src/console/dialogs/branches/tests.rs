@@ -3,9 +3,9 @@
 use serde_json::json;
 
 use super::*;
-use crate::console::keys::Keys;
-use crate::console::test_kit::{company, dialog_picture, in_dialog};
-use crate::session::{DecisionEdit, PastCall, PastDecision, ToolId};
+use crate::keys::Keys;
+use crate::test_kit::{company, dialog_picture, in_dialog};
+use novamind_session::{DecisionEdit, PastCall, PastDecision, ToolId};
 
 const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 

@@ -3,18 +3,20 @@
 use ratatui::layout::Rect;
 
 use super::{CurvePage, ExploredCurve};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::dialogs::Dialog;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
-use crate::console::widgets::scale::Unit;
-use crate::notation::{dollars, price_to_cents};
-use crate::report::curve::{basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality};
-use crate::session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
-use crate::world::identifiers::Plan;
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::dialogs::Dialog;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
+use crate::widgets::scale::Unit;
+use novamind_base::notation::{dollars, price_to_cents};
+use novamind_report::curve::{
+    basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality,
+};
+use novamind_session::identifiers::Plan;
+use novamind_session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
 
 /// Widest that reads well.
 const WIDEST: u16 = 140;

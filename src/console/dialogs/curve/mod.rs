@@ -11,14 +11,14 @@ use ratatui::layout::Rect;
 use serde_json::{Map, Value, json};
 
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::screens::Look;
-use crate::session::{CurveExplorer, CurveOutcome, PlanPoint, Refusal};
-use crate::tools::ToolId;
-use crate::world::identifiers::{ByPlan, Group, Plan};
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::screens::Look;
+use novamind_session::identifiers::{ByPlan, Group, Plan};
+use novamind_session::{CurveExplorer, CurveOutcome, PlanPoint, Refusal};
+use novamind_tools::ToolId;
 
 /// Qualities are dragged by this much, with page keys by ten times as much.
 const QUALITY_STEP: f64 = 0.01;

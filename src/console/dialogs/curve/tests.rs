@@ -1,9 +1,9 @@
 //! The explorer is dragged with keys, says what would come of it, and changes nothing.
 
 use super::*;
-use crate::console::company::Company;
-use crate::console::keys::Keys;
-use crate::console::test_kit::{dialog_picture, in_dialog, played};
+use crate::company::Company;
+use crate::keys::Keys;
+use crate::test_kit::{dialog_picture, in_dialog, played};
 
 fn explored(group: &str) -> (CurvePage, Company) {
     let mut session = played(1);

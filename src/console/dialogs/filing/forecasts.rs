@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 
 use super::{FilingDialog, HORIZONS};
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::company::Company;
-use crate::console::screens::Look;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::fan::draw_fan;
-use crate::notation::{dollars, percent};
-use crate::session::Bands;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::company::Company;
+use crate::screens::Look;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::fan::draw_fan;
+use novamind_base::notation::{dollars, percent};
+use novamind_session::Bands;
 
 impl FilingDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

@@ -9,20 +9,20 @@ use ratatui::layout::Rect;
 
 use self::review::Review;
 use super::{Dialog, Outcome};
-use crate::console::action::{Action, Scope};
-use crate::console::attention::BETWEEN_CELLS;
-use crate::console::canvas::{Canvas, centered, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::Look;
-use crate::console::text::number;
-use crate::console::theme::Role;
-use crate::console::widgets::field::ONLY_NUMBERS;
-use crate::console::widgets::{Editor, Field};
-use crate::notation::{grouped, parse_number};
-use crate::session::Forecasts;
-use crate::tools::{Forecast, ToolId};
+use crate::action::{Action, Scope};
+use crate::attention::BETWEEN_CELLS;
+use crate::canvas::{Canvas, centered, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::Look;
+use crate::text::number;
+use crate::theme::Role;
+use crate::widgets::field::ONLY_NUMBERS;
+use crate::widgets::{Editor, Field};
+use novamind_base::notation::{grouped, parse_number};
+use novamind_session::Forecasts;
+use novamind_tools::{Forecast, ToolId};
 
 /// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -347,7 +347,7 @@ impl Dialog for FilingDialog {
                 self.problem = (!self.cell().number_key(key)).then(|| ONLY_NUMBERS.to_owned());
             }
             FilingStep::Forecasts => {
-                let starts = crate::console::keys::Chord::of(key).begins_number();
+                let starts = crate::keys::Chord::of(key).begins_number();
                 if starts {
                     self.before = self.cell().clone();
                     *self.cell() = Field::default();
@@ -428,7 +428,7 @@ impl FilingDialog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::measures::PLANNING_WORDS;
+    use novamind_report::measures::PLANNING_WORDS;
 
     #[test]
     fn nothing_that_asks_for_a_rationale_says_a_word_that_is_counted_in_it() {

@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::text::{number, wrapped};
-use crate::console::theme::Role;
-use crate::console::widgets::Scroll;
-use crate::report::research::late_lines;
-use crate::report::review::{alike_lines, money_lines};
-use crate::tools::ToolId;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::text::{number, wrapped};
+use crate::theme::Role;
+use crate::widgets::Scroll;
+use novamind_report::research::late_lines;
+use novamind_report::review::{alike_lines, money_lines};
+use novamind_tools::ToolId;
 
 /// How far the review is scrolled.
 #[derive(Default)]

@@ -6,15 +6,15 @@ use ratatui::symbols::Marker;
 
 use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
 use super::{Cash, ledger_rows, week_keys};
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, fit};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::Unit;
-use crate::console::widgets::chart::NO_DATA;
-use crate::console::widgets::scale::ticks;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, fit};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::Unit;
+use crate::widgets::chart::NO_DATA;
+use crate::widgets::scale::ticks;
 
 /// Narrowest column of a week, with the gap.
 const NARROWEST: u16 = 3;
@@ -264,7 +264,7 @@ fn draw_eighths(
 fn draw_net(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
     let net: f64 = amounts.iter().sum();
     let (sign, role) = if net < 0.0 { ('-', Role::Bad) } else { ('+', Role::Good) };
-    let text = format!("{sign}{}", crate::notation::compact(net.abs()));
+    let text = format!("{sign}{}", novamind_base::notation::compact(net.abs()));
     canvas.aligned(place, &fit(&text, place.width as usize), role, Align::Right);
 }
 
@@ -327,9 +327,9 @@ mod tests {
 
     /// The bars of a company as cells, in a theme and with a marker.
     fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
-        use crate::console::test_kit::played;
-        let books = Books::of(&crate::console::company::Company::of(&played(6)));
-        let theme = crate::console::theme::Theme::find(theme, &crate::session::Configuration::shipped());
+        use crate::test_kit::played;
+        let books = Books::of(&crate::company::Company::of(&played(6)));
+        let theme = crate::theme::Theme::find(theme, &novamind_session::Configuration::shipped());
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 60, 20);
         let mut buffer = ratatui::buffer::Buffer::empty(area);
@@ -341,13 +341,13 @@ mod tests {
 
     #[test]
     fn the_net_of_a_week_stands_below_it_with_its_sign() {
-        let books = Books::of(&crate::console::company::Company::of(&crate::console::test_kit::played(6)));
+        let books = Books::of(&crate::company::Company::of(&crate::test_kit::played(6)));
         let picture: String =
             painted("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
         for (week, amounts) in books.last_weeks(6) {
             let net: f64 = amounts.iter().sum();
             let sign = if net < 0.0 { "-" } else { "+" };
-            let told = format!("{sign}{}", crate::notation::compact(net.abs()));
+            let told = format!("{sign}{}", novamind_base::notation::compact(net.abs()));
             assert!(picture.contains(&told), "{told} of week {week} in {picture}");
         }
     }

@@ -4,16 +4,16 @@ use ratatui::layout::Rect;
 
 use super::model::{Amounts, Books, CATEGORIES, Subject, days_of, money, side};
 use super::{Cash, Selected, ledger_rows};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{arrow, short_dollars};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::{compact, dollars, percent};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{arrow, short_dollars};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_base::notation::{compact, dollars, percent};
 
 /// The table of a week.
 pub struct BooksPane;

@@ -4,17 +4,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::{Subject, cash_around, days_of};
 use super::{Cash, Selected, ledger_rows, week_keys};
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{arrow, short_dollars};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{note_room, summary, zero_if_near};
-use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
-use crate::notation::dollars;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{arrow, short_dollars};
+use crate::theme::Role;
+use crate::widgets::chart::{note_room, summary, zero_if_near};
+use crate::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_base::notation::dollars;
 
 /// Width of the figures beside the bars of the weeks.
 const SIDE: u16 = 8;

@@ -4,18 +4,18 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::short_dollars;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::note_room;
-use crate::console::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
-use crate::notation::percent;
-use crate::session::{ScoredForecast, Verdict, filed_forecasts};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::short_dollars;
+use crate::theme::Role;
+use crate::widgets::chart::note_room;
+use crate::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
+use novamind_base::notation::percent;
+use novamind_session::{ScoredForecast, Verdict, filed_forecasts};
 
 /// Forecasts of one horizon, as a curve and as a list.
 pub struct ForecastsPane;

@@ -17,12 +17,12 @@ use self::forecasts::Outlook;
 use self::model::{Books, CashStep, Subject, statement, waterfall};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::widgets::Table;
-use crate::session::WeekQuantity;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::widgets::Table;
+use novamind_session::WeekQuantity;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

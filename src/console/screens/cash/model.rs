@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::console::company::Company;
-use crate::notation::grouped;
-use crate::report::category_name;
-use crate::session::{Booked, Category, WeekFigure, entries_of_weeks, week_of};
+use crate::company::Company;
+use novamind_base::notation::grouped;
+use novamind_report::category_name;
+use novamind_session::{Booked, Category, WeekFigure, entries_of_weeks, week_of};
 
 /// A category of the ledger on this screen.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 use super::model::*;
 use super::*;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
+use crate::screens::Screen;
+use crate::test_kit::{act, drawn, played, shown, sweep};
+use novamind_session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
 
 #[test]
 fn the_books_agree_with_the_ledger() {
@@ -76,7 +76,7 @@ fn every_figure_of_the_books_is_made_of_its_rows() {
     let mut session = played(6);
     let company = Company::of(&session);
     let mut screen: Cash = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let books = screen.books.clone();
     for row in 0..screen.subjects.len() {
@@ -89,7 +89,7 @@ fn every_figure_of_the_books_is_made_of_its_rows() {
             let figure = screen.figure(&look).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
             let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-            let made = crate::session::number_at(&rows.rows[0], 0);
+            let made = novamind_session::number_at(&rows.rows[0], 0);
             let shown = subject.of(&amounts);
             assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);
             for _ in 1..column {
@@ -105,7 +105,7 @@ fn every_pane_says_which_figure_is_selected() {
     let mut session = played(5);
     let company = Company::of(&session);
     let mut screen: Cash = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
     screen.focus_on(CashPane::Waterfall);
@@ -140,7 +140,7 @@ fn a_pane_can_have_the_whole_screen() {
         (CashPane::Curve, "week 5: $"),
     ] {
         screen.focus_on(pane);
-        let text = crate::console::test_kit::zoomed(&screen, &company, 80, 21);
+        let text = crate::test_kit::zoomed(&screen, &company, 80, 21);
         assert!(text.lines().next().is_some_and(|line| line.contains(words)), "{words} in\n{text}");
         assert_eq!(text.matches('┏').count(), 1, "{text}");
     }

@@ -4,17 +4,17 @@ use ratatui::layout::Rect;
 
 use super::model::{CashStep, cash_around, money, waterfall};
 use super::{Cash, Selected, ledger_rows, week_keys};
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{arrow, short_dollars};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::NO_DATA;
-use crate::console::widgets::table::first_row;
-use crate::notation::dollars;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{arrow, short_dollars};
+use crate::theme::Role;
+use crate::widgets::chart::NO_DATA;
+use crate::widgets::table::first_row;
+use novamind_base::notation::dollars;
 
 /// The steps of a week.
 pub struct WaterfallPane;

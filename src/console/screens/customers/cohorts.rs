@@ -6,18 +6,18 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::show_rows;
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::note_room;
-use crate::console::widgets::table::first_row;
-use crate::notation::{compact, percent};
-use crate::session::Rows;
-use crate::session::{number_at, text_at};
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::chart::note_room;
+use crate::widgets::table::first_row;
+use novamind_base::notation::{compact, percent};
+use novamind_session::Rows;
+use novamind_session::{number_at, text_at};
+use novamind_session::identifiers::Group;
 
 /// Width of the names of cohorts with their sizes, and of a cell.
 const NAMES: u16 = 14;
@@ -268,7 +268,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, share: f64, here: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Cell;
+    use novamind_session::Cell;
 
     #[test]
     fn a_cohort_only_shrinks() {

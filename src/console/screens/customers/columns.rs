@@ -2,14 +2,14 @@
 
 use super::hidden::TrueValue;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
-use crate::console::company::Company;
-use crate::console::screens::Figure;
-use crate::console::screens::market::model::{level_of, name_of};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, spark};
-use crate::notation::{cents, compact, dollars, grouped, percent};
-use crate::session::{WeekFigure, WeekQuantity, truth_behind};
-use crate::world::identifiers::Group;
+use crate::company::Company;
+use crate::screens::Figure;
+use crate::screens::market::model::{level_of, name_of};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, spark};
+use novamind_base::notation::{cents, compact, dollars, grouped, percent};
+use novamind_session::{WeekFigure, WeekQuantity, truth_behind};
+use novamind_session::identifiers::Group;
 
 /// What a column is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

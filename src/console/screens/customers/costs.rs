@@ -3,18 +3,18 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::{cents, dollars, grouped};
-use crate::report::lead_costs::{AdSpell, PairCost};
-use crate::tools::ToolId;
-use crate::world::identifiers::{Channel, Group};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_base::notation::{cents, dollars, grouped};
+use novamind_report::lead_costs::{AdSpell, PairCost};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::{Channel, Group};
 
 /// The pairs of channel and group that are paid for.
 pub struct CostsPane;

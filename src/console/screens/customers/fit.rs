@@ -4,18 +4,18 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::{moved, show_rows};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{number, wrapped};
-use crate::console::theme::Role;
-use crate::notation::{compact, percent, price_to_cents};
-use crate::report::fit::{Beside, Concern, Fit, TruthRange};
-use crate::tools::ToolId;
-use crate::session::{WeekFigure, WeekQuantity};
-use crate::world::identifiers::Plan;
+use crate::action::Action;
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{number, wrapped};
+use crate::theme::Role;
+use novamind_base::notation::{compact, percent, price_to_cents};
+use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
+use novamind_tools::ToolId;
+use novamind_session::{WeekFigure, WeekQuantity};
+use novamind_session::identifiers::Plan;
 
 /// Words left of the lines of each part.
 const NAMES: usize = 8;

@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 
 use super::opened::Opened;
 use super::{Customers, columns};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::count;
-use crate::console::widgets::Table;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::count;
+use crate::widgets::Table;
 
 /// The table of the groups.
 pub struct CustomerGroupsPane;

@@ -4,19 +4,19 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::model::{MarketRows, ad_budget};
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::count;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::notation::{dollars, grouped};
-use crate::report::measures::ENOUGH_LEADS;
-use crate::tools::ToolId;
-use crate::world::identifiers::Channel;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::count;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_base::notation::{dollars, grouped};
+use novamind_report::measures::ENOUGH_LEADS;
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Channel;
 
 /// The map.
 pub struct ChannelsPane;

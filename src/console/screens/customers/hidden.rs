@@ -1,11 +1,11 @@
 //! True values of groups in the table, where they are shown.
 
-use crate::console::company::Company;
-use crate::console::theme::Role;
-use crate::console::widgets::Cell;
-use crate::notation::grouped;
-use crate::session::TrueGroup;
-use crate::world::identifiers::Group;
+use crate::company::Company;
+use crate::theme::Role;
+use crate::widgets::Cell;
+use novamind_base::notation::grouped;
+use novamind_session::TrueGroup;
+use novamind_session::identifiers::Group;
 
 /// A true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

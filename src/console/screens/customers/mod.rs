@@ -26,14 +26,14 @@ use self::model::MarketRows;
 use self::opened::Opened;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::readings::Reading;
-use crate::console::widgets::Table;
-use crate::session::Rows;
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::readings::Reading;
+use crate::widgets::Table;
+use novamind_session::Rows;
+use novamind_session::identifiers::Group;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::console::company::Company;
-use crate::console::readings::Reading;
-use crate::session::Rows;
-use crate::session::{number_at, text_at};
-use crate::tools::ToolId;
-use crate::world::identifiers::{Channel, Group, Plan};
+use crate::company::Company;
+use crate::readings::Reading;
+use novamind_session::Rows;
+use novamind_session::{number_at, text_at};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::{Channel, Group, Plan};
 
 /// Weeks that the curves show.
 pub const WEEKS: u32 = 12;
@@ -210,7 +210,7 @@ impl MarketRows {
         }
     }
 
-    fn take_held(&mut self, row: &[crate::session::Cell], take: impl Fn(&mut Held, &[crate::session::Cell])) {
+    fn take_held(&mut self, row: &[novamind_session::Cell], take: impl Fn(&mut Held, &[novamind_session::Cell])) {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
             let facts = self.groups.entry(group).or_default();
@@ -218,7 +218,7 @@ impl MarketRows {
         }
     }
 
-    fn take_arrivals(&mut self, row: &[crate::session::Cell]) {
+    fn take_arrivals(&mut self, row: &[novamind_session::Cell]) {
         let Some(group) = Group::parse(text_at(row, 1)) else { return };
         let (leads, signed) = (number_at(row, 3), number_at(row, 4));
         let facts = self.groups.entry(group).or_default();

@@ -8,9 +8,9 @@ use super::fit::FitPane;
 use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
-use crate::console::canvas::Canvas;
-use crate::console::screens::panes::{Pane, Seat, draw_pane};
-use crate::console::screens::Look;
+use crate::canvas::Canvas;
+use crate::screens::panes::{Pane, Seat, draw_pane};
+use crate::screens::Look;
 
 /// Where the person is in an open group.
 #[derive(Debug)]

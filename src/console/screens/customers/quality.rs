@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::Band;
-use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
-use crate::world::identifiers::{Group, Plan};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::chart::Band;
+use crate::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_session::identifiers::{Group, Plan};
 
 /// The quality of every plan, and the band of the floor.
 pub struct QualityByWeekPane;
@@ -59,7 +59,7 @@ pub fn quality_by_week(company: &Company, group: Group, plan: Plan) -> Vec<(f64,
 /// Least and greatest floor at the end of each week since the group is known.
 pub fn floor_by_week(company: &Company, group: Group) -> Vec<(f64, f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
-    let end = |(at, week): (usize, &crate::world::identifiers::ByGroup<crate::session::GroupWeek>)| {
+    let end = |(at, week): (usize, &novamind_session::identifiers::ByGroup<novamind_session::GroupWeek>)| {
         let (least, most) = week[group].floor?;
         Some(((at + 1) as f64, least, most))
     };

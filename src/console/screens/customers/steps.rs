@@ -1,8 +1,8 @@
 //! Steps in the panes of an open group: along their lines, and on to the rows behind a figure.
 
-use crate::console::action::Action;
-use crate::console::effect::Effect;
-use crate::console::screens::Figure;
+use crate::action::Action;
+use crate::effect::Effect;
+use crate::screens::Figure;
 
 /// A place in a list after an action.
 pub fn moved(at: usize, last: usize, action: Action) -> usize {

@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::{moved, show_rows};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::market::model::level_of;
-use crate::console::screens::market::report;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::notation::percent;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::market::model::level_of;
+use crate::screens::market::report;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use novamind_base::notation::percent;
 
 /// Its estimates.
 pub struct StudyPane;

@@ -1,10 +1,10 @@
 use super::model::*;
 use super::*;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::{Cell as Value, Session};
-use crate::tools::ToolId;
-use crate::world::identifiers::Channel;
+use crate::screens::Screen;
+use crate::test_kit::{act, drawn, played, shown, sweep};
+use novamind_session::{Cell as Value, Session};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Channel;
 
 fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
@@ -88,7 +88,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     act(&mut screen, Action::Up, &company);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(
-        matches!(effects[..], [Effect::ShowGroup(crate::console::screens::ScreenId::Market, group)]
+        matches!(effects[..], [Effect::ShowGroup(crate::screens::ScreenId::Market, group)]
         if group.id() == "S2"),
         "{effects:?}"
     );
@@ -107,7 +107,7 @@ fn a_group_opens_and_leads_to_its_tools() {
 fn made(session: &mut Session, sql: &str, what: &str) -> f64 {
     let sql = format!("SELECT coalesce({what}, 0) FROM ({sql})");
     let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-    crate::session::number_at(&rows.rows[0], 0)
+    novamind_session::number_at(&rows.rows[0], 0)
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
     let mut session = played(9);
     let company = Company::of(&session);
     let mut screen: Customers = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
     screen.focus_on(CustomersPane::Cohorts);
@@ -152,7 +152,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
         let sql = figure.sql.expect("rows");
         let kept = made(&mut session, &sql, "count(*)");
         let size = made(&mut session, sql.split("\n    AND (s.status").next().expect("words"), "count(*)");
-        let share = crate::notation::percent(kept / size, 1);
+        let share = novamind_base::notation::percent(kept / size, 1);
         assert!(
             figure.title.starts_with(&format!("{share} of the S1 customers")),
             "{}: {share}",
@@ -171,7 +171,7 @@ fn every_pane_of_a_group_has_its_figures() {
     let mut session = played(8);
     let company = Company::of(&session);
     let mut screen: Customers = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
     let mut rows = 0;

@@ -4,15 +4,15 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use super::steps::moved;
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Look, ScreenId};
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::tools::ToolId;
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Look, ScreenId};
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Group;
 
 /// Tools of a group, and what they do for it.
 const TOOLS: [(ToolId, &str); 6] = [

@@ -6,17 +6,17 @@ use super::columns::flow_statement;
 use super::model::{self, CustomerFacts, Flow};
 use super::steps::{moved, show_rows};
 use super::{Customers, CustomersPane};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{arrow, count};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{note_room, summary, zero_if_near};
-use crate::console::widgets::{Axis, Line, Plot, Side, Unit};
-use crate::notation::{compact, grouped};
-use crate::session::{WeekFigure, WeekQuantity};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::screens::{Figure, Look};
+use crate::text::{arrow, count};
+use crate::theme::Role;
+use crate::widgets::chart::{note_room, summary, zero_if_near};
+use crate::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_base::notation::{compact, grouped};
+use novamind_session::{WeekFigure, WeekQuantity};
 
 /// Flows that can be selected: leads, new, cancelled.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [

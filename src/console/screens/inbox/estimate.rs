@@ -1,10 +1,10 @@
 //! What the seats of a company would cost in compute: an estimate from what the player can see.
 
 use super::model::Thread;
-use crate::console::company::Company;
-use crate::rules::{Market, SeatUsage};
-use crate::tools::ToolId;
-use crate::world::identifiers::{Group, Plan};
+use crate::company::Company;
+use novamind_rules::{Market, SeatUsage};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::{Group, Plan};
 
 /// Days of a month of compute, as the screen of the product counts them.
 const MONTH: f64 = 30.0;
@@ -70,15 +70,15 @@ fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::company;
-    use crate::session::{Cell, Rows};
+    use crate::test_kit::company;
+    use novamind_session::{Cell, Rows};
 
     #[test]
     fn compute_is_what_the_group_uses_at_the_cost_of_the_model() {
         let set_quota = |company: &mut Company, units: f64| {
             let quotas = serde_json::json!({"A": 1.0, "B": units, "C": 1.0});
             company.settings.insert(
-                crate::tools::ToolId::SetUsageQuotas,
+                novamind_tools::ToolId::SetUsageQuotas,
                 quotas.as_object().cloned().expect("an object"),
             );
         };

@@ -5,15 +5,15 @@ use ratatui::layout::Rect;
 use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, InboxView, post};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{count, wrapped};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::grouped;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{count, wrapped};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_base::notation::grouped;
 
 /// Columns of a name in a narrow list: the number beside it tells companies apart.
 const NAME: u16 = 14;

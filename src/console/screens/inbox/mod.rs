@@ -25,19 +25,19 @@ use self::outcomes::Outcomes;
 use self::ruling::Ruling;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenId, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::readings::Reading;
-use crate::console::widgets::Table;
-use crate::console::widgets::field::{Field, ONLY_NUMBERS};
-use crate::notation::parse_number;
-use crate::rules::{self, AskingThread, SeatUsage};
-use crate::session::Rows;
-use crate::tools::ToolId;
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::{Canvas, Click};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::readings::Reading;
+use crate::widgets::Table;
+use crate::widgets::field::{Field, ONLY_NUMBERS};
+use novamind_base::notation::parse_number;
+use novamind_rules::{AskingThread, SeatUsage};
+use novamind_session::Rows;
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Group;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -122,7 +122,7 @@ pub struct Inbox {
     /// What seats of companies use.
     usage: SeatUsage,
     /// Plans that companies named with their prices.
-    named: rules::Letters,
+    named: novamind_rules::Letters,
     /// Rules while they are typed, and those that were sent last.
     ruling: Option<Ruling>,
     /// What became of first offers, while it stands in the place of the list.
@@ -254,7 +254,7 @@ impl Inbox {
                 self.edit(|term| {
                     term.value = value;
                     if term.plan == TermChoice::Nothing {
-                        term.plan = TermChoice::Fixed(crate::world::identifiers::Plan::B);
+                        term.plan = TermChoice::Fixed(novamind_session::identifiers::Plan::B);
                     }
                 });
                 Vec::new()
@@ -333,7 +333,7 @@ impl ScreenState for Inbox {
                 return;
             }
             Reading::Usage => self.usage = SeatUsage::read(rows),
-            Reading::LastLetters => self.named = rules::Letters::read(rows),
+            Reading::LastLetters => self.named = novamind_rules::Letters::read(rows),
             _ => self.letters.take(reading, rows),
         }
         self.refresh(look.company);

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::console::readings::Reading;
-use crate::rules::{AskingThread, offer_of, plan_in};
-use crate::session::{CompanyNames, Rows};
-use crate::session::{number_at, text_at};
-use crate::world::identifiers::Plan;
+use crate::readings::Reading;
+use novamind_rules::{AskingThread, offer_of, plan_in};
+use novamind_session::{CompanyNames, Rows};
+use novamind_session::{number_at, text_at};
+use novamind_session::identifiers::Plan;
 
 /// One row of a thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -272,7 +272,7 @@ fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
 }
 
 fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
-    let firm = |row: &Vec<crate::session::Cell>| {
+    let firm = |row: &Vec<novamind_session::Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
         let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
         let firm = Firm {

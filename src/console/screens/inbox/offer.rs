@@ -1,8 +1,8 @@
 //! Offers as the person writes them: plans at prices, fixed or relative to the list or to what a company asks.
 
 use super::model::Thread;
-use crate::notation::grouped;
-use crate::world::identifiers::Plan;
+use novamind_base::notation::grouped;
+use novamind_session::identifiers::Plan;
 
 /// ToolLimits of an offer, at most as many as a company accepts in one message.
 pub const TERMS: usize = 3;

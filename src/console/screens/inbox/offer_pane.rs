@@ -8,17 +8,17 @@ use super::model::Thread;
 use super::offer::{TermChoice, Offer, TERMS};
 use super::post::{self, summary};
 use super::{Inbox, list_prices};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::field::ONLY_NUMBERS;
-use crate::notation::{cents, dollars, grouped, percent};
-use crate::world::identifiers::Plan;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::field::ONLY_NUMBERS;
+use novamind_base::notation::{cents, dollars, grouped, percent};
+use novamind_session::identifiers::Plan;
 
 /// Width in which a line of the offer has all its columns.
 pub const WORTH: u16 = 59;

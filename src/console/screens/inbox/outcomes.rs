@@ -3,17 +3,17 @@
 use ratatui::layout::Rect;
 
 use super::{Inbox, InboxPane};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::readings::Reading;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::grouped;
-use crate::session::{Rows, number_at, text_at};
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::readings::Reading;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_base::notation::grouped;
+use novamind_session::{Rows, number_at, text_at};
 
 /// What the screen asks the database for while they are shown.
 pub const READINGS: [Reading; 5] = [
@@ -62,7 +62,7 @@ impl Outcomes {
     }
 }
 
-fn outcome_of(row: &[crate::session::Cell]) -> FirstOffers {
+fn outcome_of(row: &[novamind_session::Cell]) -> FirstOffers {
     let number = |at| number_at(row, at);
     FirstOffers {
         group: text_at(row, 0).to_owned(),
@@ -217,7 +217,7 @@ impl Pane<Inbox> for OutcomesPane {
             Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.number),
         };
         let lines = wrapped(&text, seat.area.width as usize);
-        for (row, line) in crate::console::canvas::rows_of(seat.area).zip(lines) {
+        for (row, line) in crate::canvas::rows_of(seat.area).zip(lines) {
             canvas.text(row, &line, Role::Dim);
         }
     }

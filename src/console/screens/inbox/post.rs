@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, list_prices};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::screens::Figure;
-use crate::console::text::count;
-use crate::notation::dollars;
-use crate::tools::{Answer, DealResult, ToolId};
-use crate::world::identifiers::Plan;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::screens::Figure;
+use crate::text::count;
+use novamind_base::notation::dollars;
+use novamind_tools::{Answer, DealResult, ToolId};
+use novamind_session::identifiers::Plan;
 
 /// Tools of this screen.
 const SEND: ToolId = ToolId::SendEnterpriseDeal;

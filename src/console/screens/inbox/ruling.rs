@@ -6,18 +6,18 @@ use serde_json::Value;
 
 use super::{Inbox, InboxPane};
 use super::estimate::market_of;
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::screens::panes::{Border, Seat, draw_pane};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::notation::{cents, json_number};
-use crate::rules::{self, AskingThread, Batch, Problem, RuledThread};
-use crate::tools::ToolId;
-use crate::world::identifiers::Plan;
+use crate::canvas::{Canvas, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::screens::panes::{Border, Seat, draw_pane};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use novamind_base::notation::{cents, json_number};
+use novamind_rules::{AskingThread, Batch, Problem, RuledThread};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Plan;
 
 /// What is typed at first: whoever asks for a plan at its list price or more is accepted. Plans without a price are left out.
 fn first_rules(company: &Company) -> String {
@@ -53,7 +53,7 @@ impl Ruling {
 
     /// Finds out anew what the rules do.
     pub fn judge(&mut self, threads: &[AskingThread], company: &Company, inbox: &Inbox) {
-        self.outcome = rules::parse(self.field.text())
+        self.outcome = novamind_rules::parse(self.field.text())
             .map(|rules| Batch::of(rules, threads.to_vec(), &market_of(company, &inbox.usage)));
     }
 
@@ -133,7 +133,7 @@ impl Inbox {
     /// What the rules that were sent last answer to those who wait now, call by call, and the same in words; none where they
     /// send nothing.
     pub fn answers_of_before(&self, company: &Company) -> Option<(Vec<(ToolId, Value)>, String)> {
-        let rules = rules::parse(self.last_rules.as_deref()?).ok()?;
+        let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
         let batch = Batch::of(rules, self.asking(company), &market_of(company, &self.usage));
         let calls = batch.calls();
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
@@ -141,7 +141,7 @@ impl Inbox {
 
     /// The border of the rules.
     pub(super) fn rules_border(&self, look: &Look<'_>) -> Border {
-        use crate::console::action::Action::{Discard, SendOffer};
+        use crate::action::Action::{Discard, SendOffer};
         let keys = format!("{} · ctrl-n empty the line · {}", look.hint(SendOffer), look.hint(Discard));
         Border { title: "Rules".to_owned(), note: "first match answers".to_owned(), keys, ..Border::default() }
     }

@@ -3,13 +3,13 @@ use serde_json::{Value, json};
 use super::model::Turn;
 use super::outcomes::OutcomesPane;
 use super::*;
-use crate::console::keys::{Chord, Keys};
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, company, courted, drawn, shown, sweep};
-use crate::console::request::Request;
-use crate::session::{Cell as Datum, Via, WaitingThread, number_at};
-use crate::tools::{Answer, DealResult, DealResults, ToolId};
-use crate::world::identifiers::Plan;
+use crate::keys::{Chord, Keys};
+use crate::screens::Screen;
+use crate::test_kit::{act, company, courted, drawn, shown, sweep};
+use crate::request::Request;
+use novamind_session::{Cell as Datum, Via, WaitingThread, number_at};
+use novamind_tools::{Answer, DealResult, DealResults, ToolId};
+use novamind_session::identifiers::Plan;
 
 /// A company with waiting threads: every third is a subscriber with a price of its own.
 fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
@@ -314,8 +314,8 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
     let mut screen: Inbox = shown(&mut session, &company);
     let thread = screen.here().expect("a thread").clone();
     let money = estimate::Money::of(&screen.usage, &company, &thread, (Plan::B, 32.0));
-    let margin = crate::notation::percent(money.margin().expect("a margin"), 0);
-    let compute = crate::notation::dollars(money.compute.expect("compute"));
+    let margin = novamind_base::notation::percent(money.margin().expect("a margin"), 0);
+    let compute = novamind_base::notation::dollars(money.compute.expect("compute"));
     let text = drawn(&screen, &company, 120, 37);
     for words in ["compute", "margin", &margin, &compute, "units/seat/day", " left "] {
         assert!(text.contains(words), "{words} in\n{text}");
@@ -338,7 +338,7 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
 }
 
 /// A run whose leads were sent first offers of several plans and prices, some of them twice, over three weeks.
-fn offered() -> crate::session::Session {
+fn offered() -> novamind_session::Session {
     let mut session = courted();
     for week in 0..3 {
         for (at, thread) in session.observe().waiting.into_iter().enumerate() {

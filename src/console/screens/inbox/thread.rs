@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use super::model::{State, Thread, Turn};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, post, preview};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{count, wrapped};
-use crate::console::theme::Role;
-use crate::notation::cents;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::screens::{Figure, Look};
+use crate::text::{count, wrapped};
+use crate::theme::Role;
+use novamind_base::notation::cents;
 
 /// The thread, or the preview of a rule.
 pub struct ThreadPane;

@@ -3,18 +3,18 @@
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::{short_dollars, wrapped};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::report::whatif::kin_line;
-use crate::report::first_change_in_words;
-use crate::session::Kin;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::{short_dollars, wrapped};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_report::whatif::kin_line;
+use novamind_report::first_change_in_words;
+use novamind_session::Kin;
 
 /// The tree.
 pub struct BranchesPane;

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use crate::console::company::Company;
-use crate::console::text::{number, short_dollars};
-use crate::console::theme::Role;
-use crate::notation::{compact, dollars, grouped, signed_dollars};
-use crate::report::parameters::{entry_in_words, since_in_words};
-use crate::report::deals::deals_in_words;
-use crate::session::{CompanyNames, JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
-use crate::tools::{Forecast, Kind, Spec};
+use crate::company::Company;
+use crate::text::{number, short_dollars};
+use crate::theme::Role;
+use novamind_base::notation::{compact, dollars, grouped, signed_dollars};
+use novamind_report::parameters::{entry_in_words, since_in_words};
+use novamind_report::deals::deals_in_words;
+use novamind_session::{CompanyNames, JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
+use novamind_tools::{Forecast, Kind, Spec};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
@@ -366,7 +366,7 @@ mod tests {
     fn a_later_call_says_what_was_before() {
         let mut settings = KnownSettings::default();
         let mut said = |tool: &str, args: Value| {
-            settings.change(crate::tools::find(tool).expect("a tool").spec(), &args)
+            settings.change(novamind_tools::find(tool).expect("a tool").spec(), &args)
         };
         assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
         assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");

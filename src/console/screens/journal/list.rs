@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 
 use super::Journal;
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::widgets::Table;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::widgets::Table;
 
 /// The entries.
 pub struct EntriesPane;

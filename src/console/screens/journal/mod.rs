@@ -13,14 +13,14 @@ use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::request::Request;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Editor, Table};
-use crate::session::Kin;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::request::Request;
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Editor, Table};
+use novamind_session::Kin;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]

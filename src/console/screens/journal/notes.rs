@@ -4,11 +4,11 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::screens::panes::{Border, Pane, Seat};
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::screens::panes::{Border, Pane, Seat};
 
 /// The editor of the notes.
 pub struct NotesPane;

@@ -3,16 +3,16 @@
 use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::short_dollars;
-use crate::console::theme::Role;
-use crate::notation::percent;
-use crate::session::{ForecastScore, ScoredForecast, filed_forecasts};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::short_dollars;
+use crate::theme::Role;
+use novamind_base::notation::percent;
+use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
 
 /// Forecasts of a horizon whose day has come, the newest first.
 pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {
@@ -159,7 +159,7 @@ fn role_of(score: &ForecastScore) -> Role {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::played;
+    use crate::test_kit::played;
 
     #[test]
     fn single_forecasts_make_up_the_score_of_their_horizon_and_the_rows_of_the_database() {

@@ -1,10 +1,10 @@
 use super::*;
-use crate::console::action::Scope;
-use crate::console::company::Company;
-use crate::console::keys::Keys;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{company, picture, session, sweep};
-use crate::session::Via;
+use crate::action::Scope;
+use crate::company::Company;
+use crate::keys::Keys;
+use crate::screens::Screen;
+use crate::test_kit::{company, picture, session, sweep};
+use novamind_session::Via;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::json;
 
@@ -63,7 +63,7 @@ fn weeks_stand_with_the_newest_first() {
 
 #[test]
 fn every_row_names_what_it_is_about_and_its_rows() {
-    let mut session = crate::console::test_kit::played(2);
+    let mut session = crate::test_kit::played(2);
     let company = Company::of(&session);
     let mut screen = renewed(&company);
     let mut terms = Vec::new();
@@ -72,7 +72,7 @@ fn every_row_names_what_it_is_about_and_its_rows() {
         if let Some(sql) = &figure.sql {
             let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
             if figure.term == "cash-change" {
-                let sum: f64 = rows.iter().map(|row| crate::session::number_at(row, 1)).sum();
+                let sum: f64 = rows.iter().map(|row| novamind_session::number_at(row, 1)).sum();
                 let week = company.weeks.iter().find(|week| (week.cash_change - sum).abs() < 0.01);
                 assert!(week.is_some(), "{sql}: {sum}");
             }

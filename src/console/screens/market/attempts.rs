@@ -4,15 +4,15 @@ use ratatui::layout::Rect;
 
 use super::Market;
 use super::model::{Attempt, name_of};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::notation::dollars;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
+use novamind_base::notation::dollars;
 
 /// The attempts, and what the next one costs.
 pub struct AttemptsPane;

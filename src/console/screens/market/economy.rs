@@ -6,17 +6,17 @@ use ratatui::layout::Rect;
 use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart};
-use crate::notation::grouped;
-use crate::session::ToolLimits;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_base::notation::grouped;
+use novamind_session::ToolLimits;
 
 /// Marks of how many news of rivals a column holds, beside the fullest one.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];

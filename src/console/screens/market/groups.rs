@@ -4,16 +4,16 @@ use ratatui::layout::Rect;
 
 use super::model::{Known, level_of, name_of, study_of, target_of, undiscovered};
 use super::{Market, knowledge_of};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Field, Table};
-use crate::notation::{compact, percent};
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Field, Table};
+use novamind_base::notation::{compact, percent};
+use novamind_session::identifiers::Group;
 
 /// The table of the groups.
 pub struct KnownGroupsPane;

@@ -2,11 +2,11 @@
 
 use ratatui::layout::Rect;
 
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::notation::grouped;
-use crate::session::{HiddenValues, NextRivalMove};
+use crate::canvas::{Canvas, rows_of};
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_base::notation::grouped;
+use novamind_session::{HiddenValues, NextRivalMove};
 
 /// Rivals: what they could copy, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {
@@ -29,7 +29,7 @@ fn next_move(next: Option<&NextRivalMove>) -> String {
             "x-ray: next move on day {}: {}, or {} of what is not copied if that is more",
             next.day,
             grouped(next.sampled, 4),
-            crate::notation::percent(next.u, 0)
+            novamind_base::notation::percent(next.u, 0)
         ),
     }
 }

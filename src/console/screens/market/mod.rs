@@ -18,18 +18,18 @@ use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
 use self::news::RivalNews;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenId, ScreenState};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::posts::Posts;
-use crate::console::readings::Reading;
-use crate::console::widgets::Table;
-use crate::notation::{dollars, grouped};
-use crate::session::{Preview, Rows};
-use crate::tools::{Answer, DiscoveryAttempt, ToolId};
-use crate::world::identifiers::Group;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::posts::Posts;
+use crate::readings::Reading;
+use crate::widgets::Table;
+use novamind_base::notation::{dollars, grouped};
+use novamind_session::{Preview, Rows};
+use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
+use novamind_session::identifiers::Group;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

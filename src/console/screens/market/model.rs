@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::console::company::Company;
-use crate::console::readings::Reading;
-use crate::session::{Cell, Rows, RunningStudy};
-use crate::session::{number_at, text_at};
-use crate::world::identifiers::Group;
+use crate::company::Company;
+use crate::readings::Reading;
+use novamind_session::{Cell, Rows, RunningStudy};
+use novamind_session::{number_at, text_at};
+use novamind_session::identifiers::Group;
 
 /// Since when a group is known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use ratatui::layout::Rect;
 
 use super::{Market, hidden};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::posts::{PostKind, Post};
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, Table};
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::posts::{PostKind, Post};
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, Table};
 
 /// A piece of news.
 #[derive(Debug, Clone, PartialEq)]

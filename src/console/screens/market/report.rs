@@ -5,19 +5,19 @@ use unicode_width::UnicodeWidthStr;
 
 use super::model::{level_of, name_of, study_of, target_of};
 use super::{Market, MarketPane, knowledge_of};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::notation::{compact, dollars, grouped, percent};
-use crate::report::fit::{Fit, TruthRange};
-use crate::session::truth_behind;
-use crate::tools::{Estimates, Influence};
-use crate::world::identifiers::Group;
+use crate::action::{Action, Scope};
+use crate::canvas::{Align, Canvas, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_base::notation::{compact, dollars, grouped, percent};
+use novamind_report::fit::{Fit, TruthRange};
+use novamind_session::truth_behind;
+use novamind_tools::{Estimates, Influence};
+use novamind_session::identifiers::Group;
 
 /// A line: words to the left, figures to the right.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,11 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::console::keys::Keys;
-use crate::console::posts::PostKind;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::{Session, Via};
+use crate::keys::Keys;
+use crate::posts::PostKind;
+use crate::screens::Screen;
+use crate::test_kit::{act, drawn, played, shown, sweep};
+use novamind_session::{Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -221,7 +221,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     let figure = screen.figure(&look).expect("a figure");
     assert_eq!(figure.title, "PMI of day 1");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(crate::session::number_at(&rows[0], 1), screen.facts.economy[0].value);
+    assert_eq!(novamind_session::number_at(&rows[0], 1), screen.facts.economy[0].value);
     for focus in 0..Screen::panes(&screen) {
         screen.set_focus(focus);
         if let Some(figure) = screen.figure(&look) {
@@ -243,7 +243,7 @@ fn a_zoomed_pane_has_the_window() {
         (MarketPane::News, "Rivals", "┌ Attempts"),
     ] {
         screen.focus_on(pane);
-        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
     }

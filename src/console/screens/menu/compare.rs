@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Menu;
 use super::runs::{draw_curves, known, state};
-use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::theme::Role;
-use crate::console::widgets::spark::spark;
-use crate::notation::{compact, dollars};
-use crate::session::{Mode, RunPreview, RunSummary};
+use crate::canvas::{Align, Canvas, rows_of};
+use crate::theme::Role;
+use crate::widgets::spark::spark;
+use novamind_base::notation::{compact, dollars};
+use novamind_session::{Mode, RunPreview, RunSummary};
 
 /// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
 /// apart where colours do not.

@@ -3,15 +3,15 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::notation::dollars;
-use crate::notation::parse_number;
-use crate::session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use novamind_base::notation::dollars;
+use novamind_base::notation::parse_number;
+use novamind_session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
 
 /// Fields of a new run.
 pub(super) struct RunForm {
@@ -250,7 +250,7 @@ impl RunForm {
 }
 
 fn whole(days: u32) -> String {
-    crate::notation::grouped(f64::from(days), 0)
+    novamind_base::notation::grouped(f64::from(days), 0)
 }
 
 /// What a field that is left empty stands for.

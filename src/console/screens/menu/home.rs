@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::runs::{draw_preview, facts, state};
 use super::{Menu, Previews};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::notation::dollars;
-use crate::session::RunSummary;
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_base::notation::dollars;
+use novamind_session::RunSummary;
 
 /// Choices of the first page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::report::count;
-use crate::session::{Configuration, Lesson, LessonEntry, Mode, NewRun};
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_report::count;
+use novamind_session::{Configuration, Lesson, LessonEntry, Mode, NewRun};
 
 /// Width from which what one learns stands beside the list.
 const WIDE: u16 = 76;

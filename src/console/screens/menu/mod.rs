@@ -9,28 +9,28 @@ mod paper;
 mod path_form;
 mod runs;
 #[cfg(test)]
-pub(in crate::console) mod tests;
+pub(crate) mod tests;
 
 use std::collections::BTreeMap;
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
-use crate::console::action::{Action, Scope};
-use crate::console::agreement::Agreement;
-use crate::console::canvas::{Align, Canvas};
-use crate::console::effect::Effect;
-use crate::console::message::Instead;
-use crate::console::request::Request;
-use crate::console::theme::Role;
-use crate::console::tour;
-use crate::console::widgets::Table;
-use crate::report::class::Shown;
-use crate::session::{Access, CollectedClass, Configuration, Mode, RunPreview, RunSummary};
+use crate::action::{Action, Scope};
+use crate::agreement::Agreement;
+use crate::canvas::{Align, Canvas};
+use crate::effect::Effect;
+use crate::message::Instead;
+use crate::request::Request;
+use crate::theme::Role;
+use crate::tour;
+use crate::widgets::Table;
 use class::ClassPage;
 use form::{ROWS, RunForm};
 use home::HomeEntry;
 use lessons::LessonList;
+use novamind_report::class::Shown;
+use novamind_session::{Access, CollectedClass, Configuration, Mode, RunPreview, RunSummary};
 use path_form::{PathForm, PathWanted};
 use runs::Asked;
 

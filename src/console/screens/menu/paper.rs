@@ -3,14 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::Menu;
-use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::notation::{compact, dollars};
-use crate::report::comparable::{Obstacle, RunTerms, not_ranked_in_words};
-use crate::report::ranking::{published, published_terms};
-use crate::session::{Ended, Mode, RunSummary};
+use crate::canvas::{Align, Canvas, rows_of};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_base::notation::{compact, dollars};
+use novamind_report::comparable::{Obstacle, RunTerms, not_ranked_in_words};
+use novamind_report::ranking::{published, published_terms};
+use novamind_session::{Ended, Mode, RunSummary};
 
 /// A line of the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +112,7 @@ fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &Ranked, m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::screens::menu::tests::summary;
+    use crate::screens::menu::tests::summary;
 
     #[test]
     fn own_runs_stand_where_their_cash_puts_them() {

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::request::Request;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::report::class::Shown;
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::request::Request;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use novamind_report::class::Shown;
 
 /// Widest text that reads well.
 const WIDEST: u16 = 100;

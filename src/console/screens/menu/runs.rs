@@ -4,19 +4,19 @@ use ratatui::layout::Rect;
 
 use super::home::draw_run;
 use super::{Menu, Previews};
-use crate::console::action::Action;
-use crate::console::agreement::{Agreement, READ_FIRST};
-use crate::console::canvas::{Canvas, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::message::Instead;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
-use crate::console::text::{count, wrapped};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::zero_if_near;
-use crate::console::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
-use crate::notation::{dollars, grouped};
-use crate::session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
+use crate::action::Action;
+use crate::agreement::{Agreement, READ_FIRST};
+use crate::canvas::{Canvas, centered, rows_of};
+use crate::effect::Effect;
+use crate::message::Instead;
+use crate::request::Recorded;
+use crate::request::Request;
+use crate::text::{count, wrapped};
+use crate::theme::Role;
+use crate::widgets::chart::zero_if_near;
+use crate::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
+use novamind_base::notation::{dollars, grouped};
+use novamind_session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,13 +3,13 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
-use crate::console::test_kit::painted;
-use crate::session::{Access, Ended, Goal, Mode};
+use crate::request::Recorded;
+use crate::request::Request;
+use crate::test_kit::painted;
+use novamind_session::{Access, Ended, Goal, Mode};
 
 /// An unfinished run.
-pub(in crate::console) fn summary(id: &str) -> RunSummary {
+pub(crate) fn summary(id: &str) -> RunSummary {
     RunSummary {
         id: id.to_owned(),
         created: "2026-11-20T10:00:00Z".to_owned(),
@@ -256,7 +256,7 @@ fn the_form_shows_what_the_chosen_scenario_is_and_says() {
         for part in [
             format!("‹ {name} ›"),
             format!("scenario default: {days}"),
-            format!("scenario default: {}", crate::notation::dollars(cash)),
+            format!("scenario default: {}", novamind_base::notation::dollars(cash)),
             told,
         ] {
             assert!(screen.contains(&part), "{part} is missing in\n{screen}");

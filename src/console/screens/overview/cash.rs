@@ -5,16 +5,16 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use super::figures::{self, METRICS};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::{arrow, short_dollars};
-use crate::console::theme::Role;
-use crate::console::widgets::chart::note_room;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart, fan};
-use crate::notation::dollars;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look, ScreenId};
+use crate::text::{arrow, short_dollars};
+use crate::theme::Role;
+use crate::widgets::chart::note_room;
+use crate::widgets::{Axis, Line, Side, Unit, chart, fan};
+use novamind_base::notation::dollars;
 
 /// The curve.
 pub struct CashCurvePane;

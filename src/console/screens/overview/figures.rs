@@ -1,12 +1,12 @@
 //! The figures of the week: how each is read, written and judged, and the rows behind it.
 
-use crate::console::company::Company;
-use crate::console::screens::Figure;
-use crate::console::text::arrow;
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell, Column, spark};
-use crate::notation::{dollars, grouped, percent};
-use crate::session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, WeekQuantity, entries_of_weeks};
+use crate::company::Company;
+use crate::screens::Figure;
+use crate::text::arrow;
+use crate::theme::Role;
+use crate::widgets::{Cell, Column, spark};
+use novamind_base::notation::{dollars, grouped, percent};
+use novamind_session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, WeekQuantity, entries_of_weeks};
 
 /// A figure of the week.
 pub struct Metric {

@@ -19,12 +19,12 @@ use self::news::NewsItem;
 use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
 use super::{Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::readings::Reading;
-use crate::console::widgets::Table;
-use crate::session::Rows;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::readings::Reading;
+use crate::widgets::Table;
+use novamind_session::Rows;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -4,16 +4,16 @@ use ratatui::layout::Rect;
 
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::customers::costs;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::theme::Role;
-use crate::report::needs::{Need, Place, Problem};
-use crate::session::{WeekFigure, WeekQuantity, entries_of_weeks};
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::customers::costs;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look, ScreenId};
+use crate::theme::Role;
+use novamind_report::needs::{Need, Place, Problem};
+use novamind_session::{WeekFigure, WeekQuantity, entries_of_weeks};
 
 /// What needs the person, the most urgent first.
 pub struct NeedsPane;

@@ -4,18 +4,18 @@ use ratatui::layout::Rect;
 
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::posts::PostKind as Author;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::product::model::Project;
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::theme::Role;
-use crate::notation::grouped;
-use crate::session::Rows;
-use crate::session::text_at;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::posts::PostKind as Author;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::product::model::Project;
+use crate::screens::{Figure, Look, ScreenId};
+use crate::theme::Role;
+use novamind_base::notation::grouped;
+use novamind_session::Rows;
+use novamind_session::text_at;
 
 /// What is new.
 pub struct NewsPane;

@@ -4,20 +4,20 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::text::number;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::note_room;
-use crate::console::widgets::{Cell, Column, Table};
-use crate::report::fit::Beside;
-use crate::session::DeliveredQuality;
-use crate::tools::ToolId;
-use crate::world::identifiers::Plan;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look, ScreenId};
+use crate::text::number;
+use crate::theme::Role;
+use crate::widgets::chart::note_room;
+use crate::widgets::{Cell, Column, Table};
+use novamind_report::fit::Beside;
+use novamind_session::DeliveredQuality;
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Plan;
 
 /// Columns of the floor and of the group's own bonus.
 const FLOOR: usize = 4;

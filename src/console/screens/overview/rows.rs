@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, fit};
-use crate::console::screens::ScreenId;
-use crate::console::screens::panes::Seat;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, fit};
+use crate::screens::ScreenId;
+use crate::screens::panes::Seat;
+use crate::text::wrapped;
+use crate::theme::Role;
 
 /// Moves a selection among rows.
 pub fn walk(selected: &mut usize, rows: usize, action: Action) {

@@ -1,9 +1,9 @@
 use super::*;
-use crate::console::effect::Effect;
-use crate::console::screens::{Screen, ScreenId};
-use crate::console::test_kit::{act, courted, drawn, played, shown, sweep};
-use crate::report::needs::{Place, Problem};
-use crate::session::{Cell as Value, Session};
+use crate::effect::Effect;
+use crate::screens::{Screen, ScreenId};
+use crate::test_kit::{act, courted, drawn, played, shown, sweep};
+use novamind_report::needs::{Place, Problem};
+use novamind_session::{Cell as Value, Session};
 use news::NewsKind;
 
 fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
@@ -59,7 +59,7 @@ fn the_selected_figure_names_figure_and_weeks() {
     let mut session = played(6);
     let company = Company::of(&session);
     let mut screen: Overview = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.focus_on(OverviewPane::Week);
     let title = |screen: &Overview| screen.figure(&look).expect("a figure").title;
@@ -117,7 +117,7 @@ fn what_is_selected_is_explained_by_a_term_or_a_tool() {
     let kinds = [NewsKind::Research, NewsKind::Study, NewsKind::Economy, NewsKind::Posts, NewsKind::Press];
     let news = kinds.map(|kind| news::NewsItem { kind, text: String::new() }.figure(day).term);
     for term in needs.chain(metrics).chain(news) {
-        let kind = crate::glossary::subject(term).map(|subject| subject.kind());
+        let kind = novamind_glossary::subject(term).map(|subject| subject.kind());
         assert!(matches!(kind, Some("term" | "tool")), "{term}: {kind:?}");
     }
 }
@@ -139,11 +139,11 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
     let need = &company.needs[0];
     assert_eq!(need.problem, Problem::NoPrice);
     let Effect::Prefill { tool, arguments } = needs::way_of(need) else { panic!("{need:?}") };
-    let mut tools = crate::console::screens::tools::Tools::default();
+    let mut tools = crate::screens::tools::Tools::default();
     let effects = tools.prefill(tool, &arguments, &company);
     let [Effect::Check { tool, arguments: checked }] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(*checked, arguments);
-    session.call(tool, checked, crate::session::Via::Form).expect("the proposal is accepted");
+    session.call(tool, checked, novamind_session::Via::Form).expect("the proposal is accepted");
 }
 
 #[test]
@@ -196,15 +196,15 @@ fn posts_are_compared_with_the_weeks_there_were() {
         [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
     {
         let company = Company::of(&played(weeks));
-        let by_people = |post: &&std::sync::Arc<crate::console::posts::Post>| {
-            post.kind != crate::console::posts::PostKind::Press
+        let by_people = |post: &&std::sync::Arc<crate::posts::Post>| {
+            post.kind != crate::posts::PostKind::Press
         };
         let of = |week: u32| {
             company.posts.iter().filter(by_people).filter(|post| post.day.div_ceil(7) == week).count()
         };
         let last = weeks as u32;
         let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
-        let usual = crate::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
+        let usual = novamind_base::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
         let told = news::of_posts(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
         assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
         let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);

@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::figures::{METRICS, Metric};
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::screens::product::model::Day;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{note_room, summary, zero_if_near};
-use crate::console::widgets::{Axis, Line, Side, Unit, chart};
-use crate::notation::{compact, percent};
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::screens::product::model::Day;
+use crate::theme::Role;
+use crate::widgets::chart::{note_room, summary, zero_if_near};
+use crate::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_base::notation::{compact, percent};
 
 /// Least height of a small chart with its border.
 const LEAST: u16 = 8;
@@ -57,7 +57,7 @@ fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title: &str, c
     let values: Vec<f64> = weeks.iter().map(|point| point.1).collect();
     let dollar = matches!(metric.name, "recurring revenue" | "payments" | "running costs");
     let write = move |value: f64| {
-        if dollar { crate::console::text::short_dollars(value) } else { compact(value) }
+        if dollar { crate::text::short_dollars(value) } else { compact(value) }
     };
     let unit = if dollar { Unit::Dollars } else { Unit::Number };
     let words = summary(&values, &write, note_room(area, title));

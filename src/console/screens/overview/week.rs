@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 
 use super::Overview;
 use super::figures::{self, METRICS};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look, ScreenId};
-use crate::console::widgets::Table;
-use crate::session::week_of;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look, ScreenId};
+use crate::widgets::Table;
+use novamind_session::week_of;
 
 /// The figures with their changes.
 pub struct WeekPane;

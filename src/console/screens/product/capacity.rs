@@ -5,20 +5,20 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::{Day, Rung, last_week};
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::Figure;
-use crate::console::screens::panes::Seat;
-use crate::console::text::fitting;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::NO_DATA;
-use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, Side, Unit, chart};
-use crate::notation::{compact, dollars, percent};
-use crate::session::{WeekFigure, WeekQuantity};
-use crate::report::peak::PeakProjection;
-use crate::tools::ToolId;
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::Figure;
+use crate::screens::panes::Seat;
+use crate::text::fitting;
+use crate::theme::Role;
+use crate::widgets::chart::NO_DATA;
+use crate::widgets::table::first_row;
+use crate::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_base::notation::{compact, dollars, percent};
+use novamind_session::{WeekFigure, WeekQuantity};
+use novamind_report::peak::PeakProjection;
+use novamind_tools::ToolId;
 
 /// The tier that served last, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {

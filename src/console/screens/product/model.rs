@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::console::company::Company;
-use crate::report::plan_margins::{PlanUse, Sales};
-use crate::session::{Category, ResearchMeans, Rows, WeekFigures};
-use crate::session::{number_at, text_at};
-use crate::tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
-use crate::world::identifiers::Plan;
+use crate::company::Company;
+use novamind_report::plan_margins::{PlanUse, Sales};
+use novamind_session::{Category, ResearchMeans, Rows, WeekFigures};
+use novamind_session::{number_at, text_at};
+use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
+use novamind_session::identifiers::Plan;
 
 /// A plan, its settings and what it earns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -102,7 +102,7 @@ impl Day {
 
 /// The service, day by day.
 pub fn service(rows: &Rows) -> Vec<Day> {
-    let day = |row: &Vec<crate::session::Cell>| Day {
+    let day = |row: &Vec<novamind_session::Cell>| Day {
         day: number_at(row, 0) as u32,
         usage: number_at(row, 1),
         capacity: number_at(row, 2),
@@ -126,7 +126,7 @@ pub type Ages = [f64; 4];
 
 /// Open issues by group.
 pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
-    let ages = |row: &Vec<crate::session::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
+    let ages = |row: &Vec<novamind_session::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
 
@@ -149,7 +149,7 @@ pub struct Project {
 
 /// The projects, the newest first.
 pub fn projects(rows: &Rows) -> Vec<Project> {
-    let project = |row: &Vec<crate::session::Cell>| Project {
+    let project = |row: &Vec<novamind_session::Cell>| Project {
         id: text_at(row, 0).to_owned(),
         tier: number_at(row, 1) as u32,
         done: text_at(row, 2) == "completed",

@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::{Product, ProductPane};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::tools::ToolId;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use novamind_tools::ToolId;
 
 /// One of the panes.
 pub trait ProductPart: Pane<Product> {

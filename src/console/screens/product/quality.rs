@@ -4,15 +4,15 @@ use ratatui::layout::Rect;
 
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::Figure;
-use crate::console::screens::panes::Seat;
-use crate::console::text::number;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
-use crate::tools::ToolId;
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::Figure;
+use crate::screens::panes::Seat;
+use crate::text::number;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
+use novamind_tools::ToolId;
 
 /// The components of quality, one group in a row.
 pub struct Quality;

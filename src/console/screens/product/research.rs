@@ -5,17 +5,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::Project;
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::Figure;
-use crate::console::screens::panes::Seat;
-use crate::console::theme::Role;
-use crate::console::widgets::spark;
-use crate::console::widgets::table::first_row;
-use crate::notation::{compact, dollars, short_dollars};
-use crate::report::research::{mean_days, mean_gain};
-use crate::tools::ToolId;
+use crate::canvas::{Align, Canvas, Click, fit, rows_of};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::Figure;
+use crate::screens::panes::Seat;
+use crate::theme::Role;
+use crate::widgets::spark;
+use crate::widgets::table::first_row;
+use novamind_base::notation::{compact, dollars, short_dollars};
+use novamind_report::research::{mean_days, mean_gain};
+use novamind_tools::ToolId;
 
 /// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]

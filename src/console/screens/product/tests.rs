@@ -2,13 +2,13 @@ use serde_json::json;
 
 use super::model::*;
 use super::*;
-use crate::console::action::Action;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::report::plan_margins::PlanUse;
-use crate::tools::ToolId;
+use crate::action::Action;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::screens::Screen;
+use crate::test_kit::{act, drawn, played, shown, sweep};
+use novamind_report::plan_margins::PlanUse;
+use novamind_tools::ToolId;
 
 #[test]
 fn plans_earn_what_is_paid_less_what_is_used() {
@@ -78,7 +78,7 @@ fn every_pane_leads_somewhere() {
             match act(&mut screen, Action::Open, &company).pop() {
                 Some(Effect::ShowTool(_)) => {}
                 Some(Effect::ShowCell(tool, of)) => {
-                    let mut tools = crate::console::screens::tools::Tools::default();
+                    let mut tools = crate::screens::tools::Tools::default();
                     tools.show_cell(tool, &of, &company);
                     assert!(
                         tools.place_path().is_some_and(|path| path.split('.').any(|name| name == of)),
@@ -86,7 +86,7 @@ fn every_pane_leads_somewhere() {
                     );
                 }
                 Some(Effect::Prefill { tool, arguments }) => {
-                    let mut tools = crate::console::screens::tools::Tools::default();
+                    let mut tools = crate::screens::tools::Tools::default();
                     tools.prefill(tool, &arguments, &company);
                     assert_eq!(tools.typed_arguments(), Some(arguments));
                 }
@@ -132,7 +132,7 @@ fn figures_are_made_of_their_rows() {
     let mut session = played(6);
     let company = Company::of(&session);
     let mut screen: Product = shown(&mut session, &company);
-    let keys = crate::console::keys::Keys::shipped();
+    let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     for pane in ProductPane::VARIANTS {
         screen.focus_on(*pane);
@@ -182,7 +182,7 @@ fn what_was_not_read_yet_is_not_called_nothing() {
     }
     let mut screen = screen;
     screen.focus_on(ProductPane::Research);
-    let text = crate::console::test_kit::zoomed(&screen, &company, 120, 37);
+    let text = crate::test_kit::zoomed(&screen, &company, 120, 37);
     assert!(text.contains("▼ now") && text.contains("$/0.01"), "{text}");
 }
 
@@ -197,7 +197,7 @@ fn a_zoomed_pane_has_the_window() {
         (ProductPane::Research, "R&D", "┌ Service"),
     ] {
         screen.focus_on(pane);
-        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
     }
@@ -214,7 +214,7 @@ fn minutes_of_outage_add_up_to_the_minutes_in_the_title() {
     let day = |day: u32, downtime: f64| Day { day, downtime, capacity: 1.0, ..Day::default() };
     let days: Vec<Day> = (1..=28).map(|at| day(at, if at % 10 == 0 { 30.0 } else { 0.0 })).collect();
     assert!(service::summary(&days)[0].contains("outage 60 min in 28 days"));
-    let text = crate::console::test_kit::painted(90, 8, |canvas, area| service::draw(canvas, area, &days));
+    let text = crate::test_kit::painted(90, 8, |canvas, area| service::draw(canvas, area, &days));
     let line = text.iter().find(|line| line.starts_with("outage, minutes")).expect("a line");
     let figures: Vec<&str> = line.split_whitespace().skip(2).take(3).collect();
     assert_eq!(figures, ["0", "0", "60"], "{line}");

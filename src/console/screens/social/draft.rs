@@ -4,12 +4,12 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{POST, Social, SocialPane};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
 
 /// The draft.
 pub struct DraftPane;

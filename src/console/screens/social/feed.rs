@@ -4,13 +4,13 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use crate::console::posts::{PostKind, Post};
-use crate::session::Rows;
-use crate::session::{number_at, text_at};
+pub use crate::posts::{PostKind, Post};
+use novamind_session::Rows;
+use novamind_session::{number_at, text_at};
 
 /// Our posts as the database tells them.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
-    let own = |row: &Vec<crate::session::Cell>| {
+    let own = |row: &Vec<novamind_session::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
         Arc::new(Post {

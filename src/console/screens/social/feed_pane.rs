@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 
 use super::feed::Post;
 use super::{Social, wall};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::count;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::count;
+use crate::theme::Role;
+use crate::widgets::Field;
 
 /// Posts as the filter lets them through.
 pub struct FeedPane;

@@ -17,19 +17,19 @@ use strum::VariantArray;
 use self::feed::{Filter, PostKind, Post};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenId, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, fit};
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::console::posts::Posts;
-use crate::console::readings::Reading;
-use crate::console::theme::Role;
-use crate::console::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
-use crate::notation::grouped;
-use crate::report::post_leads::leads_around;
-use crate::session::Rows;
-use crate::tools::ToolId;
+use crate::action::Action;
+use crate::canvas::{Canvas, fit};
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::message::News;
+use crate::posts::Posts;
+use crate::readings::Reading;
+use crate::theme::Role;
+use crate::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
+use novamind_base::notation::grouped;
+use novamind_report::post_leads::leads_around;
+use novamind_session::Rows;
+use novamind_tools::ToolId;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

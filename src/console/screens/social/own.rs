@@ -3,14 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::Social;
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::Table;
-use crate::notation::grouped;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::Table;
+use novamind_base::notation::grouped;
 
 /// The table of our posts.
 pub struct OwnPane;

@@ -3,12 +3,12 @@ use std::sync::Arc;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::console::action::Scope;
-use crate::console::company::Company;
-use crate::console::keys::Keys;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, drawn, played, shown, sweep};
-use crate::session::{Refusal, Session, Via};
+use crate::action::Scope;
+use crate::company::Company;
+use crate::keys::Keys;
+use crate::screens::Screen;
+use crate::test_kit::{act, drawn, played, shown, sweep};
+use novamind_session::{Refusal, Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -46,7 +46,7 @@ fn the_feed_holds_what_the_tools_and_the_database_tell() {
     let comments = screen.others.iter().filter(|post| post.kind == PostKind::Comments).count();
     assert_eq!(comments as u32, screen.own[0].comments);
     let rows = session.query("SELECT count(*) FROM social_media_posts").expect("rows");
-    assert_eq!(crate::session::number_at(&rows.rows[0], 0) as u64, total);
+    assert_eq!(novamind_session::number_at(&rows.rows[0], 0) as u64, total);
 }
 
 #[test]
@@ -129,9 +129,9 @@ fn figures_are_made_of_their_rows() {
         session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
     };
     let number = screen.post().expect("a post").number;
-    assert_eq!(rows(&screen)[0][0], crate::session::Cell::Integer(i64::from(number)));
+    assert_eq!(rows(&screen)[0][0], novamind_session::Cell::Integer(i64::from(number)));
     screen.focus_on(SocialPane::Own);
-    assert_eq!(rows(&screen)[0][2], crate::session::Cell::Integer(i64::from(screen.own[0].views)));
+    assert_eq!(rows(&screen)[0][2], novamind_session::Cell::Integer(i64::from(screen.own[0].views)));
     act(&mut screen, Action::Right, &company);
     act(&mut screen, Action::Right, &company);
     assert_eq!(rows(&screen).len() as u32, screen.own[0].comments);
@@ -235,7 +235,7 @@ fn a_zoomed_pane_has_the_window() {
         (SocialPane::Own, "Our posts", "┌ Feed"),
     ] {
         screen.focus_on(pane);
-        let text = crate::console::test_kit::zoomed(&screen, &company, 100, 30);
+        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
         let first = text.lines().next().expect("a line");
         assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
     }

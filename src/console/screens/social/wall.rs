@@ -3,10 +3,10 @@
 use unicode_width::UnicodeWidthStr;
 
 use super::feed::{PostKind, Post};
-use crate::console::canvas::{Canvas, Click, rows_of};
-use crate::console::screens::panes::Seat;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
+use crate::canvas::{Canvas, Click, rows_of};
+use crate::screens::panes::Seat;
+use crate::text::wrapped;
+use crate::theme::Role;
 
 /// A row of the feed: text, meaning, and the place of its post.
 struct FeedRow {

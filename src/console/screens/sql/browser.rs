@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use ratatui::layout::Rect;
 
-use crate::console::action::Action;
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::screens::panes::Seat;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::table::first_row;
-use crate::database::{Column, Table, hidden_tables, tables};
+use crate::action::Action;
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::screens::panes::Seat;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::table::first_row;
+use novamind_database::{Column, Table, hidden_tables, tables};
 
 /// Marks the tables of the x-ray.
 const XRAY: &str = "x-ray";

@@ -1,8 +1,8 @@
 //! What could be typed next: columns of the tables that a statement names, tables, keywords, functions.
 
 use super::lexer::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
-use crate::database::catalogue::{Column, Table};
-use crate::database::{table, tables};
+use novamind_database::catalogue::{Column, Table};
+use novamind_database::{table, tables};
 
 /// A word that could be meant.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -7,10 +7,10 @@ use unicode_width::UnicodeWidthStr;
 
 use super::completion::{Completion, complete};
 use super::lexer::{is_word, statement_at, tokens};
-use crate::console::canvas::{Align, Canvas, rows_of};
-use crate::console::theme::Role;
-use crate::console::widgets::Editor;
-use crate::console::widgets::table::first_row;
+use crate::canvas::{Align, Canvas, rows_of};
+use crate::theme::Role;
+use crate::widgets::Editor;
+use crate::widgets::table::first_row;
 
 /// Letters after which words are offered while typing.
 const LEAST_TYPED: usize = 2;
@@ -334,7 +334,7 @@ mod tests {
 
     #[test]
     fn the_place_of_an_error_is_underlined_until_something_is_typed() {
-        let theme = crate::console::theme::Theme::find("mono", &crate::session::Configuration::shipped());
+        let theme = crate::theme::Theme::find("mono", &novamind_session::Configuration::shipped());
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 40, 3);
         let underlined = |editor: &QueryEditor| {

@@ -1,7 +1,7 @@
 //! Statements asked before and texts that were replaced in the editor, the newest first, to choose from.
 
 use super::picker::{ListedQuery, Picker, in_a_line};
-use crate::session::library::{Head, body};
+use novamind_session::library::{Head, body};
 
 /// Statements of this screen.
 #[derive(Default)]
@@ -66,7 +66,7 @@ fn title(sql: &str) -> String {
 mod tests {
     use super::super::picker::PickedQuery;
     use super::*;
-    use crate::console::action::Action;
+    use crate::action::Action;
 
     fn listed(history: &History, earlier: &[String]) -> Vec<String> {
         let Some(mut picker) = history.picker(earlier) else { return Vec::new() };

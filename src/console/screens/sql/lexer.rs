@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::console::theme::Role;
+use crate::theme::Role;
 
 /// What a piece is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

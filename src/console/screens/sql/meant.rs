@@ -2,7 +2,7 @@
 //! as far as SQL chooses the same ones.
 
 use super::picker::in_a_line;
-use crate::session::{Cell, Rows};
+use novamind_session::{Cell, Rows};
 
 /// The rows that are meant.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,16 +84,16 @@ fn cell_holds(cell: &Cell, text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::screens::sql::summary::count;
-    use crate::console::screens::sql::values;
-    use crate::console::test_kit::session;
-    use crate::console::widgets::Table;
+    use crate::screens::sql::summary::count;
+    use crate::screens::sql::values;
+    use crate::test_kit::session;
+    use crate::widgets::Table;
 
     /// What a filter means, and the rows it shows.
     fn meant(held: &Rows, filter: &str) -> (RowsMeant, usize) {
         let mut table = Table::new(values::columns(held));
         table.set_rows(values::cells(held));
-        table.act(crate::console::action::Action::Filter, 5);
+        table.act(crate::action::Action::Filter, 5);
         table.edit_filter(|field| field.insert(filter));
         (RowsMeant::by(filter, held, table.shown()), table.shown().len())
     }

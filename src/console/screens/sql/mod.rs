@@ -27,11 +27,11 @@ use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::message::News;
-use crate::session::Library;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::message::News;
+use novamind_session::Library;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
 use history::History;

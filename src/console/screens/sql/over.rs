@@ -7,13 +7,13 @@ use super::picker::{ListedQuery, PickedQuery, Picker};
 use super::pivot::{PivotChoice, PivotStep};
 use super::saving::Saving;
 use super::takeout::TakeOut;
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::Canvas;
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::screens::panes::{Pane, Seat};
-use crate::console::widgets::Field;
-use crate::session::library::NamedQuery;
+use crate::action::{Action, Scope};
+use crate::canvas::Canvas;
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::screens::panes::{Pane, Seat};
+use crate::widgets::Field;
+use novamind_session::library::NamedQuery;
 
 /// What lies over the panes.
 pub enum Over {

@@ -6,13 +6,13 @@ use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
 use super::lexer::tokens;
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::fuzzy::{self, Found};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::table::first_row;
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::fuzzy::{self, Found};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::table::first_row;
 
 /// Below this width the chosen statement stands under the list instead of beside it.
 const BESIDE: u16 = 110;
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn long_lines_of_a_statement_go_on_below() {
-        let theme = crate::console::theme::Theme::find("dark", &crate::session::Configuration::shipped());
+        let theme = crate::theme::Theme::find("dark", &novamind_session::Configuration::shipped());
         let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, 9, 9));
         let theme = theme.expect("a theme");
         let canvas = Canvas::new(&mut buffer, &theme);

@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use super::meant::RowsMeant;
 use super::summary::{Aggregate, Distinct, MOST_ACROSS, PivotShape, pivot};
 use super::values::is_numeric;
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::screens::Look;
-use crate::console::theme::Role;
-use crate::session::{Cell, Rows};
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::screens::Look;
+use crate::theme::Role;
+use novamind_session::{Cell, Rows};
 
 /// Lines that can be changed, and the one that runs the pivot.
 const LINES: usize = 4;

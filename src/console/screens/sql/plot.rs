@@ -3,17 +3,17 @@
 use ratatui::layout::Rect;
 
 use super::values::{decimals_shown, is_numeric};
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::screens::panes::Seat;
-use crate::console::text::{arrow, number};
-use crate::console::theme::Role;
-use crate::console::widgets::bars::{Bar, SIGNS, Scale};
-use crate::console::widgets::chart::zero_if_near;
-use crate::console::widgets::table::first_row;
-use crate::console::widgets::{Axis, Line, Side, Table, Unit, chart};
-use crate::notation::{compact, grouped};
-use crate::session::library::{ChartKind, ChartLine};
-use crate::session::{Cell, Rows};
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::screens::panes::Seat;
+use crate::text::{arrow, number};
+use crate::theme::Role;
+use crate::widgets::bars::{Bar, SIGNS, Scale};
+use crate::widgets::chart::zero_if_near;
+use crate::widgets::table::first_row;
+use crate::widgets::{Axis, Line, Side, Table, Unit, chart};
+use novamind_base::notation::{compact, grouped};
+use novamind_session::library::{ChartKind, ChartLine};
+use novamind_session::{Cell, Rows};
 
 /// Most series at once: more cannot be told apart.
 const MOST: usize = 6;
@@ -308,7 +308,7 @@ fn axis_number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::library::Head;
+    use novamind_session::library::Head;
 
     fn result(columns: &[&str], rows: Vec<Vec<Cell>>) -> Rows {
         Rows { columns: columns.iter().map(|name| (*name).to_owned()).collect(), rows, ..Rows::default() }

@@ -8,15 +8,15 @@ use unicode_width::UnicodeWidthStr;
 use super::meant::RowsMeant;
 use super::plot::PlottedColumns;
 use super::{takeout, values};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::Seat;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Table;
-use crate::session::library::{ChartLine, Head};
-use crate::session::{Cell, Library, Refusal, Rows};
+use crate::action::Action;
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::Seat;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Table;
+use novamind_session::library::{ChartLine, Head};
+use novamind_session::{Cell, Library, Refusal, Rows};
 
 /// What came of the last statement.
 #[derive(Debug, Default)]

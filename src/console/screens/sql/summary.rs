@@ -6,8 +6,8 @@ use super::lexer::{KEYWORDS, tokens};
 use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
-use crate::session::library::body;
-use crate::session::{Cell, Rows};
+use novamind_session::library::body;
+use novamind_session::{Cell, Rows};
 
 /// Columns that a pivot has for values, at most; all others are in one more.
 pub const MOST_ACROSS: usize = 12;
@@ -244,8 +244,8 @@ fn order(one: &Cell, other: &Cell) -> std::cmp::Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::session;
-    use crate::session::Session;
+    use crate::test_kit::session;
+    use novamind_session::Session;
 
     fn asked(session: &mut Session, sql: &str) -> Rows {
         session.query(sql).unwrap_or_else(|refusal| panic!("{refusal}\n{sql}"))

@@ -7,11 +7,11 @@ use unicode_width::UnicodeWidthStr;
 use super::lexer::tokens;
 use super::picker::in_a_line;
 use super::results::Results;
-use crate::console::canvas::{Canvas, Click};
-use crate::console::theme::Role;
-use crate::database::table;
-use crate::session::library::{Head, body};
-use crate::session::{Refusal, Rows};
+use crate::canvas::{Canvas, Click};
+use crate::theme::Role;
+use novamind_database::table;
+use novamind_session::library::{Head, body};
+use novamind_session::{Refusal, Rows};
 use std::time::Duration;
 
 /// Tabs at most.
@@ -195,7 +195,7 @@ fn title(sql: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Cell;
+    use novamind_session::Cell;
 
     fn rows(number: i64) -> Result<Rows, Refusal> {
         let columns = vec!["n".to_owned()];

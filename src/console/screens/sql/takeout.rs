@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::values;
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, Click, centered, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::Look;
-use crate::console::theme::Role;
-use crate::notation::grouped;
-use crate::session::Rows;
+use crate::action::Action;
+use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::effect::Effect;
+use crate::screens::Look;
+use crate::theme::Role;
+use novamind_base::notation::grouped;
+use novamind_session::Rows;
 
 /// Longest text for the clipboard, in bytes: terminals drop longer ones without a word.
 const CLIPBOARD: usize = 64 << 10;
@@ -101,7 +101,7 @@ pub fn count(rows: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Cell;
+    use novamind_session::Cell;
 
     fn result(length: usize, rows: usize) -> Rows {
         let row = vec![Cell::Text("x".repeat(length))];
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(list.act(Action::CopyMarkdown), Some(Action::CopyMarkdown));
         assert_eq!(list.act(Action::Close), None);
         assert_eq!(list.click(99), Action::CopyMarkdown);
-        let keys = crate::console::keys::Keys::shipped();
+        let keys = crate::keys::Keys::shipped();
         assert!(WAYS.iter().all(|way| keys.label(*way).is_some()));
     }
 }

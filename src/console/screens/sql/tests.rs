@@ -5,12 +5,12 @@ use std::time::Duration;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::console::action::Scope;
-use crate::console::company::Company;
-use crate::console::keys::Keys;
-use crate::console::screens::Screen;
-use crate::console::test_kit::{company, picture, session, sweep};
-use crate::session::{Cell, Refusal, Rows};
+use crate::action::Scope;
+use crate::company::Company;
+use crate::keys::Keys;
+use crate::screens::Screen;
+use crate::test_kit::{company, picture, session, sweep};
+use novamind_session::{Cell, Refusal, Rows};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -299,8 +299,8 @@ fn names_come_from_the_browser() {
 
 #[test]
 fn keywords_are_coloured_where_the_text_is_scrolled_to() {
-    use crate::console::theme::{Role, Theme};
-    use crate::session::Configuration;
+    use crate::theme::{Role, Theme};
+    use novamind_session::Configuration;
     use ratatui::buffer::Buffer;
     let (company, mut screen) = (company(), Sql::default());
     screen.edit(&format!("{}SELECT 'x' -- done", "\n".repeat(40)));

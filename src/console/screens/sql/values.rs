@@ -2,10 +2,10 @@
 
 use serde_json::Value;
 
-use crate::console::theme::Role;
-use crate::console::widgets::{Cell as Shown, Column};
-use crate::notation::{csv_cell, grouped, printable};
-use crate::session::{Cell, Rows, rows_as_json};
+use crate::theme::Role;
+use crate::widgets::{Cell as Shown, Column};
+use novamind_base::notation::{csv_cell, grouped, printable};
+use novamind_session::{Cell, Rows, rows_as_json};
 
 /// Widest column on the screen; longer values can be opened.
 const WIDEST: u16 = 48;
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_column_of_numbers_stands_right() {
-        use crate::console::canvas::Align;
+        use crate::canvas::Align;
         let rows = result(
             &["a", "b", "c"],
             vec![

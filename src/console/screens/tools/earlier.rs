@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::console::company::Company;
-use crate::console::screens::journal::entries::in_words;
-use crate::report::deals::deals_in_words;
-use crate::session::JournalEntry;
-use crate::tools::ToolId;
+use crate::company::Company;
+use crate::screens::journal::entries::in_words;
+use novamind_report::deals::deals_in_words;
+use novamind_session::JournalEntry;
+use novamind_tools::ToolId;
 
 /// Calls that are told below a form.
 pub const MOST: usize = 10;
@@ -35,14 +35,14 @@ pub fn calls(tool: ToolId, company: &Company, most: usize) -> Vec<(u32, String)>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::console::test_kit::played;
+    use crate::test_kit::played;
 
     #[test]
     fn calls_stand_with_the_newest_first() {
         let mut session = played(1);
         for price in [14, 14] {
             let arguments = serde_json::json!({ "A": price });
-            session.call("set_prices", &arguments, crate::session::Via::Form).expect("a price");
+            session.call("set_prices", &arguments, novamind_session::Via::Form).expect("a price");
         }
         let company = Company::of(&session);
         assert_eq!(

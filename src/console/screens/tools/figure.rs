@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::super::Figure;
 use super::form::Form;
-use crate::tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
+use novamind_tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 
 /// Names of all arguments with their tools: `set_prices.A`.
 static ARGUMENTS: LazyLock<Vec<String>> = LazyLock::new(|| {

@@ -7,18 +7,18 @@ use serde_json::Value;
 
 use super::earlier;
 use super::sheet::{CellPlace, Sheet};
-use crate::console::action::Action;
-use crate::console::attention::BETWEEN_CELLS;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::keys::Chord;
-use crate::console::widgets::{Editor, Field};
-use crate::console::widgets::field::ONLY_NUMBERS;
-use crate::notation::{dollars, parse_number};
-use crate::report::count;
-use crate::report::research::outlook_lines;
-use crate::session::{Preview, Refusal};
-use crate::tools::{ArgumentKind, Key, Kind, Spec};
+use crate::action::Action;
+use crate::attention::BETWEEN_CELLS;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::keys::Chord;
+use crate::widgets::{Editor, Field};
+use crate::widgets::field::ONLY_NUMBERS;
+use novamind_base::notation::{dollars, parse_number};
+use novamind_report::count;
+use novamind_report::research::outlook_lines;
+use novamind_session::{Preview, Refusal};
+use novamind_tools::{ArgumentKind, Key, Kind, Spec};
 
 /// A form of one tool.
 #[derive(Debug, Clone)]

@@ -9,15 +9,15 @@ use super::grid::{draw_sheet, form_lines};
 use super::outcome::{Detail, OutcomeLines, outcome_lines};
 use super::sheet::Block;
 use super::{Tools, ToolsPane, figure};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::Editor;
-use crate::tools::{Numbers, Spec, ToolId, When, describe};
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::Editor;
+use novamind_tools::{Numbers, Spec, ToolId, When, describe};
 
 /// The form.
 pub struct FormPane;

@@ -6,10 +6,10 @@ use unicode_width::UnicodeWidthStr;
 use super::form::Form;
 use super::outcome::Leads;
 use super::sheet::{Block, CellPlace, Slot};
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::text::number;
-use crate::console::theme::Role;
-use crate::console::widgets::table::first_row;
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::text::number;
+use crate::theme::Role;
+use crate::widgets::table::first_row;
 
 /// Width of the names of rows.
 const NAME: u16 = 19;

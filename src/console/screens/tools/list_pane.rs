@@ -4,15 +4,15 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Tools, ToolsPane, figure};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Align, Canvas, Click, fit, rows_of};
-use crate::console::effect::Effect;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::Field;
-use crate::console::widgets::table::first_row;
-use crate::tools::{Module, Spec};
+use crate::action::{Action, Scope};
+use crate::canvas::{Align, Canvas, Click, fit, rows_of};
+use crate::effect::Effect;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::Field;
+use crate::widgets::table::first_row;
+use novamind_tools::{Module, Spec};
 
 /// The tools by module.
 pub struct ToolListPane;

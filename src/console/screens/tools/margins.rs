@@ -1,10 +1,10 @@
 //! The margins that a draft of prices, model tiers or quotas would leave.
 
 use super::form::Form;
-use crate::console::company::Company;
-use crate::report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
-use crate::tools::ToolId;
-use crate::world::identifiers::ByPlan;
+use crate::company::Company;
+use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::ByPlan;
 
 /// Lines beside a form, the first one a head: on every model, or in brief on the own one; empty where no margin follows
 /// from its tool.

@@ -8,17 +8,17 @@ use super::form::Form;
 use super::margins::margins;
 use super::reference::reference;
 use super::sheet::Block;
-use crate::console::action::Action;
-use crate::console::screens::Look;
-use crate::console::text::{count, number, wrapped};
-use crate::console::theme::Role;
-use crate::notation::{dollars, grouped};
-use crate::report::plan_margins::Sales;
-use crate::report::research::outlook_lines;
-use crate::report::review::terms_line;
-use crate::session::Rows;
-use crate::session::{number_at, text_at};
-use crate::tools::{ArgumentKind, Key};
+use crate::action::Action;
+use crate::screens::Look;
+use crate::text::{count, number, wrapped};
+use crate::theme::Role;
+use novamind_base::notation::{dollars, grouped};
+use novamind_report::plan_margins::Sales;
+use novamind_report::research::outlook_lines;
+use novamind_report::review::terms_line;
+use novamind_session::Rows;
+use novamind_session::{number_at, text_at};
+use novamind_tools::{ArgumentKind, Key};
 
 /// Leads and spend of the last four weeks by channel and group, as ad_channel_leads counts them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) struct Leads(BTreeMap<(String, String), (f64, f64)>);
 impl Leads {
     /// Reads them.
     pub fn read(rows: &Rows) -> Leads {
-        let own = |row: &Vec<crate::session::Cell>| {
+        let own = |row: &Vec<novamind_session::Cell>| {
             let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
             (pair, (number_at(row, 2), number_at(row, 3)))
         };
@@ -191,7 +191,7 @@ fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
     format!("{draft}{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
 }
 
-fn answer_lines(answer: &Result<Value, crate::session::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
+fn answer_lines(answer: &Result<Value, novamind_session::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
     match answer {
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
@@ -252,7 +252,7 @@ fn readable(value: &Value, depth: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Cell;
+    use novamind_session::Cell;
 
     #[test]
     fn a_channel_is_known_by_what_it_brought_for_the_money() {

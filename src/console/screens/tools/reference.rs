@@ -3,12 +3,12 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use crate::console::company::Company;
-use crate::console::text::number;
-use crate::notation::{cents, dollars, grouped};
-use crate::report::research::{mean_days, mean_gain};
-use crate::session::ResearchMeans;
-use crate::tools::{ResearchTierFacts, ToolId};
+use crate::company::Company;
+use crate::text::number;
+use novamind_base::notation::{cents, dollars, grouped};
+use novamind_report::research::{mean_days, mean_gain};
+use novamind_session::ResearchMeans;
+use novamind_tools::{ResearchTierFacts, ToolId};
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use crate::console::company::Company;
-use crate::console::text::number;
-use crate::console::widgets::Field;
-use crate::notation::parse_number;
-use crate::notation::json_number;
-use crate::tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
-use crate::world::identifiers::{Channel, Plan};
+use crate::company::Company;
+use crate::text::number;
+use crate::widgets::Field;
+use novamind_base::notation::parse_number;
+use novamind_base::notation::json_number;
+use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
+use novamind_session::identifiers::{Channel, Plan};
 
 /// The argument that holds a program or a statement.
 const CODE: &str = "code";
@@ -406,8 +406,8 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::console::test_kit::company;
-    use crate::tools::find;
+    use crate::test_kit::company;
+    use novamind_tools::find;
 
     fn sheet(tool: &str) -> Sheet {
         Sheet::of(find(tool).expect("a tool").spec(), &company())
@@ -469,7 +469,7 @@ mod tests {
 
     #[test]
     fn every_tool_has_a_sheet_whose_cells_are_found_by_their_paths() {
-        for tool in crate::tools::CATALOGUE {
+        for tool in novamind_tools::CATALOGUE {
             let sheet = Sheet::of(tool.spec(), &company());
             for place in sheet.places() {
                 let path = sheet.blocks[place.block].path(place.row, place.column);

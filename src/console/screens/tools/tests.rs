@@ -1,14 +1,14 @@
 use serde_json::json;
 
 use super::*;
-use crate::console::action::Scope;
-use crate::console::keys::{Chord, Keys};
-use crate::console::screens::Screen;
-use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
-use crate::console::request::Request;
-use crate::session::{Refusal, Via};
-use crate::tools::ToolId;
-use crate::world::identifiers::Plan;
+use crate::action::Scope;
+use crate::keys::{Chord, Keys};
+use crate::screens::Screen;
+use crate::test_kit::{act, company, drawn, played, shown, sweep};
+use crate::request::Request;
+use novamind_session::{Refusal, Via};
+use novamind_tools::ToolId;
+use novamind_session::identifiers::Plan;
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
 fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
@@ -252,9 +252,9 @@ fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
         .query("SELECT sum(leads_generated), sum(spend) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND day > 7")
         .expect("rows")
         .rows;
-    let leads = crate::session::number_at(&rows[0], 0);
-    let spend = crate::session::number_at(&rows[0], 1);
-    let leads_in_words = crate::notation::grouped(leads, 0);
+    let leads = novamind_session::number_at(&rows[0], 0);
+    let spend = novamind_session::number_at(&rows[0], 1);
+    let leads_in_words = novamind_base::notation::grouped(leads, 0);
     let words = format!("content_marketing × S1, last four weeks: {leads_in_words} leads for");
     let text = drawn(&tools, &company, 200, 57);
     let rate = format!("S1 {:.0}", leads / spend * 1000.0);
@@ -324,7 +324,7 @@ fn a_field_names_its_term_and_its_history() {
     let figure = tools.figure(&look).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(crate::session::number_at(rows.last().expect("a row"), 1), 12.0);
+    assert_eq!(novamind_session::number_at(rows.last().expect("a row"), 1), 12.0);
 }
 
 #[test]
@@ -395,7 +395,7 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
                 let holds = |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
-                    let now = crate::console::text::number(company.setting(tool, plan));
+                    let now = crate::text::number(company.setting(tool, plan));
                     assert!(holds(&[&format!(" {plan}  "), &now]), "value of {plan}: {at}");
                 }
                 for plan in &sold {

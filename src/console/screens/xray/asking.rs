@@ -1,9 +1,9 @@
 //! Questions one after the other: what is asked while another is answered, and what became of it.
 
 use super::{Seen, Xray};
-use crate::console::effect::Effect;
-use crate::console::look_inside::{BreakpointWork, LookFound, LookQuestion};
-use crate::session::Refusal;
+use crate::effect::Effect;
+use crate::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use novamind_session::Refusal;
 
 impl Xray {
     pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {

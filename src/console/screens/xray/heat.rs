@@ -5,9 +5,9 @@ use std::ops::Range;
 use unicode_width::UnicodeWidthStr;
 
 use super::lines::Row;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::report::xray::{HEAT, SpillCell, SpillMap, SpillRow};
+use crate::text::wrapped;
+use crate::theme::Role;
+use novamind_report::xray::{HEAT, SpillCell, SpillMap, SpillRow};
 
 /// Columns of a cell with its number.
 const WIDE: usize = 13;
@@ -84,7 +84,7 @@ fn numbers(row: &SpillRow, map: &SpillMap) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::identifiers::Group;
+    use novamind_session::identifiers::Group;
 
     fn map(targets: usize) -> SpillMap {
         let groups: Vec<Group> = Group::all().take(targets).collect();

@@ -4,17 +4,17 @@ use unicode_width::UnicodeWidthStr;
 
 use super::view::View;
 use super::{Xray, heat};
-use crate::console::action::Action;
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::look_inside::{LookCurve, LookFound};
-use crate::console::screens::Look;
-use crate::console::screens::panes::Seat;
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::spark;
-use crate::notation::capital;
-use crate::report::xray::line_of_factor;
-use crate::session::{LeadFactor, REFUSED_LOOK};
+use crate::action::Action;
+use crate::canvas::{Canvas, rows_of};
+use crate::look_inside::{LookCurve, LookFound};
+use crate::screens::Look;
+use crate::screens::panes::Seat;
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::spark;
+use novamind_base::notation::capital;
+use novamind_report::xray::line_of_factor;
+use novamind_session::{LeadFactor, REFUSED_LOOK};
 use ratatui::layout::Rect;
 
 /// A row: pieces of text one after the other.

@@ -21,19 +21,19 @@ use self::typing::{Expected, Typed, TypedLine};
 use self::view::{Choices, View};
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
-use crate::console::action::Action;
-use crate::console::canvas::Canvas;
-use crate::console::company::Company;
-use crate::console::effect::Effect;
-use crate::console::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
-use crate::console::message::News;
-use crate::console::request::Request;
-use crate::console::theme::Role;
-use crate::console::widgets::scroll::Scroll;
-use crate::console::widgets::{Cell, Column, Field, Table};
-use crate::report::xray::AskedWords;
-use crate::session::{Breakpoint, DrawnPart, LeadFactor};
-use crate::world::identifiers::Group;
+use crate::action::Action;
+use crate::canvas::Canvas;
+use crate::company::Company;
+use crate::effect::Effect;
+use crate::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
+use crate::message::News;
+use crate::request::Request;
+use crate::theme::Role;
+use crate::widgets::scroll::Scroll;
+use crate::widgets::{Cell, Column, Field, Table};
+use novamind_report::xray::AskedWords;
+use novamind_session::{Breakpoint, DrawnPart, LeadFactor};
+use novamind_session::identifiers::Group;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

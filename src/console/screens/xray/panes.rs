@@ -6,16 +6,16 @@ use ratatui::layout::Rect;
 use super::typing::Expected;
 use super::view::{Choices, View};
 use super::{Xray, XrayPane, lines};
-use crate::console::action::{Action, Scope};
-use crate::console::canvas::{Canvas, rows_of};
-use crate::console::effect::Effect;
-use crate::console::look_inside::LookQuestion;
-use crate::console::screens::panes::{Border, Pane, Seat};
-use crate::console::screens::{Figure, Look};
-use crate::console::theme::Role;
-use crate::console::widgets::Table;
-use crate::notation::capital;
-use crate::session::LeadFactor;
+use crate::action::{Action, Scope};
+use crate::canvas::{Canvas, rows_of};
+use crate::effect::Effect;
+use crate::look_inside::LookQuestion;
+use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::{Figure, Look};
+use crate::theme::Role;
+use crate::widgets::Table;
+use novamind_base::notation::capital;
+use novamind_session::LeadFactor;
 
 /// What can be looked at.
 pub struct ViewsPane;

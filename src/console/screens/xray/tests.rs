@@ -1,13 +1,13 @@
 use super::*;
-use crate::session::Refusal;
-use crate::console::app::Settings;
-use crate::console::glyphs::Glyphs;
-use crate::console::headless::Headless;
-use crate::console::keys::Keys;
-use crate::console::screens::Screen;
-use crate::console::theme::Theme;
-use crate::session::{Configuration, Mode, NewRun, Session, Storage, Via};
-use crate::console::test_kit::{act, company, drawn, played, shown, sweep};
+use novamind_session::Refusal;
+use crate::app::Settings;
+use crate::glyphs::Glyphs;
+use crate::headless::Headless;
+use crate::keys::Keys;
+use crate::screens::Screen;
+use crate::theme::Theme;
+use novamind_session::{Configuration, Mode, NewRun, Session, Storage, Via};
+use crate::test_kit::{act, company, drawn, played, shown, sweep};
 
 fn open(company: Company) -> Company {
     Company { may_look_inside: true, ..company }

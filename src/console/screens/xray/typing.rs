@@ -2,11 +2,11 @@
 //! number, words.
 
 use super::view::{Choices, View};
-use crate::console::widgets::Field;
+use crate::widgets::Field;
 use novamind_base::nearest;
-use crate::report::xray::AskedWords;
-use crate::session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
-use crate::world::identifiers::Group;
+use novamind_report::xray::AskedWords;
+use novamind_session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
+use novamind_session::identifiers::Group;
 
 /// What is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@ use ratatui::buffer::Buffer;
 use ratatui::symbols::Marker;
 
 use super::*;
-use crate::console::theme::Theme;
-use crate::session::Configuration;
+use crate::theme::Theme;
+use novamind_session::Configuration;
 
 fn drawn(plot: &Plot<'_>, width: u16, height: u16, marker: Marker) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);

@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::session::{
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{
     Departures, DriftState, Follows, GroupDrifted, KeyedDraws, MoodTerm, NextDraws, NextRivalMove, OwnChange,
     PlanDelivered, QualityEquation, ReputationEquation, RivalEvent, RivalState, SatisfactionEquation, Spill,
     Spillover,
 };
-use crate::world::identifiers::{Group, Plan};
 
 pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
     let plan = |plan: Plan| {

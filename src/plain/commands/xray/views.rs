@@ -10,13 +10,13 @@ use super::view_data::{
     spillover_as_data, streams_as_data,
 };
 use super::{group_and_day, whole_number};
-use crate::report::xray::{
+use novamind_base::nearest;
+use novamind_report::xray::{
     drift_in_words, quality_in_words, reputation_in_words, rivals_in_words, satisfaction_in_words,
     spillover_in_words, streams_in_words,
 };
-use crate::session::{DrawnPart, Refusal};
-use crate::world::identifiers::Group;
-use novamind_base::nearest;
+use novamind_session::identifiers::Group;
+use novamind_session::{DrawnPart, Refusal};
 
 /// What a view answers, or why it cannot be asked.
 type Viewed = Result<Result<Answer, Refusal>, Problem>;

@@ -3,18 +3,18 @@
 use ratatui::layout::Rect;
 
 use super::{Below, ClassPage};
-use crate::console::canvas::{Align, Canvas, Click, rows_of};
-use crate::console::text::wrapped;
-use crate::console::theme::Role;
-use crate::console::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
-use crate::console::widgets::scale::Unit;
-use crate::console::widgets::table::first_row;
-use crate::notation::{compact, short_dollars};
-use crate::report::class::{
+use crate::canvas::{Align, Canvas, Click, rows_of};
+use crate::text::wrapped;
+use crate::theme::Role;
+use crate::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
+use crate::widgets::scale::Unit;
+use crate::widgets::table::first_row;
+use novamind_base::notation::{compact, short_dollars};
+use novamind_report::class::{
     AskedClass, ClassView, RankedStudent, StudentPoints, asked, curves, pitfalls, ranked, scatter,
     score_in_words, state_in_words,
 };
-use crate::report::count;
+use novamind_report::count;
 
 /// Columns of the ranking, in small and in wide windows.
 const RANKING: (u16, u16) = (29, 52);
@@ -26,7 +26,7 @@ const HIGH: u16 = 34;
 const LIT: &str = "◆";
 
 impl ClassPage {
-    pub(in crate::console::screens::menu) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    pub(in crate::screens::menu) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let view = self.view();
         let ranking = ranked(&view);
         let title =

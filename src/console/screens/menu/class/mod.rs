@@ -4,9 +4,9 @@ mod draw;
 #[cfg(test)]
 mod tests;
 
-use crate::console::action::Action;
-use crate::report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
-use crate::session::CollectedClass;
+use crate::action::Action;
+use novamind_report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
+use novamind_session::CollectedClass;
 
 /// Students of a page, to walk over.
 const PAGE: usize = 10;

@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
-use crate::console::test_kit::painted;
-use crate::session::{
+use crate::test_kit::painted;
+use novamind_session::{
     Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
 };
 
 /// A class of a lesson whose students have set prices from 10 up; the last one has not finished.
 fn collected(students: u32) -> CollectedClass {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/three-weeks.toml");
     let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
     let place = tempfile::tempdir().expect("a folder");
     let folder = place.path().join("class");
@@ -48,7 +48,7 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
     let worth = 1e6 - 3e4 * at as f64;
     let goal =
         || serde_json::from_value(serde_json::json!({ "value": worth, "met": at < 3 })).expect("a goal");
-    let step = |own: &crate::session::LessonStep| StepEvidence {
+    let step = |own: &novamind_session::LessonStep| StepEvidence {
         guess: own.guess.as_ref().map(|_| 1.0 + (at % 2) as f64),
         outcome: own.guess.as_ref().map(|_| 1.0),
         goals: own.goals.iter().map(|_| goal()).collect(),

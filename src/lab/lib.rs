@@ -6,11 +6,11 @@
 pub mod ablation;
 mod answers;
 pub mod baseline;
-pub(crate) mod behaviour;
+pub mod behaviour;
 pub mod bench;
 pub mod bound;
-pub(crate) mod comparison;
-pub(crate) mod consistency;
+pub mod comparison;
+pub mod consistency;
 pub mod curves;
 #[cfg(test)]
 mod example_tests;
@@ -25,7 +25,7 @@ mod normal;
 mod opponents;
 mod policy;
 mod ranks;
-pub(crate) mod results;
+pub mod results;
 mod routine;
 mod runner;
 mod seeds;
@@ -33,8 +33,6 @@ mod strong;
 pub mod study;
 mod symbols;
 
-pub use crate::rules::answers_to_companies;
-pub use crate::world::params::Params;
 pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
 pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
 pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
@@ -42,6 +40,8 @@ pub use lesson_check::{
     FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,
 };
 pub use metrics::{Collector, Figure};
+pub use novamind_rules::answers_to_companies;
+pub use novamind_world::params::Params;
 pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
 pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};

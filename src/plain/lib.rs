@@ -21,16 +21,16 @@ use serde_json::{Value, json};
 
 pub use visit::visit;
 
-pub use crate::database::text::{cell_text, table};
+pub use novamind_database::text::{cell_text, table};
 
-use crate::notation::printable;
-use crate::session::record::LeavingCause;
-use crate::session::{Interface, Library, Session, Study};
 use answers::Answer;
 use commands::Interpreter;
 use ending::End;
 use input::Read;
 use lines::Lines;
+use novamind_base::notation::printable;
+use novamind_session::record::LeavingCause;
+use novamind_session::{Interface, Library, Session, Study};
 
 /// How answers look and when the dialogue ends.
 #[derive(Debug, Clone, Copy, Default)]

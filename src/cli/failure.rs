@@ -118,7 +118,7 @@ impl From<lab::experiment::ExperimentError> for Failure {
 impl From<lab::RunError> for Failure {
     fn from(error: lab::RunError) -> Failure {
         match error {
-            lab::RunError::Start(error) => error.into(),
+            lab::RunError::Start(error) => (*error).into(),
             refused @ lab::RunError::Refused { .. } => Failure::failed(refused.to_string()),
         }
     }

@@ -256,7 +256,8 @@ mod tests {
     fn a_seed_without_a_result_is_an_error() {
         let played = |seed| {
             let refusal = Refusal::new("no_play", "nothing was played");
-            let error = RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal };
+            let error =
+                RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal: Box::new(refusal) };
             (seed, Err(error), Collector::idle())
         };
         let written = |seeds: &[u64]| {

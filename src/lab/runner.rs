@@ -127,7 +127,7 @@ impl fmt::Display for Outcome {
 #[derive(Debug)]
 pub enum RunError {
     /// The run could not begin.
-    Start(SessionError),
+    Start(Box<SessionError>),
     /// A tool refused a call.
     Refused {
         /// Seed.
@@ -137,7 +137,7 @@ pub enum RunError {
         /// Tool.
         tool: String,
         /// What it said.
-        refusal: Refusal,
+        refusal: Box<Refusal>,
     },
 }
 
@@ -153,6 +153,12 @@ impl fmt::Display for RunError {
 }
 
 impl std::error::Error for RunError {}
+
+impl From<SessionError> for RunError {
+    fn from(error: SessionError) -> Self {
+        RunError::Start(Box::new(error))
+    }
+}
 
 /// Plays a policy to its end; `collector` sees every day.
 ///
@@ -188,7 +194,7 @@ pub(super) fn play_session(
 ) -> Result<Session, RunError> {
     let mut watch = |report: &DayReport<'_>| collector.day(report);
     let mut session = play_while(&|| true, policy, spec, configuration, &mut watch)?;
-    session.save().map_err(RunError::Start)?;
+    session.save()?;
     Ok(session)
 }
 
@@ -200,7 +206,7 @@ pub(super) fn play_while(
     configuration: &Configuration,
     watch: &mut dyn FnMut(&DayReport<'_>),
 ) -> Result<Session, RunError> {
-    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
+    let mut session = Session::create(new_run(policy, spec), configuration)?;
     while !is_over(&session, spec) && goes_on() {
         decide(policy, spec.seed, &mut session)?;
         advance(policy, spec.seed, spec.until.unwrap_or(u32::MAX), &mut session, watch)?;
@@ -260,9 +266,12 @@ pub(super) fn decide_telling(
         arguments,
         Via::Policy,
     ) {
-        Err(refusal) if !may_fail => {
-            Err(RunError::Refused { seed, day: session.day(), tool: tool.to_owned(), refusal })
-        }
+        Err(refusal) if !may_fail => Err(RunError::Refused {
+            seed,
+            day: session.day(),
+            tool: tool.to_owned(),
+            refusal: Box::new(refusal),
+        }),
         answer => {
             answer.iter().for_each(&mut *tell);
             Ok(())
@@ -308,7 +317,7 @@ pub(super) fn advance(
         seed,
         day,
         tool: ToolId::NextWeek.to_string(),
-        refusal,
+        refusal: Box::new(refusal),
     })
 }
 

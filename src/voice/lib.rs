@@ -14,6 +14,6 @@ mod readings;
 pub use address::address;
 pub use company_names::CompanyNames;
 pub use negotiation::message;
-#[cfg(test)]
+#[cfg(any(test, feature = "test-kit"))]
 pub use notices::notice;
 pub use readings::reading;

@@ -68,14 +68,14 @@ pub fn play_for_luck(
     spec: &RunSpec,
     configuration: &Configuration,
 ) -> Result<PlayedLuck, RunError> {
-    let mut session = Session::create(new_run(policy, spec), configuration).map_err(RunError::Start)?;
+    let mut session = Session::create(new_run(policy, spec), configuration)?;
     let mut luck = PlayedLuck::default();
     let until = spec.until.unwrap_or(u32::MAX);
     let refused = |session: &Session, tool: &str, refusal: Refusal| RunError::Refused {
         seed: spec.seed,
         day: session.day(),
         tool: tool.to_owned(),
-        refusal,
+        refusal: Box::new(refusal),
     };
     while !is_over(&session, spec) {
         decide_telling(policy, spec.seed, &mut session, &mut |answer| luck.note_answer(answer))?;

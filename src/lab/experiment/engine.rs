@@ -143,7 +143,7 @@ impl Experiment {
         let key = |arm: &Arm| {
             ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
                 arm: arm.name.clone(),
-                error: Box::new(RunError::Start(error)),
+                error: Box::new(error.into()),
             })
         };
         self.arms.iter().map(key).collect()

@@ -116,13 +116,13 @@ fn is_file(name: &str) -> bool {
 
 /// A lesson by its name, or by the path of its file.
 pub(super) fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
-    Ok(if is_file(name) { Lesson::of_file(Path::new(name))? } else { configuration.lesson(name)? })
+    Ok(if is_file(name) { Lesson::of_file(Path::new(name))? } else { Lesson::named(name, configuration)? })
 }
 
 fn list(configuration: &Configuration) -> Result<(), Failure> {
     let (mut text, mut unreadable) = (String::new(), Vec::new());
     for name in configuration.lessons() {
-        match configuration.lesson(&name) {
+        match Lesson::named(&name, configuration) {
             Ok(lesson) => {
                 let plan = &lesson.plan;
                 text += &format!("{name:<24}  {:>3} min  {}\n", plan.minutes, plan.title);

@@ -8,13 +8,13 @@ use serde_json::{Map, Value, json};
 use crate::resume::integrity::is_as_left;
 use crate::resume::sealing::SealKey;
 use crate::state::Session;
-use crate::trajectory::Record;
-use crate::trajectory::record::{Query, QuerySource};
 use novamind_base::notation::json_number;
 use novamind_database::query::{Limits, SQL_CANCELLED};
 use novamind_database::{
     Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Scope, Ticket, query_connection,
 };
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::{Query, QuerySource};
 use novamind_tools::Refusal;
 
 impl Session {

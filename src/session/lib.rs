@@ -9,20 +9,20 @@ mod ask;
 mod audit;
 mod class;
 mod counterfactual;
+mod create;
 mod curve;
-mod error;
 mod figures;
-mod folder;
 mod lesson;
 mod model_voice;
 mod play;
 mod playback;
 mod python;
+#[cfg(test)]
+mod record_tests;
 mod resume;
 mod same_world;
 mod state;
 mod study;
-mod trajectory;
 mod whatif;
 mod why;
 mod xray;
@@ -40,12 +40,14 @@ pub use class::reference::{ClassReference, ranked_goal, share_of_good};
 pub use counterfactual::last_read::{LastRead, OfRecord};
 pub use counterfactual::one_each::unless_stopped;
 pub use counterfactual::script::{PastCall, PastDecision};
+#[cfg(feature = "server")]
+pub use create::baseline::baseline_terms;
+pub use create::{NewRun, Storage, StudyEntry};
 pub use curve::access::CurveLook;
 pub use curve::example::example_curve;
 pub use curve::explorer::{
     CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS, true_curve_of,
 };
-pub use error::RunError;
 pub use figures::alike_plans::AlikePlans;
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
 pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
@@ -67,23 +69,6 @@ pub use figures::sitting_count::SittingCount;
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
-pub use folder::agreement::Agreed;
-#[cfg(feature = "server")]
-pub use folder::baseline::baseline_terms;
-pub use folder::configuration::{Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days};
-pub use folder::consent::{Consent, ConsentGiven, ConsentMeans, ConsentText};
-pub use folder::create::{NewRun, Storage, StudyEntry};
-pub use folder::derived::{manifest_of, manifest_text};
-pub use folder::durable::{folder_of, write_whole};
-pub use folder::library::{self, Library};
-pub use folder::lock::{SERVER_FILE, is_being_played};
-pub use folder::manifest::{FORMAT, Manifest};
-pub use folder::mode::Mode;
-pub use folder::preview::{RunPreview, run_preview};
-pub use folder::runs::{
-    RunSummary, all_run_folders, base_of_runs, delete_run, end_run, find_run, find_run_to_read, list_runs,
-    participant_folder, run_folder,
-};
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
     Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
@@ -100,8 +85,32 @@ pub use lesson::lesson_file::Lesson;
 pub use lesson::measurement::{Measurement, NumberSource, Over};
 pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
 pub use lesson::reference::{PartPlay, play_part, play_part_telling};
-pub use lesson::stamp::LessonStamp;
 pub use lesson::standing::LessonStanding;
+pub use novamind_record::error::RunError;
+pub use novamind_record::folder::configuration::{
+    Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
+};
+pub use novamind_record::folder::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
+pub use novamind_record::folder::derived::{manifest_of, manifest_text};
+pub use novamind_record::folder::durable::{folder_of, write_whole};
+pub use novamind_record::folder::library::{self, Library};
+pub use novamind_record::folder::lock::{SERVER_FILE, is_being_played};
+pub use novamind_record::folder::manifest::{FORMAT, Manifest};
+pub use novamind_record::folder::mode::Mode;
+pub use novamind_record::folder::preview::{RunPreview, run_preview};
+pub use novamind_record::folder::runs::{
+    RunSummary, all_run_folders, base_of_runs, delete_run, find_run, find_run_to_read, list_runs,
+    participant_folder, run_folder,
+};
+pub use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
+pub use novamind_record::stamp::{EarlierRun, LessonStamp, StudyStamp};
+pub use novamind_record::trajectory::record::{
+    Activity, Calculated, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via,
+};
+pub use novamind_record::trajectory::{
+    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
+    policy_rationale, record, steady, written_moment,
+};
 pub use play::act::Preview;
 pub use play::advance::DayReport;
 pub use play::afterwards::lines_afterwards;
@@ -112,7 +121,6 @@ pub use play::once::WeekRequest;
 pub use play::parameters::{ChangedParameter, ChangedParameters};
 pub use play::personal_clock::TimeLeft;
 pub use play::presence::{IDLE_AFTER, Interface};
-pub use play::surroundings::Calculated;
 pub use play::undo::undone_calls;
 pub use play::week::Week;
 pub use playback::Playback;
@@ -120,7 +128,7 @@ pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
 pub use python::PYTHON_NOT_RUN;
 pub use resume::look::record_look;
-pub use resume::open::Access;
+pub use resume::open::{Access, end_run};
 pub use resume::rebuild::rebuild_database;
 pub use resume::rescue::{Rescued, rescue};
 pub use resume::sealing::SealKey;
@@ -137,17 +145,10 @@ pub use study::keys::{
 };
 pub use study::questions::{Form, Moment, Question, Questionnaire};
 pub use study::remarks::{REMARKS, Remark, remarks, write_remark};
-pub use study::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 pub use study::sittings::{Sitting, SittingState, sittings};
-pub use study::stamp::{EarlierRun, StudyStamp};
 pub use study::visit::{DECLINED, NextStep, Visit};
 pub use study::visit_log::{
     VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits, visits_of,
-};
-pub use trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via};
-pub use trajectory::{
-    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
-    policy_rationale, record, steady, written_moment,
 };
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use super::counterfactual::past::Past;
 use super::counterfactual::script::Move;
-use super::error::RunError;
-use super::folder::create::{NewRun, new_id};
-use super::folder::manifest::Manifest;
-use super::folder::mode::Mode;
 use super::lesson::lesson_file::Lesson;
 use super::state::Session;
-use super::study::rules::SessionRules;
 use super::why::{Sight, not_readable, sight};
+use crate::create::{NewRun, new_id};
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::rules::SessionRules;
 use novamind_tools::Refusal;
 
 /// The world of a run.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use novamind::lab::check_plays;
 use novamind::session::{
-    Access, Configuration, DecisionEdit, Ended, Mode, OfRecord, Session, Via, WhatIf, verify,
+    Access, Configuration, DecisionEdit, Ended, Lesson, Mode, OfRecord, Session, Via, WhatIf, verify,
 };
 use serde_json::json;
 
@@ -316,7 +316,8 @@ fn shipped_lessons_keep_their_promises_on_a_seed() {
     let names = configuration.lessons();
     assert_eq!(names.len(), 12);
     for name in names {
-        let lesson = Arc::new(configuration.lesson(&name).unwrap_or_else(|error| panic!("{name}: {error}")));
+        let lesson =
+            Arc::new(Lesson::named(&name, &configuration).unwrap_or_else(|error| panic!("{name}: {error}")));
         assert!(!lesson.debrief.is_empty() && !lesson.for_teachers.is_empty(), "{name}");
         let check = check_plays(&lesson, &[2]).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(check.problems().is_empty(), "{name}: {:?}", check.problems());

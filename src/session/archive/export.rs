@@ -11,10 +11,6 @@ use super::lab_key::LabKey;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
 use crate::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::durable::{folder_of, sync_folder};
-use crate::folder::manifest::Manifest;
 use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::play::afterwards::{AFTERWARDS, lines_afterwards};
 use crate::play::memo::notes_file;
@@ -22,7 +18,11 @@ use crate::resume::integrity::Integrity;
 use crate::resume::open::{Access, check_start};
 use crate::resume::sealing::SealKey;
 use crate::state::Session;
-use crate::trajectory::{Line, Trajectory};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::durable::{folder_of, sync_folder};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::{Line, Trajectory};
 
 /// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
 ///

@@ -11,12 +11,12 @@ use super::lab_key::{LabPublicKey, signer_of};
 use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
 use super::workshop::Workshop;
 use crate::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused};
-use crate::error::RunError;
-use crate::folder::durable::sync_folder;
-use crate::folder::manifest::Manifest;
-use crate::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
 use crate::resume::open::check_start;
-use crate::trajectory::{Line, Record, Trajectory};
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::sync_folder;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 
 /// What became of an archive.
 #[derive(Debug, Clone, PartialEq, Eq)]

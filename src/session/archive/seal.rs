@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::RunError;
+use novamind_record::error::RunError;
 
 /// Format of seals that this program writes.
 pub const SEAL_FORMAT: u32 = 1;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard};
 
-use crate::error::RunError;
-use crate::folder::create::new_id;
-use crate::folder::durable::create_folder;
+use crate::create::new_id;
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::create_folder;
 
 /// A folder of its own beside what is being made. It is hidden, holds nothing that is listed as a run, and is removed
 /// when the work is done or has failed.

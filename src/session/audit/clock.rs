@@ -1,7 +1,7 @@
 //! Whether the clock of a machine was changed while a run was played.
 
-use crate::trajectory::record::{Activity, Presence};
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::record::{Activity, Presence};
+use novamind_record::trajectory::{Line, Record};
 
 /// Seconds that a running clock may be corrected by without a finding.
 const CORRECTION: f64 = 2.0;

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::figures::attendance::Attendance;
 use crate::figures::sitting_count::SittingCount;
-use crate::folder::manifest::Manifest;
-use crate::trajectory::record::{Activity, Outcome};
-use crate::trajectory::{Record, Trajectory};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::{Activity, Outcome};
+use novamind_record::trajectory::{Record, Trajectory};
 
 /// How a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]

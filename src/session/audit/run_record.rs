@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::error::RunError;
-use crate::folder::manifest::Manifest;
-use crate::folder::runs::all_run_folders;
 use crate::study::definition::Study;
-use crate::study::stamp::StudyStamp;
-use crate::trajectory::Trajectory;
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::all_run_folders;
+use novamind_record::stamp::StudyStamp;
+use novamind_record::trajectory::Trajectory;
 
 /// A run as its folder records it.
 pub(super) struct RunRecord {

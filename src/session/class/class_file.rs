@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::handed_run::HandedPast;
 use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
-use super::stamp::HandoutStamp;
-use crate::error::RunError;
-use crate::folder::create::new_id;
-use crate::folder::durable::{create_folder, write_whole};
+use crate::create::new_id;
 use crate::lesson::lesson_file::Lesson;
-use crate::trajectory::now;
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::{create_folder, write_whole};
+use novamind_record::stamp::HandoutStamp;
+use novamind_record::trajectory::now;
 
 /// Name of the file in the folder of the class.
 const CLASS_FILE: &str = "class.toml";

@@ -12,13 +12,13 @@ use super::finding::ClassFinding;
 use super::handout::{ENDING, HandedOut, Handout};
 use super::reference::{ClassReference, references};
 use crate::archive::Workshop;
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::durable::write_whole;
-use crate::folder::manifest::Manifest;
 use crate::lesson::lesson_file::Lesson;
 use crate::state::AnswersCompanies;
 use crate::study::gather::{CollectNote, FoundRun, gather};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::durable::write_whole;
+use novamind_record::folder::manifest::Manifest;
 
 /// Name of the file in the folder of the class.
 const COLLECTED_FILE: &str = "collected.json";

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::RunError;
 use crate::figures::setting::values;
 use crate::lesson::definition::GuessForm;
 use crate::lesson::lesson_file::Lesson;
@@ -16,10 +15,11 @@ use crate::playback::{Origin, read};
 use crate::resume::integrity::Integrity;
 use crate::resume::sealing::SealKey;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
-use crate::trajectory::{Line, Record};
 use crate::why::WeekFigure;
 use novamind_database::{Location, Projector};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
+use novamind_record::trajectory::{Line, Record};
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

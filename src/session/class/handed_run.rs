@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use super::handout::HandedRun;
-use super::stamp::HandoutStamp;
 use crate::archive::Workshop;
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::manifest::{FORMAT, Manifest};
-use crate::folder::mode::Mode;
 use crate::resume::branch::write_past;
 use crate::resume::verify::verify;
-use crate::study::rules::SessionRules;
-use crate::trajectory::record::Parent;
-use crate::trajectory::{Line, Record, Trajectory, now};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::manifest::{FORMAT, Manifest};
+use novamind_record::folder::mode::Mode;
+use novamind_record::rules::SessionRules;
+use novamind_record::stamp::HandoutStamp;
+use novamind_record::trajectory::record::Parent;
+use novamind_record::trajectory::{Line, Record, Trajectory, now};
 
 /// A run that can be handed out.
 pub(super) struct HandedPast {

@@ -5,19 +5,19 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::stamp::{HandoutEntry, HandoutStamp};
 use crate::archive::is_run_name;
-use crate::error::RunError;
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::derived::Derived;
-use crate::folder::durable::{create_folder, write_whole};
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
-use crate::folder::runs::{list_runs, participant_folder};
+use crate::create::{NewRun, Storage};
 use crate::lesson::conduct::LessonEntry;
 use crate::lesson::lesson_file::Lesson;
 use crate::state::Session;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::durable::{create_folder, write_whole};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::folder::runs::{list_runs, participant_folder};
+use novamind_record::stamp::HandoutStamp;
 use novamind_world::params::ParameterSource;
 
 /// Format of hand-outs that this program writes.
@@ -233,5 +233,26 @@ impl Handout {
             let _ = std::fs::remove_dir_all(folder);
         }
         written
+    }
+}
+
+/// What a hand-out lays down for a new run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HandoutEntry {
+    /// The hand-out.
+    pub stamp: HandoutStamp,
+    /// Name of the run; one of its own where the hand-out names another.
+    pub run: Option<String>,
+}
+
+impl HandoutEntry {
+    /// For the run that a hand-out begins.
+    fn of_first_run(stamp: HandoutStamp) -> HandoutEntry {
+        HandoutEntry { run: Some(stamp.run.clone()), stamp }
+    }
+
+    /// For a run that follows the one that the hand-out begins.
+    pub(crate) fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
+        HandoutEntry { stamp, run: None }
     }
 }

@@ -12,4 +12,3 @@ pub(crate) mod finding;
 pub(crate) mod handed_run;
 pub(crate) mod handout;
 pub(crate) mod reference;
-pub(crate) mod stamp;

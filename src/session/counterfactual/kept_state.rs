@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::folder::manifest::Manifest;
 use crate::play::feed::Feed;
 use crate::play::overrides::Overrides;
 use crate::play::simulation::Simulation;
+use novamind_record::folder::manifest::Manifest;
 use novamind_voice::CompanyNames;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;

@@ -9,10 +9,10 @@ use super::branch::counterfactual;
 use super::edits::Edits;
 use super::kept_state::KeptState;
 use super::script::{Move, between, moves};
-use crate::error::RunError;
-use crate::folder::manifest::Manifest;
 use crate::lesson::over::is_lesson_over;
 use crate::playback::{Origin, read};
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
 
 /// Moments that are kept in memory besides the first: a moment is as large as its company.
 const KEPT: usize = 4;

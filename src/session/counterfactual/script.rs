@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::play::overrides::{ParameterChange, json_of_value};
-use crate::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
+use novamind_record::trajectory::{Line, Record};
 use novamind_tools::{Kind, ToolId};
 
 /// Something that moved the company on.

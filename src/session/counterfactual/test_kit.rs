@@ -4,11 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::mode::Mode;
+use crate::create::{NewRun, Storage};
 use crate::state::Session;
-use crate::trajectory::record::Via;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
 
 /// Weeks that are played before a change.
 pub(crate) const WEEKS: u32 = 7;

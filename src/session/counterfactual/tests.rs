@@ -12,12 +12,12 @@ use super::kept_state::KeptState;
 use super::last_read::OfRecord;
 use super::past::Past;
 use super::script::{Move, moves};
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::mode::Mode;
+use crate::create::{NewRun, Storage};
 use crate::playback::{Origin, read};
 use crate::state::Session;
-use crate::trajectory::record::Via;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_tools::ToolId;
 use novamind_world::held::Held;
 

@@ -3,11 +3,11 @@
 use serde_json::json;
 
 use super::explorer::{CurveBasis, CurveExplorer};
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::mode::Mode;
+use crate::create::{NewRun, Storage};
 use crate::state::Session;
-use crate::trajectory::record::Via;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_world::identifiers::{ByPlan, Group};
 
 fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {

@@ -8,8 +8,8 @@
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use super::attended_week::AttendedWeek;
-use crate::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
+use novamind_record::trajectory::{Line, Record};
 
 /// Seconds without a line that are a break where nothing else tells whether somebody was there: ten minutes.
 pub const BREAK_SECONDS: f64 = 600.0;
@@ -378,7 +378,9 @@ fn is_act(record: &Record) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::record::{Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View};
+    use novamind_record::trajectory::record::{
+        Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View,
+    };
 
     /// Notes records at seconds.
     fn attendance(lines: &[(i64, Record)]) -> Attendance {

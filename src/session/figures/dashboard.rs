@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::week::{WeekFigures, week_of};
-use crate::play::surroundings::Calculated;
 use novamind_base::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
+use novamind_record::trajectory::record::Calculated;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::market::social::own::OwnPost;
 use novamind_world::params::Params;

@@ -71,8 +71,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
+    use crate::create::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
 
     #[test]
     fn the_truth_lies_inside_the_range_whatever_the_noise_was() {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::week::WeekFigures;
-use crate::trajectory::record::Reversal;
+use novamind_record::trajectory::record::Reversal;
 use novamind_tools::{Forecast, ToolId};
 
 /// A confirmed action or week.

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::attendance::WATCHES_KEYS;
-use crate::trajectory::record::{Activity, ClockEvent, PresenceEvent};
-use crate::trajectory::{Line, Record, end_of};
+use novamind_record::trajectory::record::{Activity, ClockEvent, PresenceEvent};
+use novamind_record::trajectory::{Line, Record, end_of};
 
 /// How often the program took up the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]

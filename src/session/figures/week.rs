@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::booked::Booked;
-use crate::trajectory::record::FiledForecast;
 use novamind_base::notation::json_number;
+use novamind_record::trajectory::record::FiledForecast;
 use novamind_tools::{FORECAST_KEYS, Forecast};
 use novamind_world::events::{
     Category, DayFigures, Facts, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,

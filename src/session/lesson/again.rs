@@ -1,14 +1,14 @@
 //! Trying a step of a lesson again, from its beginning, in a run of its own.
 
 use super::conduct::LessonEntry;
-use crate::class::stamp::HandoutEntry;
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::mode::Mode;
+use crate::class::handout::HandoutEntry;
+use crate::create::{NewRun, Storage};
 use crate::resume::branch::branch_of_lesson;
 use crate::state::Session;
-use crate::trajectory::Trajectory;
-use crate::trajectory::record::{LessonEvent, LessonNote};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::Trajectory;
+use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_tools::Refusal;
 
 impl Session {
@@ -27,7 +27,7 @@ impl Session {
         let Some(folder) = &self.folder else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be tried again"));
         };
-        let refused = |error: crate::error::RunError| Refusal::new("not_saved", error.to_string());
+        let refused = |error: novamind_record::error::RunError| Refusal::new("not_saved", error.to_string());
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(refused)?;
         let begun = standing.own_part().weeks_of(step).0 * self.simulation.params.run.days_per_week;
         let mut again = branch_of_lesson(folder, &self.manifest, &trajectory, begun)?;

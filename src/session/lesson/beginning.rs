@@ -8,12 +8,12 @@ use super::conduct::LessonEntry;
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
-use crate::error::RunError;
 use crate::play::act::not_saved;
 use crate::play::advance::DayReport;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
-use crate::trajectory::{Line, Record, Trajectory};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
 
 impl Session {

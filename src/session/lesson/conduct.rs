@@ -9,14 +9,14 @@ use super::definition::{
     RationaleAsked,
 };
 use super::lesson_file::Lesson;
-use super::stamp::LessonStamp;
 use super::standing::LessonStanding;
-use crate::error::RunError;
-use crate::folder::create::NewRun;
+use crate::create::NewRun;
 use crate::play::act::not_saved;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
-use crate::trajectory::{Durability, Record};
+use novamind_record::error::RunError;
+use novamind_record::stamp::LessonStamp;
+use novamind_record::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Refusal, ToolId};
 
 /// Which lesson a new run is to be a part of.

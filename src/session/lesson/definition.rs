@@ -129,7 +129,7 @@ pub enum CapacityMover {
 }
 
 fn default_scenario() -> String {
-    crate::folder::configuration::DEFAULT_SCENARIO.to_owned()
+    novamind_record::folder::configuration::DEFAULT_SCENARIO.to_owned()
 }
 
 /// A step of a lesson: a task over some weeks.

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use super::definition::LessonPlan;
 use super::soundness::unsound;
-use crate::error::RunError;
-use crate::folder::durable::write_whole;
 use crate::lesson::definition::MeasuredFigure;
 use crate::lesson::measurement::NumberSource;
 use crate::why::FigureUnit;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::durable::write_whole;
 use novamind_world::params::{ParameterError, ParameterSource};
 
 /// Name of the plan in the folder of a run.
@@ -38,6 +39,28 @@ pub struct Lesson {
 }
 
 impl Lesson {
+    /// Reads a lesson by name; the file in the configuration folder takes precedence over the bundled one.
+    ///
+    /// # Errors
+    /// There is none of this name, or one of its files is wrong.
+    pub fn named(name: &str, configuration: &Configuration) -> Result<Lesson, RunError> {
+        if let Some(plan) = configuration.file(format!("lessons/{name}.toml"))? {
+            let texts =
+                configuration.file(format!("lessons/{name}.md"))?.map(|texts| texts.text).unwrap_or_default();
+            return Ok(Lesson::read(name, plan, texts, false)?);
+        }
+        let found = novamind_assets::lessons().into_iter().find(|(shipped, _)| *shipped == name);
+        let Some((_, plan)) = found else {
+            return Err(RunError::NoLesson {
+                name: name.to_owned(),
+                known: configuration.lessons().join(", "),
+            });
+        };
+        let plan = ParameterSource { name: format!("configs/lessons/{name}.toml"), text: plan.to_owned() };
+        let texts = novamind_assets::lesson_texts(name).unwrap_or_default().to_owned();
+        Ok(Lesson::read(name, plan, texts, true)?)
+    }
+
     /// Reads a lesson from the text of its plan, and its texts.
     ///
     /// # Errors

@@ -17,9 +17,7 @@ pub(crate) mod measurement;
 pub(crate) mod over;
 pub(crate) mod page;
 pub(crate) mod reference;
-pub(crate) mod shelf;
 pub(crate) mod soundness;
-pub(crate) mod stamp;
 pub(crate) mod standing;
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use super::debrief::DebriefStep;
 use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
 use crate::state::Session;
-use crate::trajectory::record::LessonNote;
+use novamind_record::trajectory::record::LessonNote;
 use novamind_tools::ToolId;
 
 /// What a student sees of a lesson.

@@ -7,12 +7,12 @@ use super::definition::{GoalBound, GuessForm, LessonGoal, ScheduledCalls};
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
-use crate::error::RunError;
-use crate::folder::configuration::Configuration;
-use crate::folder::create::NewRun;
-use crate::folder::mode::Mode;
+use crate::create::NewRun;
 use crate::state::{AnswersCompanies, Session};
-use crate::trajectory::record::Via;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_tools::Refusal;
 
 /// A play of a part that is done by its file.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::definition::{GuessForm, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
-use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
+use novamind_record::trajectory::{Line, Record};
 use novamind_tools::{Refusal, ToolId};
 
 /// A lesson that is played, and what happened in it.

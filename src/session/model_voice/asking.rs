@@ -4,11 +4,11 @@
 use super::scores::is_of;
 use super::speaker::Reply;
 use crate::state::Session;
-use crate::trajectory::record::{
+use novamind_database::Entry;
+use novamind_record::trajectory::record::{
     AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts,
 };
-use crate::trajectory::{Durability, Record};
-use novamind_database::Entry;
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::PublicPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::scoring::{self, PostForReaders};

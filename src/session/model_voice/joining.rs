@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::speaker::Speaker;
-use crate::error::RunError;
-use crate::folder::configuration::Configuration;
-use crate::folder::mode::Mode;
 use crate::resume::open::Access;
 use crate::state::Session;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
 use novamind_voice::model::settings::ModelSettings;
 
 /// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that

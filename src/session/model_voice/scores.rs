@@ -1,6 +1,6 @@
 //! What a language model made of the player's posts, as far as the record tells.
 
-use crate::trajectory::record::JudgedPost;
+use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::judge::Judgement;
 use novamind_world::identifiers::Group;
 use novamind_world::market::social::own::OwnPost;

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::endpoint::Endpoint;
-use crate::trajectory::record::JudgedPost;
+use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::settings::ModelSettings;
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::folder::configuration::Configuration;
+use novamind_record::folder::configuration::Configuration;
 use novamind_voice::model::settings::ModelSettings;
 
 /// How it answers.

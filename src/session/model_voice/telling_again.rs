@@ -1,7 +1,7 @@
 //! What a model said, taken from the record: nobody is asked again.
 
 use crate::state::Session;
-use crate::trajectory::record::VoiceAnswer;
+use novamind_record::trajectory::record::VoiceAnswer;
 use novamind_voice::model::scoring::ModelScore;
 use novamind_voice::model::wording;
 

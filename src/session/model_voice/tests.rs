@@ -10,19 +10,19 @@ use crate::counterfactual::branch::counterfactual_with_hashes;
 use crate::counterfactual::edits::Edits;
 use crate::counterfactual::kept_state::KeptState;
 use crate::counterfactual::script::{Move, moves};
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage, StudyEntry};
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
+use crate::create::{NewRun, Storage, StudyEntry};
 use crate::playback::{Origin, read};
 use crate::resume::open::Access;
 use crate::resume::verify::verify;
 use crate::state::Session;
-use crate::study::rules::SessionRules;
-use crate::study::stamp::StudyStamp;
-use crate::trajectory::record::{AskedOfModel, Via, VoiceAnswer, WordedPost, WordedPosts};
-use crate::trajectory::{Record, Trajectory};
 use novamind_database::Cell;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::rules::SessionRules;
+use novamind_record::stamp::StudyStamp;
+use novamind_record::trajectory::record::{AskedOfModel, Via, VoiceAnswer, WordedPost, WordedPosts};
+use novamind_record::trajectory::{Record, Trajectory};
 
 const POST: &str = "We doubled the quota of plan B today and cut its price by 20%.";
 

@@ -6,14 +6,14 @@ use serde_json::{Map, Value};
 
 use super::irrevocable::Irrevocable;
 use super::this_week::Step;
-use crate::error::RunError;
 use crate::figures::changes::{Change, changes, daily_cost};
 use crate::figures::journal::JournalEntry;
 use crate::figures::research_outlook::ResearchOutlook;
 use crate::state::Session;
-use crate::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
-use crate::trajectory::{Durability, Record};
 use novamind_base::notation::plain_numbers;
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{
     Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, Tool, ToolId, View,
     bounds, find,
@@ -296,16 +296,16 @@ impl Session {
         if let Some(ended) = self.history.ended {
             let day = self.simulation.world.day;
             let how = match ended {
-                crate::trajectory::record::Ended::Horizon => {
+                novamind_record::trajectory::record::Ended::Horizon => {
                     format!("it reached its last day, {day}")
                 }
-                crate::trajectory::record::Ended::Bankruptcy => {
+                novamind_record::trajectory::record::Ended::Bankruptcy => {
                     format!("the company went bankrupt on day {day}")
                 }
-                crate::trajectory::record::Ended::Abandoned => {
+                novamind_record::trajectory::record::Ended::Abandoned => {
                     format!("it was given up on day {day}")
                 }
-                crate::trajectory::record::Ended::Lesson => {
+                novamind_record::trajectory::record::Ended::Lesson => {
                     format!("its lesson was over on day {day}")
                 }
             };

@@ -5,11 +5,11 @@
 
 use std::path::Path;
 
-use crate::error::RunError;
 use crate::state::Session;
 use crate::study::answer_book::AnswerBook;
-use crate::trajectory::record::Outcome;
-use crate::trajectory::{Line, Record, Trajectory, read_regular_file};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::Outcome;
+use novamind_record::trajectory::{Line, Record, Trajectory, read_regular_file};
 
 /// Name of the file in the folder of the run.
 pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";

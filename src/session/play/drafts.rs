@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::folder::durable::write_whole;
 use crate::state::Session;
+use novamind_record::folder::durable::write_whole;
 use novamind_tools::ToolId;
 
 /// Name of the file in the folder of the run.
@@ -94,8 +94,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
+    use crate::create::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
 
     #[test]
     fn texts_are_kept_whole_and_leave_no_file_when_there_are_none() {

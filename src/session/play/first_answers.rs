@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::week::Week;
-use crate::trajectory::record::{Call, Ended, Outcome, RequestId};
+use novamind_record::trajectory::record::{Call, Ended, Outcome, RequestId};
 use novamind_tools::Refusal;
 
 /// The first answer to a request.

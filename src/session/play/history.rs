@@ -3,13 +3,13 @@
 use super::first_answers::FirstAnswers;
 use super::irrevocable::Irrevocable;
 use super::simulation::Simulation;
-use super::surroundings::Calculated;
 use super::this_week::ThisWeek;
 use crate::figures::changes::{Change, Decisions, changes};
 use crate::figures::groups::{self, GroupWeek};
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::WeekFigures;
-use crate::trajectory::record::Ended;
+use novamind_record::trajectory::record::Calculated;
+use novamind_record::trajectory::record::Ended;
 use novamind_world::events::{DayFigures, LedgerEntry, Notice};
 use novamind_world::identifiers::ByGroup;
 use novamind_world::state::World;

@@ -181,9 +181,9 @@ fn offering_in_words(&(plan, least, most): &(Plan, f64, f64)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::NewRun;
+    use crate::create::NewRun;
     use crate::state::Session;
+    use novamind_record::folder::configuration::Configuration;
 
     fn letter(customer: u32, offerings: &[(Plan, f64)]) -> Letter {
         let offerings =

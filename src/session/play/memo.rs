@@ -7,13 +7,13 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::error::RunError;
-use crate::folder::durable::{folder_of, sync_folder};
 use crate::resume::open::Access;
 use crate::state::Session;
-use crate::study::rules::FreeText;
-use crate::trajectory::record::Note;
-use crate::trajectory::{Durability, Record, Trajectory};
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::{folder_of, sync_folder};
+use novamind_record::rules::FreeText;
+use novamind_record::trajectory::record::Note;
+use novamind_record::trajectory::{Durability, Record, Trajectory};
 use novamind_tools::Refusal;
 
 const FILE: &str = "memo.md";
@@ -131,8 +131,8 @@ fn put_in_place(folder: &Path) -> Result<(), RunError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
+    use crate::create::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
 
     fn run(runs: &Path) -> (PathBuf, Session) {
         let storage = Storage::Runs(runs.to_owned());

@@ -7,7 +7,7 @@ use super::advance::{Filing, arguments_of_week};
 use super::first_answers::{FirstAnswer, mismatch};
 use super::week::Week;
 use crate::state::Session;
-use crate::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
+use novamind_record::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
 use novamind_tools::{Refusal, ToolId, find};
 
 /// Longest id, in characters.

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-use crate::trajectory::record::Override;
-use crate::trajectory::{Line, Record};
 use novamind_base::notation::json_number;
+use novamind_record::trajectory::record::Override;
+use novamind_record::trajectory::{Line, Record};
 use novamind_world::params::{ParameterError, Params};
 
 /// A parameter that is set to another value.

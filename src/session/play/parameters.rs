@@ -7,11 +7,11 @@ use serde_json::Value;
 use super::act::not_saved;
 use super::overrides::{ParameterChange, Taken, Unfit, json_of_value, value_of_json};
 use crate::figures::journal::JournalEntry;
-use crate::folder::configuration::Configuration;
-use crate::folder::mode::Mode;
 use crate::state::Session;
-use crate::trajectory::record::Override;
-use crate::trajectory::{Durability, Record};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Override;
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal};
 use novamind_world::params::{ParameterError, Params};
 

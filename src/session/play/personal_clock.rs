@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::study::rules::{AtLimit, TimeLimits};
-use crate::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
-use crate::trajectory::{Record, Trajectory};
+use novamind_record::rules::{AtLimit, TimeLimits};
+use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
+use novamind_record::trajectory::{Record, Trajectory};
 
 /// What the lines of a run tell of the clock.
 #[derive(Debug, Clone, Default)]
@@ -106,7 +106,7 @@ impl TimeLeft {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::record::{Clock, Closing, Limit};
+    use novamind_record::trajectory::record::{Clock, Closing, Limit};
 
     fn limit(limit: LimitScope, event: LimitEvent) -> Record {
         Record::Activity(Activity::Limit(Limit { limit, event, minutes: 10, used_ms: 0 }))

@@ -6,8 +6,8 @@ use crate::figures::attendance::TimeSpent;
 use crate::play::machine::Machine;
 use crate::play::recorder::Recorder;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
-use crate::trajectory::{Durability, Record, nanoseconds, now};
+use novamind_record::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
+use novamind_record::trajectory::{Durability, Record, nanoseconds, now};
 
 /// Time without a key after which a person counts as idle, where keys are watched.
 pub const IDLE_AFTER: Duration = Duration::from_secs(60);

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::error::RunError;
 use novamind_database::{
     Entry, Location, Position, ProjectionError, Projector, QueryConnection, Scope, copy_for_other_programs,
     query_connection,
 };
+use novamind_record::error::RunError;
 use novamind_tools::Refusal;
 use novamind_world::events::Facts;
 

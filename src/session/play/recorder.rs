@@ -3,14 +3,14 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use crate::error::RunError;
 use crate::figures::attendance::Attendance;
-use crate::folder::first_line::start_of;
-use crate::folder::lock::lock_run;
-use crate::folder::manifest::Manifest;
 use crate::play::afterwards::AFTERWARDS;
-use crate::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
 use novamind_database::Position;
+use novamind_record::error::RunError;
+use novamind_record::folder::first_line::start_of;
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
 
 /// What a run has that is played, and a run that is only read has not.
 pub(crate) struct Recorder {
@@ -160,7 +160,7 @@ impl Recorder {
 
     /// Puts another medium in place of the file.
     #[cfg(test)]
-    pub(crate) fn write_to(&mut self, medium: Box<dyn crate::trajectory::Medium>) {
+    pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.trajectory.write_to(medium);
     }
 }

@@ -2,11 +2,11 @@
 
 use super::entry::entry_of;
 use super::recorder::Recorder;
-use crate::error::RunError;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, View};
-use crate::trajectory::{Durability, Record, now, seconds};
 use novamind_database::Entry;
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{Activity, View};
+use novamind_record::trajectory::{Durability, Record, now, seconds};
 
 impl Session {
     /// The facts of day 0 with the words that belong to them.

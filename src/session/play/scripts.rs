@@ -6,13 +6,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::surroundings::Calculated;
 use crate::ask::query_refusal;
 use crate::python::refuse_unless_played;
 use crate::state::Session;
-use crate::trajectory::record::Via;
 use novamind_database::query::SQL_CANCELLED;
 use novamind_database::text;
+use novamind_record::trajectory::record::Calculated;
+use novamind_record::trajectory::record::Via;
 use novamind_tools::{
     Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python,
 };

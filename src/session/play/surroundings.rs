@@ -1,7 +1,5 @@
 //! What tools find around the company: words, the documents of the tables, and what is kept with the run.
 
-use serde::{Deserialize, Serialize};
-
 use novamind_tools::{ColumnDocument, Notebook, Surroundings, TableDocument};
 use novamind_world::events::Reading;
 
@@ -40,13 +38,4 @@ fn document_of(column: &'static novamind_database::Column) -> ColumnDocument {
         values: &column.values,
         description: &column.description,
     }
-}
-
-/// A calculation and what it said before the last week.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Calculated {
-    /// Name.
-    pub name: String,
-    /// Output, cut to what the dashboard shows.
-    pub output: String,
 }

@@ -1,7 +1,7 @@
 //! What was done since the last week ran, so that settings can be taken back.
 
 use super::irrevocable::Irrevocable;
-use crate::trajectory::record::Reversal;
+use novamind_record::trajectory::record::Reversal;
 use novamind_tools::ToolId;
 use novamind_world::settings::Settings;
 

@@ -12,7 +12,7 @@ use super::this_week::Step;
 use crate::figures::changes::{Change, changes};
 use crate::figures::journal::JournalEntry;
 use crate::state::Session;
-use crate::trajectory::record::{Reversal, Via};
+use novamind_record::trajectory::record::{Reversal, Via};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::settings::Settings;
 

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use crate::figures::week::WeekFigures;
-use crate::trajectory::record::Ended;
 use novamind_base::notation::json_number;
+use novamind_record::trajectory::record::Ended;
 
 /// A week, or the rest of one, that was simulated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -10,11 +10,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::error::RunError;
 use crate::figures::week::week_of;
-use crate::folder::derived::Derived;
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
 use crate::lesson::over::is_lesson_over;
 use crate::play::projection::Projection;
 use crate::play::simulation::Simulation;
@@ -22,9 +18,13 @@ use crate::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 use crate::playback::record_view::RecordView;
 use crate::resume::open::check_start;
 use crate::state::Session;
-use crate::trajectory::record::Note;
-use crate::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_database::{Location, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Note;
+use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;
 use novamind_world::params::Params;
 

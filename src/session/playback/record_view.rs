@@ -1,7 +1,7 @@
 //! A line of a trajectory as somebody looks back at it: what it says, and what came of its forecasts.
 
 use crate::figures::scored_forecast::ScoredForecast;
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::{Line, Record};
 use novamind_tools::Forecast;
 
 /// A line, and what is known by now of what it foresaw.
@@ -46,7 +46,7 @@ impl RecordView {
 mod tests {
     use super::*;
     use crate::figures::scored_forecast::Verdict;
-    use crate::trajectory::record::{Advance, FiledForecast, Via};
+    use novamind_record::trajectory::record::{Advance, FiledForecast, Via};
 
     #[test]
     fn a_forecast_says_what_came_and_what_is_still_to_come() {

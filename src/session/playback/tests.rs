@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::record_view::RecordView;
+use crate::create::{NewRun, Storage};
 use crate::figures::week::Forecasts;
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
 use crate::playback::*;
 use crate::resume::verify::verify;
-use crate::trajectory::record::{Call, Outcome, Via};
-use crate::trajectory::{Durability, Record};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::{Call, Outcome, Via};
+use novamind_record::trajectory::{Durability, Record};
 
 /// A run that was recorded into a folder.
 pub(crate) struct Recorded {
@@ -96,7 +96,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     }
     assert_eq!(
         playback.session().ended(),
-        Some(crate::trajectory::record::Ended::Horizon),
+        Some(novamind_record::trajectory::record::Ended::Horizon),
         "the end comes with its week"
     );
     assert!(playback.at_end());
@@ -223,7 +223,7 @@ fn an_unfinished_baseline_is_not_taken_over() {
     let playback = Playback::open(&run.folder).expect("it opens");
     assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
-    crate::folder::runs::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    crate::resume::open::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
     let playback = Playback::open(&run.folder).expect("it opens");
     assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
 }
@@ -291,7 +291,7 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
     call.args = json!({"operations": 77, "development": 5});
     call.outcome = Outcome::Accepted(json!({"operations": 77.0, "development": 5.0}));
     let copy = run.folder.with_file_name("other.jsonl");
-    let mut writer = crate::trajectory::TrajectoryWriter::create(&copy).expect("a file");
+    let mut writer = novamind_record::trajectory::TrajectoryWriter::create(&copy).expect("a file");
     for line in &lines {
         writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }

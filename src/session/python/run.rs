@@ -13,9 +13,9 @@ use super::process::{ScriptEnd, ScriptProcess};
 use crate::ask::rows_as_json;
 use crate::play::scripts::Said;
 use crate::state::Session;
-use crate::trajectory::record::QuerySource;
 use novamind_database::Rows;
 use novamind_database::query::Limits;
+use novamind_record::trajectory::record::QuerySource;
 use novamind_tools::Refusal;
 
 /// Statements that one script may ask.

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use super::unnamed::{UnnamedBranch, write_branch};
-use crate::error::RunError;
-use crate::folder::create::new_id;
-use crate::folder::durable::create_folder;
-use crate::folder::manifest::{FORMAT, Manifest};
-use crate::folder::mode::Mode;
+use crate::create::new_id;
 use crate::state::Session;
-use crate::study::rules::SessionRules;
-use crate::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
-use crate::trajectory::{Line, Record, Trajectory, now};
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::create_folder;
+use novamind_record::folder::manifest::{FORMAT, Manifest};
+use novamind_record::folder::mode::Mode;
+use novamind_record::rules::SessionRules;
+use novamind_record::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
+use novamind_record::trajectory::{Line, Record, Trajectory, now};
 use novamind_tools::Refusal;
 
 impl Session {

@@ -7,14 +7,14 @@ use std::path::Path;
 
 use super::sealing::SealKey;
 use super::snapshot::{FILE, Snapshot};
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::manifest::Manifest;
-use crate::trajectory::record::VoiceAnswer;
-use crate::trajectory::{BRANCH_THEM, Record, Trajectory};
 use novamind_database::{
     Location, Position, file_digest, has_layout_of_now, is_consistent, owner_of, position_of,
 };
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::VoiceAnswer;
+use novamind_record::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// What stood beside the trajectory before it was read.
 pub(crate) struct Integrity {

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use super::open::Access;
-use crate::error::RunError;
-use crate::folder::derived::manifest_of;
-use crate::folder::lock::lock_run;
-use crate::folder::mode::Mode;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, Look};
-use crate::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::manifest_of;
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::{Activity, Look};
+use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
 /// Records that a command reads the run in a folder. Does nothing for runs that are over, or no baseline, or stand where
 /// nobody can go on with them.
@@ -72,10 +72,10 @@ fn lacks_its_week(trajectory: &Trajectory) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
+    use crate::create::{NewRun, Storage};
     use crate::resume::verify::verify;
-    use crate::trajectory::record::Via;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
     use serde_json::json;
 
     fn baseline(runs: &Path, weeks: usize) -> (std::path::PathBuf, Session) {

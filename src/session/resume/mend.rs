@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::integrity::Integrity;
 use super::open::{Access, open_projector, usable};
-use crate::error::RunError;
 use crate::state::Session;
-use crate::trajectory::Trajectory;
 use novamind_database::{Location, ProjectionError, is_consistent};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::Trajectory;
 
 impl Session {
     /// What keeps the database from being written; none where it holds everything, or will soon.
@@ -53,10 +53,10 @@ mod tests {
 
     use super::*;
     use crate::Cell;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
+    use crate::create::{NewRun, Storage};
     use crate::play::week::Week;
-    use crate::trajectory::record::Via;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
 
     /// Rows that tell how far the database has come.
     fn rows(session: &mut Session) -> Vec<Vec<Cell>> {

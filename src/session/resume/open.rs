@@ -7,10 +7,6 @@ use super::integrity::Integrity;
 use super::sealing::SealKey;
 use super::snapshot::{Recalled, Snapshot};
 use super::unnamed::remove_leftovers;
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::lock::lock_run;
-use crate::folder::manifest::Manifest;
 use crate::play::advance::DayReport;
 use crate::play::facts_chain::StateHash;
 use crate::play::personal_clock::PersonalClock;
@@ -18,9 +14,14 @@ use crate::play::projection::Projection;
 use crate::play::recorder::Recorder;
 use crate::play::surroundings::RunSurroundings;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, Closing, Outcome};
-use crate::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_database::{Entry, Location, Position, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::find_run;
+use novamind_record::trajectory::record::{Activity, Closing, Outcome};
+use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_world::params::Params;
 
 /// What may be done with an opened run.
@@ -371,4 +372,13 @@ pub(crate) fn usable<'a>(
     let line = trajectory.lines.get(position.seq as usize)?;
     let complete = rows_from.is_none_or(|seq| seq >= position.seq);
     (line.hash == position.line_hash && complete).then_some(snapshot)
+}
+
+/// Ends an unfinished run for good.
+///
+/// # Errors
+/// It is over already, in use, or cannot be read.
+pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
+    session.end().map_err(|refusal| RunError::NotPossible(refusal.message))
 }

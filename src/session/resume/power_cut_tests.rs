@@ -8,12 +8,12 @@ use serde_json::json;
 use super::open::Access;
 use super::sealing::SealKey;
 use crate::archive::{Export, Imported, import_run};
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
-use crate::folder::durable::probe;
+use crate::create::{NewRun, Storage};
 use crate::state::Session;
-use crate::trajectory::record::{Ended, Via};
-use crate::trajectory::{PageCache, Trajectory};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::durable::probe;
+use novamind_record::trajectory::record::{Ended, Via};
+use novamind_record::trajectory::{PageCache, Trajectory};
 use novamind_tools::Refusal;
 
 fn new_run(runs: &Path) -> NewRun {

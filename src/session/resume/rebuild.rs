@@ -7,13 +7,13 @@ use super::integrity::Integrity;
 use super::open::{Access, Keeping, check_start, open_projector, usable};
 use super::sealing::SealKey;
 use super::snapshot::SnapshotPlace;
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::lock::lock_run;
-use crate::folder::manifest::Manifest;
 use crate::state::Session;
-use crate::trajectory::{Record, Trajectory};
 use crate::xray::permission::may_look_inside;
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::{Record, Trajectory};
 
 /// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
 /// and the last day of the run. The key is that of the run's snapshots.
@@ -91,11 +91,11 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
-    use crate::folder::mode::Mode;
-    use crate::folder::runs::end_run;
-    use crate::trajectory::record::Via;
+    use crate::create::{NewRun, Storage};
+    use crate::resume::open::end_run;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::folder::mode::Mode;
+    use novamind_record::trajectory::record::Via;
 
     const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];
 

@@ -7,12 +7,12 @@ use super::branch::branch_of;
 use super::integrity::Integrity;
 use super::open::check_start;
 use super::sealing::SealKey;
-use crate::error::RunError;
-use crate::folder::derived::Derived;
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
 use crate::state::Session;
-use crate::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
 
 /// What was saved of a damaged run.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,16 +4,16 @@
 use std::path::{Path, PathBuf};
 
 use super::open::Access;
-use crate::error::RunError;
-use crate::folder::durable::{create_folder, sync_folder};
-use crate::folder::first_line::start_of;
-use crate::folder::lock::lock_run;
-use crate::folder::manifest::Manifest;
-use crate::folder::runs::{UNNAMED, is_unnamed};
 use crate::lesson::lesson_file::Lesson;
 use crate::state::Session;
-use crate::trajectory::record::Branch;
-use crate::trajectory::{Durability, Line, Record, TrajectoryWriter};
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::{create_folder, sync_folder};
+use novamind_record::folder::first_line::start_of;
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::{UNNAMED, is_unnamed};
+use novamind_record::trajectory::record::Branch;
+use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 
 /// The folder of a branch without a name; it goes with this, unless the branch was named.
 pub(crate) struct UnnamedBranch {

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::integrity::Integrity;
 use super::sealing::SealKey;
-use crate::error::RunError;
 use crate::playback::{Origin, read};
 use crate::state::Session;
+use novamind_record::error::RunError;
 
 /// What a verification found out.
 #[derive(Debug, Clone, PartialEq, Eq)]

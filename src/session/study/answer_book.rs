@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
-use crate::trajectory::{Line, Record};
+use novamind_record::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
+use novamind_record::trajectory::{Line, Record};
 
 /// What the record of a run says about questions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::error::RunError;
-use crate::folder::runs::participant_folder;
+use novamind_record::error::RunError;
+use novamind_record::folder::runs::participant_folder;
 use novamind_world::params::ParameterError;
 
 /// Name of the file in the folder of the study.

@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use super::definition::Study;
 use super::questions::{Moment, Question, Questionnaire};
-use super::rules::FreeText;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, Answered, Asked};
+use novamind_record::rules::FreeText;
+use novamind_record::trajectory::record::{Activity, Answered, Asked};
 
 /// A question that is due.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::archive::{LabPublicKey, import_run, is_archive_name};
-use crate::error::RunError;
-use crate::folder::manifest::Manifest;
 use crate::play::afterwards::lines_afterwards;
 use crate::study::assignment::Assignment;
 use crate::study::definition::shortened;
 use crate::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
-use crate::trajectory::{Trajectory, nanoseconds};
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::{Trajectory, nanoseconds};
 
 /// How deep folders are searched.
 const DEEPEST: usize = 12;

@@ -5,8 +5,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::archive::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
-use crate::error::RunError;
 use crate::resume::sealing::SealKey;
+use novamind_record::error::RunError;
 
 /// File of the private key.
 pub const LAB_KEY_FILE: &str = "lab.key";

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::RunError;
-use crate::folder::durable::append_synced;
-use crate::trajectory::{now, read_regular_text};
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::append_synced;
+use novamind_record::trajectory::{now, read_regular_text};
 
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";

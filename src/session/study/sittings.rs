@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::folder::derived::Derived;
-use crate::folder::lock::is_being_played;
-use crate::folder::manifest::Manifest;
-use crate::folder::runs::{all_run_folders, last_lines};
 use crate::study::definition::Study;
-use crate::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
-use crate::trajectory::{Line, Record, now, seconds};
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::lock::is_being_played;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::{all_run_folders, last_lines};
+use novamind_record::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
+use novamind_record::trajectory::{Line, Record, now, seconds};
 
 /// A run of a study as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::error::RunError;
-use crate::folder::durable::{create_folder, write_whole};
-use crate::trajectory::now;
+use novamind_record::error::RunError;
+use novamind_record::folder::durable::{create_folder, write_whole};
+use novamind_record::trajectory::now;
 
 /// Name of the file.
 const FILE: &str = "withdrawn.toml";

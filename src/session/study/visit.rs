@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 
 use super::assignment::Place;
 use super::definition::{PracticeOffer, SeedPlan, Study};
-use super::stamp::StudyStamp;
 use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
-use crate::error::RunError;
-use crate::folder::agreement::Agreed;
-use crate::folder::configuration::Configuration;
-use crate::folder::consent::ConsentText;
-use crate::folder::create::{NewRun, Storage, StudyEntry};
-use crate::folder::derived::Derived;
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
-use crate::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
+use crate::create::{NewRun, Storage, StudyEntry};
 use crate::resume::open::Access;
 use crate::state::Session;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::consent::Agreed;
+use novamind_record::folder::consent::ConsentText;
+use novamind_record::folder::derived::Derived;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
+use novamind_record::stamp::StudyStamp;
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \

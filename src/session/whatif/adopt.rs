@@ -10,11 +10,11 @@ use crate::counterfactual::companies::{CallHere, in_other_numbers};
 use crate::counterfactual::edits::{Edits, FollowedUsage};
 use crate::counterfactual::script::{Move, PastCall, moves};
 use crate::figures::capacity_by_usage::UsageRule;
-use crate::folder::mode::Mode;
 use crate::resume::branch::not_saved;
 use crate::state::Session;
-use crate::trajectory::record::{JudgedPost, Via, VoiceAnswer};
-use crate::trajectory::{Line, Record, Trajectory};
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::{JudgedPost, Via, VoiceAnswer};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::customers::numbers::CustomerNumbers;
 

@@ -9,10 +9,10 @@ use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage
 use crate::counterfactual::kept_state::KeptState;
 use crate::counterfactual::script::{Move, PastCall};
 use crate::figures::capacity_by_usage::UsageRule;
-use crate::folder::mode::Mode;
 use crate::play::overrides::value_of_json;
 use crate::play::parameters::unknown;
 use novamind_base::notation::json_number;
+use novamind_record::folder::mode::Mode;
 use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;

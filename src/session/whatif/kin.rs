@@ -6,10 +6,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::figures::week::week_of;
-use crate::folder::derived::manifest_of;
-use crate::folder::runs::{RunSummary, list_runs, run_folder};
-use crate::trajectory::record::Parent;
-use crate::trajectory::{Line, Record, Trajectory};
+use novamind_record::folder::derived::manifest_of;
+use novamind_record::folder::runs::{RunSummary, list_runs, run_folder};
+use novamind_record::trajectory::record::Parent;
+use novamind_record::trajectory::{Line, Record, Trajectory};
 
 /// A run in the tree.
 #[derive(Debug, Clone)]

@@ -9,8 +9,8 @@ use crate::counterfactual::script::Move;
 use crate::lesson::definition::LessonPart;
 use crate::lesson::lesson_file::Lesson;
 use crate::lesson::standing::LessonStanding;
-use crate::trajectory::Trajectory;
 use crate::why::not_readable;
+use novamind_record::trajectory::Trajectory;
 use novamind_tools::{Refusal, ToolId};
 
 /// Where the student of an unfinished lesson stands, and whether the lesson of a run, over or not, moves the capacity by itself.

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
+use crate::create::{NewRun, Storage};
 use crate::figures::capacity_by_usage::UsageRule;
-use crate::folder::configuration::Configuration;
-use crate::folder::create::{NewRun, Storage};
 use crate::lesson::conduct::LessonEntry;
 use crate::lesson::lesson_file::Lesson;
-use crate::trajectory::record::Via;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Via;
 
 /// A company that grows out of its servers; what moves them is the lesson.
 const PLAN: &str = r#"

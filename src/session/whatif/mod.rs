@@ -39,9 +39,9 @@ use super::counterfactual::script::{Move, PastDecision};
 use super::why::{Sight, not_readable, sight};
 use crate::figures::capacity_by_usage::UsageRule;
 use crate::figures::week::WeekFigures;
-use crate::folder::mode::Mode;
 use crate::lesson::standing::LessonStanding;
 use crate::state::Session;
+use novamind_record::folder::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::events::DayFigures;
 

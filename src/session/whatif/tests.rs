@@ -8,11 +8,11 @@ use serde_json::json;
 use super::*;
 use crate::counterfactual::last_read::LastRead;
 use crate::counterfactual::test_kit::played;
-use crate::folder::mode::Mode;
 use crate::resume::open::Access;
 use crate::state::Session;
-use crate::trajectory::record::Via;
-use crate::trajectory::{Record, Trajectory};
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_record::trajectory::{Record, Trajectory};
 use novamind_tools::ToolId;
 use novamind_world::identifiers::Group;
 

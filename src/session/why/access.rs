@@ -1,8 +1,8 @@
 //! Who may see causes. They are simulated with the hidden state, so they tell of it.
 
 use super::quantity::WeekQuantity;
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 
@@ -59,11 +59,11 @@ pub(super) fn unknown_group(group: Group, week: u32) -> Refusal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::NewRun;
+    use crate::create::NewRun;
     use crate::state::Session;
-    use crate::study::rules::{ResultsShown, SessionRules};
-    use crate::study::stamp::StudyStamp;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::rules::{ResultsShown, SessionRules};
+    use novamind_record::stamp::StudyStamp;
 
     #[test]
     fn an_ended_baseline_tells_its_causes_unless_its_study_shows_no_results_of_it() {

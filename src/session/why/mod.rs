@@ -27,11 +27,11 @@ pub use week::{Why, WhyPart};
 
 use super::counterfactual::last_read::OfRecord;
 use super::counterfactual::past::Past;
-use super::error::RunError;
 use crate::lesson::over::is_lesson_over;
 use crate::state::Session;
 pub(crate) use access::{Sight, sight};
 use laboratory::Laboratory;
+use novamind_record::error::RunError;
 use novamind_tools::Refusal;
 
 /// How far an answer has come.

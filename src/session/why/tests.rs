@@ -7,10 +7,10 @@ use serde_json::json;
 use super::simulated_week::{GroupOfWeek, SimulatedWeek};
 use super::*;
 use crate::counterfactual::test_kit::{WEEKS, played};
-use crate::folder::mode::Mode;
-use crate::trajectory::record::Via;
 use crate::xray::measured_group::MeasuredGroup;
 use crate::xray::mood::mood_of;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_tools::ToolId;
 use novamind_world::identifiers::{ByGroup, Group};
 

@@ -1,9 +1,9 @@
 //! The hidden state after the last day, as it stands: for policies and figures of debug runs.
 
 use super::mood::mood_of;
-use crate::folder::mode::Mode;
 use crate::play::simulation::Simulation;
 use crate::state::Session;
+use novamind_record::folder::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_voice::judge::Judgement;
 use novamind_world::customers::columns::Block;

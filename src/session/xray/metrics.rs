@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::permission::REFUSED_LOOK;
-use crate::error::RunError;
-use crate::folder::derived::manifest_of;
-use crate::folder::mode::Mode;
 use crate::play::advance::DayReport;
 use crate::resume::open::Access;
 use crate::resume::sealing::SealKey;
 use crate::state::Session;
-use crate::trajectory::Trajectory;
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::manifest_of;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::Trajectory;
 use novamind_tools::Refusal;
 use novamind_world::day::watch::Unwatched;
 

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::folder::manifest::Manifest;
-use crate::folder::mode::Mode;
 use crate::lesson::over::is_lesson_over;
 use crate::state::Session;
-use crate::trajectory::record::{Activity, Ended, XrayLook};
-use crate::trajectory::{Durability, Record};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::{Activity, Ended, XrayLook};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::Refusal;
 
 /// Said where hidden state is not shown.

@@ -105,11 +105,11 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::folder::configuration::Configuration;
-    use crate::folder::create::{NewRun, Storage};
-    use crate::folder::mode::Mode;
-    use crate::study::rules::{ResultsShown, SessionRules};
-    use crate::study::stamp::StudyStamp;
+    use crate::create::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::folder::mode::Mode;
+    use novamind_record::rules::{ResultsShown, SessionRules};
+    use novamind_record::stamp::StudyStamp;
 
     #[test]
     fn a_run_of_which_its_study_shows_no_results_stays_closed_once_it_is_over() {

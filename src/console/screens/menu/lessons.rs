@@ -32,7 +32,7 @@ impl LessonList {
     /// Reads the lessons.
     pub(super) fn of(configuration: &Configuration) -> LessonList {
         let read = |name: String| {
-            let lesson = configuration.lesson(&name).map(Arc::new).map_err(|error| error.to_string());
+            let lesson = Lesson::named(&name, configuration).map(Arc::new).map_err(|error| error.to_string());
             ListedLesson { name, lesson }
         };
         LessonList { lessons: configuration.lessons().into_iter().map(read).collect() }

@@ -1,0 +1,135 @@
+//! What a run is, as the first line of its trajectory says; `run.toml` repeats it, and is made anew where it does not.
+
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::manifest::Manifest;
+use crate::error::RunError;
+use crate::trajectory::{Line, open_regular_file};
+
+/// What a run is, and what is wrong with its `run.toml`.
+pub struct Derived {
+    /// The manifest.
+    pub manifest: Manifest,
+    /// Why `run.toml` has to be made anew; none where it says what the first line says.
+    pub problem: Option<String>,
+}
+
+impl Derived {
+    /// What the run in a folder is. Where the first line cannot be read `run.toml` has to do: whoever then opens the run is
+    /// told what is wrong with the line.
+    ///
+    /// # Errors
+    /// The run is of another format or other mechanics; neither file can be read.
+    pub fn of(folder: &Path) -> Result<Derived, RunError> {
+        let path = folder.join("trajectory.jsonl");
+        let own = Manifest::read(folder);
+        let Some(line) = first_line(&path) else {
+            return own.map(|manifest| Derived { manifest, problem: None });
+        };
+        let told = Manifest::of_start(&path, Some(&line))?;
+        let (manifest, problem) = match own {
+            Err(error) => (told, Some(unusable(&error))),
+            // Two files of different runs: which of them is in the wrong place the folder tells, or nobody.
+            Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
+            Ok(own) => {
+                let manifest = with_what_no_line_says(told, &own);
+                let problem = difference(&own, &manifest);
+                (manifest, problem)
+            }
+        };
+        Ok(Derived { manifest, problem })
+    }
+
+    /// Makes `run.toml` anew if it has to be; returns what the person should know.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn restore(&self, folder: &Path) -> Result<Option<String>, RunError> {
+        let Some(problem) = &self.problem else { return Ok(None) };
+        self.manifest.write(folder)?;
+        Ok(Some(format!("{problem} and was made anew from the first line of the trajectory.")))
+    }
+}
+
+/// What a run is, as the first line of its trajectory says, whatever `run.toml` holds.
+///
+/// # Errors
+/// As [`manifest_text`].
+pub fn manifest_of(folder: &Path) -> Result<Manifest, RunError> {
+    Derived::of(folder).map(|derived| derived.manifest)
+}
+
+/// `run.toml` of a run as the first line of its trajectory says, whatever the file holds.
+///
+/// # Errors
+/// The run is of another format or other mechanics; neither file can be read.
+pub fn manifest_text(folder: &Path) -> Result<String, RunError> {
+    Derived::of(folder).map(|derived| derived.manifest.text())
+}
+
+/// The first line of a file, if it is whole.
+fn first_line(path: &Path) -> Option<Line> {
+    let mut bytes = Vec::new();
+    BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
+    Line::first(bytes.strip_suffix(b"\n")?)
+}
+
+/// Takes from `run.toml` what the first line does not say.
+fn with_what_no_line_says(told: Manifest, own: &Manifest) -> Manifest {
+    // The first line is written a moment after the run was created; in format 1 it says nothing of earlier runs.
+    let earlier_runs = if told.format == 1 { own.earlier_runs } else { told.earlier_runs };
+    Manifest { created: own.created.clone(), earlier_runs, ..told }
+}
+
+fn unusable(error: &RunError) -> String {
+    match error {
+        RunError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound => {
+            "run.toml was missing".to_owned()
+        }
+        RunError::Damaged { line, problem, .. } => {
+            format!("run.toml was damaged (line {line}: {})", problem.trim())
+        }
+        RunError::OtherFormat { .. } => "run.toml named another format".to_owned(),
+        RunError::OtherMechanics { .. } => "run.toml named other mechanics".to_owned(),
+        error => format!("run.toml could not be read ({error})"),
+    }
+}
+
+/// What `run.toml` says otherwise than the first line, a sentence each; `told` is what the line says.
+pub fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
+    let own = match Manifest::read(folder) {
+        Ok(own) => own,
+        Err(error) => return vec![unusable(&error)],
+    };
+    let shown = |value: Option<Value>| value.map_or("nothing".to_owned(), |value| value.to_string());
+    let differ = differences(&own, &with_what_no_line_says(told.clone(), &own)).into_iter();
+    let words = |(name, own, told): (String, Option<Value>, Option<Value>)| {
+        format!("run.toml says {name} = {}, the first line {}", shown(own), shown(told))
+    };
+    differ.map(words).collect()
+}
+
+/// Names of the fields in which two manifests differ.
+fn difference(own: &Manifest, told: &Manifest) -> Option<String> {
+    let names: Vec<String> = differences(own, told).into_iter().map(|(name, ..)| name).collect();
+    (!names.is_empty()).then(|| format!("run.toml said otherwise ({})", names.join(", ")))
+}
+
+/// The fields in which two manifests differ, with the values of both.
+fn differences(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
+    if own == told {
+        return Vec::new();
+    }
+    let fields = |manifest: &Manifest| match Value::try_from(manifest) {
+        Ok(Value::Table(table)) => table,
+        _ => Table::new(),
+    };
+    let (own, told) = (fields(own), fields(told));
+    let names: BTreeSet<&String> = own.keys().chain(told.keys()).collect();
+    let differ = names.into_iter().filter(|name| own.get(*name) != told.get(*name));
+    differ.map(|name| (name.clone(), own.get(name).cloned(), told.get(name).cloned())).collect()
+}

@@ -1,0 +1,311 @@
+//! Named queries: those that came with the program, and a person's own in the folder `queries` of the configuration.
+//!
+//! The comments at the head of a file say what it is; each stands on a line of its own:
+//!
+//! ```text
+//! -- title: Retention by cohort
+//! -- what: One sentence on what one learns.
+//! -- chart: line x y [y …]
+//! ```
+//!
+//! The last line is optional: how the result is drawn, as `line` or as `bar`, from columns that are named.
+
+use std::path::PathBuf;
+
+use super::configuration::Configuration;
+use super::durable::{create_folder, write_whole};
+use crate::error::RunError;
+use novamind_base::nearest;
+
+/// Folder of a person's own queries.
+const FOLDER: &str = "queries";
+
+/// Longest name of a file.
+const LONGEST_NAME: usize = 60;
+
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../../assets/queries/", $name, ".sql")))),*]
+    };
+}
+
+const SHIPPED: [(&str, &str); 47] = shipped![
+    "cash-by-week",
+    "ledger-by-category",
+    "costs-by-week",
+    "cost-of-a-unit",
+    "revenue-by-plan",
+    "revenue-by-group",
+    "prices-paid",
+    "discounts-given",
+    "biggest-accounts",
+    "billing-waves",
+    "in-app-ads",
+    "growth-by-week",
+    "acquisition-by-source",
+    "cost-per-first-bill",
+    "cost-per-lead",
+    "advertising-and-growth",
+    "leads-by-week-and-source",
+    "choices-of-new-leads",
+    "lost-leads",
+    "retention-by-cohort",
+    "retention-by-plan",
+    "churn-by-tenure",
+    "leavers-by-group",
+    "usage-against-quota",
+    "usage-by-group",
+    "capacity-headroom",
+    "service-by-week",
+    "outage-days",
+    "ageing-of-issues",
+    "support-wait",
+    "repeated-issues",
+    "deal-outcomes",
+    "first-offers",
+    "deals-by-week",
+    "negotiation-length",
+    "companies-by-group",
+    "companies-by-industry",
+    "research-log",
+    "forecast-error",
+    "forecast-record",
+    "our-posts",
+    "public-talk",
+    "economy",
+    "what-we-know-of-groups",
+    "prices-and-settings",
+    "targeted-settings",
+    "notices",
+];
+
+/// How a chart is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChartKind {
+    /// Lines over x.
+    Line,
+    /// A bar for each row.
+    Bar,
+}
+
+/// How a result is to be drawn: names of its columns.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ChartLine {
+    /// Lines or bars.
+    pub kind: ChartKind,
+    /// Column along which it is drawn.
+    pub x: String,
+    /// Columns that are drawn; at least one.
+    pub ys: Vec<String>,
+}
+
+/// What the comments at the head of a statement say.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Head {
+    /// Few words.
+    pub title: Option<String>,
+    /// What one learns.
+    pub what: Option<String>,
+    /// How the result is drawn.
+    pub chart: Option<ChartLine>,
+}
+
+/// A named query.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedQuery {
+    /// Name of its file.
+    pub name: String,
+    /// Few words.
+    pub title: String,
+    /// What one learns; empty if nobody has said so.
+    pub what: String,
+    /// The statement with the comments at its head.
+    pub sql: String,
+    /// Whether it is the person's own.
+    pub own: bool,
+}
+
+/// All named queries.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Library(Vec<NamedQuery>);
+
+impl Head {
+    /// Reads the comments before a statement.
+    pub fn of(sql: &str) -> Head {
+        let mut head = Head::default();
+        for line in lines_of_head(sql) {
+            let Some((word, value)) = line.trim_start_matches('-').split_once(':') else { continue };
+            let value = value.trim();
+            match word.trim() {
+                "title" if !value.is_empty() => head.title = Some(value.to_owned()),
+                "what" if !value.is_empty() => head.what = Some(value.to_owned()),
+                "chart" => head.chart = ChartLine::read(value),
+                _ => {}
+            }
+        }
+        head
+    }
+}
+
+/// A statement without the comments at its head.
+pub fn body(sql: &str) -> &str {
+    let head = lines_of_head(sql).count();
+    sql.splitn(head + 1, '\n').nth(head).unwrap_or("")
+}
+
+/// Lines of comments before a statement.
+fn lines_of_head(sql: &str) -> impl Iterator<Item = &str> {
+    sql.lines().map(str::trim).take_while(|line| line.is_empty() || line.starts_with("--"))
+}
+
+impl ChartLine {
+    fn read(text: &str) -> Option<ChartLine> {
+        let mut words = text.split_whitespace().map(str::to_owned);
+        let kind = match words.next()?.as_str() {
+            "line" => ChartKind::Line,
+            "bar" => ChartKind::Bar,
+            _ => return None,
+        };
+        let (x, ys) = (words.next()?, words.collect::<Vec<_>>());
+        (!ys.is_empty()).then_some(ChartLine { kind, x, ys })
+    }
+}
+
+impl NamedQuery {
+    fn read(name: &str, text: &str, own: bool) -> NamedQuery {
+        let head = Head::of(text);
+        NamedQuery {
+            name: name.to_owned(),
+            title: head.title.unwrap_or_else(|| name.replace(['-', '_'], " ")),
+            what: head.what.unwrap_or_default(),
+            sql: text.trim().to_owned(),
+            own,
+        }
+    }
+
+    /// The statement without the comments at its head.
+    pub fn body(&self) -> &str {
+        body(&self.sql)
+    }
+}
+
+impl Library {
+    /// What came with the program.
+    pub fn shipped() -> Library {
+        Library(SHIPPED.iter().map(|(name, text)| NamedQuery::read(name, text, false)).collect())
+    }
+
+    /// A person's own queries, then those that came with the program; of two with one name, the person's counts. A
+    /// file that cannot be read stands in the list and says why.
+    pub fn of(configuration: &Configuration) -> Library {
+        let own = |name: String| match configuration.file(format!("{FOLDER}/{name}.sql")) {
+            Ok(source) => source.map(|source| NamedQuery::read(&name, &source.text, true)),
+            Err(error) => Some(NamedQuery { what: error.to_string(), ..NamedQuery::read(&name, "", true) }),
+        };
+        let mut all: Vec<NamedQuery> =
+            configuration.names_ending(FOLDER, ".sql").into_iter().filter_map(own).collect();
+        for shipped in Library::shipped().0 {
+            if all.iter().all(|own| own.name != shipped.name) {
+                all.push(shipped);
+            }
+        }
+        Library(all)
+    }
+
+    /// The queries in their order.
+    pub fn queries(&self) -> &[NamedQuery] {
+        &self.0
+    }
+
+    /// A query by its name.
+    pub fn find(&self, name: &str) -> Option<&NamedQuery> {
+        self.0.iter().find(|query| query.name == name)
+    }
+
+    /// Names near to one that does not exist.
+    pub fn near(&self, name: &str) -> Vec<&str> {
+        nearest(name, self.0.iter().map(|query| query.name.as_str()))
+    }
+}
+
+/// The name of a file from what a person has typed: blanks become hyphens. None if other signs than letters, digits,
+/// `-` and `_` are in it, or if it is too long.
+pub fn file_name(typed: &str) -> Option<String> {
+    let name = typed.split_whitespace().collect::<Vec<_>>().join("-").to_lowercase();
+    let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_');
+    (!name.is_empty() && name.len() <= LONGEST_NAME && name.chars().all(fits)).then_some(name)
+}
+
+/// Saves a person's own query, over one of the same name; returns its file. A statement without a title gets one.
+///
+/// # Errors
+/// There is no folder for it, or it cannot be written.
+pub fn save(configuration: &Configuration, name: &str, title: &str, sql: &str) -> Result<PathBuf, RunError> {
+    let folder = configuration.folder.clone().unwrap_or_default().join(FOLDER);
+    create_folder(&folder)?;
+    let path = folder.join(format!("{name}.sql"));
+    let head = match Head::of(sql).title {
+        Some(_) => String::new(),
+        None => format!("-- title: {}\n", title.trim()),
+    };
+    write_whole(&path, format!("{head}{}\n", sql.trim()).as_bytes())?;
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_head_of_a_statement_is_read() {
+        let sql = "-- title: A b\n--what:  c: d.\n\n-- chart: bar x y z\nSELECT 1 -- title: no\n-- what: no";
+        let head = Head::of(sql);
+        assert_eq!((head.title.as_deref(), head.what.as_deref()), (Some("A b"), Some("c: d.")));
+        let chart = head.chart.expect("a chart");
+        assert_eq!(
+            (chart.kind, chart.x.as_str(), chart.ys.join(" ")),
+            (ChartKind::Bar, "x", "y z".to_owned())
+        );
+        assert_eq!(Head::of("SELECT 1"), Head::default());
+        for wrong in ["pie x y", "line x", "line", ""] {
+            assert_eq!(ChartLine::read(wrong), None, "{wrong}");
+        }
+        assert_eq!(NamedQuery::read("x", sql, false).body(), "SELECT 1 -- title: no\n-- what: no");
+        assert_eq!(NamedQuery::read("x", "-- only", false).body(), "");
+    }
+
+    #[test]
+    fn names_of_files_hold_no_other_signs() {
+        assert_eq!(file_name("  My best  Query_2 ").as_deref(), Some("my-best-query_2"));
+        for wrong in ["", "  ", "../x", "a.b", "a/b", "a\u{0}b", &"x".repeat(61)] {
+            assert_eq!(file_name(wrong), None, "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn a_persons_queries_are_saved_and_go_first() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
+        assert_eq!(Library::of(&configuration), Library::shipped());
+        save(&configuration, "mine", "Mine!", "SELECT 1").expect("saved");
+        save(&configuration, "economy", "x", "-- title: Other\nSELECT 2").expect("saved");
+        save(&configuration, "mine", "Mine!", "SELECT 3").expect("saved again");
+        let library = Library::of(&configuration);
+        assert_eq!(library.queries().len(), SHIPPED.len() + 1);
+        let mine = library.find("mine").expect("saved");
+        assert_eq!((mine.title.as_str(), mine.body(), mine.own), ("Mine!", "SELECT 3", true));
+        assert_eq!(library.find("economy").map(|own| own.title.as_str()), Some("Other"));
+        assert_eq!(library.queries()[0].name, "economy", "own ones first, by name");
+        assert_eq!(library.near("econmy"), ["economy"]);
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_says_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::create_dir(folder.path().join("queries")).expect("a folder");
+        std::fs::write(folder.path().join("queries/broken.sql"), [0xff, 0xfe]).expect("a file");
+        let library = Library::of(&Configuration { folder: Some(folder.path().to_owned()), voice: None });
+        let broken = library.find("broken").expect("it stands in the list");
+        assert!(broken.what.contains("broken.sql") && broken.sql.is_empty(), "{broken:?}");
+    }
+}

@@ -1,0 +1,351 @@
+//! `run.toml`: what a run is (docs/formats/run-folder.md#runtoml).
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use super::configuration::Configuration;
+use super::consent::Consent;
+use super::durable::write_whole;
+use super::mode::Mode;
+use crate::error::RunError;
+use crate::rules::{ResultsShown, SessionRules};
+use crate::stamp::HandoutStamp;
+use crate::stamp::LessonStamp;
+use crate::stamp::{EarlierRun, StudyStamp};
+use crate::trajectory::record::Parent;
+use crate::trajectory::{Line, Record};
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::MECHANICS;
+use novamind_world::fault::Fault;
+use novamind_world::params::{ParameterError, ParameterSource, Params, shipped_sources};
+
+/// Format of trajectories and manifests that this program writes.
+pub const FORMAT: u32 = 2;
+
+/// What a run is; written once, never changed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Format of the run's files.
+    pub format: u32,
+    /// Version of the program that created it.
+    pub version: String,
+    /// Number of the mechanics it is played by; runs of the first builds do not name it.
+    #[serde(default = "first_mechanics")]
+    pub mechanics: u32,
+    /// Name of the run: eight hexadecimal digits.
+    pub id: String,
+    /// When it was created, RFC 3339.
+    pub created: String,
+    /// Seed of all chance.
+    pub seed: u64,
+    /// Last day.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub cash: f64,
+    /// Scenario.
+    pub scenario: String,
+    /// Mode.
+    pub mode: Mode,
+    /// Who plays, as the experimenter names them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub participant: Option<String>,
+    /// Earlier runs of the same person with this seed and scenario.
+    pub earlier_runs: u32,
+    /// Digest of the effective parameters.
+    pub parameters_digest: String,
+    /// The mechanism that is wrong on purpose; debug runs only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault: Option<Fault>,
+    /// Which text the person agreed to, and when; none if none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub consent: Option<Consent>,
+    /// Run and line this one branched from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parent: Option<Parent>,
+    /// The study it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<StudyStamp>,
+    /// The lesson it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<LessonStamp>,
+    /// The hand-out of a class that it began with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub handout: Option<HandoutStamp>,
+    /// The language model that lends its voice; none in nearly all runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
+    /// By which rules it is played; none in runs of format 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rules: Option<SessionRules>,
+    /// Everything that the same person played before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub earlier: Vec<EarlierRun>,
+    /// Every parameter that differs from the shipped ones.
+    #[serde(default, skip_serializing_if = "Table::is_empty")]
+    pub parameters: Table,
+}
+
+fn first_mechanics() -> u32 {
+    1
+}
+
+impl Manifest {
+    /// The name of the run as a number; 0 for a name that is none.
+    pub fn number(&self) -> u32 {
+        u32::from_str_radix(&self.id, 16).unwrap_or(0)
+    }
+
+    /// Reads the manifest of a run's folder.
+    ///
+    /// # Errors
+    /// It is missing, damaged, or of another format.
+    pub fn read(folder: &Path) -> Result<Manifest, RunError> {
+        let path = folder.join("run.toml");
+        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
+        // A later format may have fields that this program does not know.
+        let format = text.parse::<Table>().ok().and_then(|table| table.get("format")?.as_integer());
+        if let Some(format) = format.filter(|format| *format > i64::from(FORMAT)) {
+            let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            return Err(RunError::OtherFormat { id, format: format as u32, known: FORMAT });
+        }
+        let manifest: Manifest = toml::from_str(&text).map_err(|error| RunError::Damaged {
+            line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
+            problem: error.message().to_owned(),
+            safe: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
+            path,
+        })?;
+        manifest.understood()
+    }
+
+    /// This manifest, if this program plays by its mechanics and reads its format.
+    fn understood(self) -> Result<Manifest, RunError> {
+        if self.format > FORMAT {
+            return Err(RunError::OtherFormat { id: self.id, format: self.format, known: FORMAT });
+        }
+        if self.mechanics != MECHANICS {
+            return Err(RunError::OtherMechanics {
+                id: self.id,
+                version: self.version,
+                recorded: self.mechanics,
+                own: MECHANICS,
+            });
+        }
+        if self.fault.is_some() && self.mode != Mode::Debug {
+            let message =
+                format!("run {} is said to have a planted fault, which only a debug run can have", self.id);
+            return Err(RunError::NotPossible(message));
+        }
+        Ok(self)
+    }
+
+    /// The manifest as the first line of a trajectory tells it, for one that stands alone.
+    ///
+    /// # Errors
+    /// The line is no start of a run.
+    pub fn of_start(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
+        let damaged = |problem: &str| RunError::Damaged {
+            path: path.to_owned(),
+            line: 1,
+            problem: problem.to_owned(),
+            safe: "Nothing was changed".to_owned(),
+        };
+        let Some((line, Record::Start(start))) = line.map(|line| (line, &line.record)) else {
+            return Err(damaged("the trajectory does not begin with the start of a run"));
+        };
+        let start = start.as_ref().clone();
+        let earlier_runs = same_world(&start.earlier_runs, start.seed, &start.scenario);
+        Manifest {
+            format: start.format,
+            version: start.version,
+            mechanics: start.mechanics,
+            id: start.run,
+            created: line.at.clone(),
+            seed: start.seed,
+            days: start.days,
+            cash: start.cash,
+            scenario: start.scenario,
+            mode: start.mode,
+            participant: start.participant,
+            earlier_runs,
+            consent: start.consent,
+            parameters_digest: start.parameters_digest,
+            parent: start.parent,
+            study: start.study,
+            lesson: start.lesson,
+            handout: start.handout,
+            voice: start.voice,
+            rules: start.rules,
+            earlier: start.earlier_runs,
+            fault: start.fault,
+            parameters: start.overrides,
+        }
+        .understood()
+    }
+
+    /// Writes the manifest into a run's folder, so that it is there whole or not at all.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), RunError> {
+        let path = folder.join("run.toml");
+        write_whole(&path, self.text().as_bytes())
+    }
+
+    /// The manifest as its file holds it.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("a manifest holds plain values")
+    }
+
+    /// By which rules it is played. A practice shows no result, whatever the session shows: figures of how somebody
+    /// played would tell them before the session what is looked at.
+    pub fn session_rules(&self) -> SessionRules {
+        let rules = self.recorded_rules();
+        match self.is_practice() {
+            true => SessionRules { results: ResultsShown::None, ..rules },
+            false => rules,
+        }
+    }
+
+    /// The rules that the start of the run records; those of its mode, where it records none.
+    pub fn recorded_rules(&self) -> SessionRules {
+        self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
+    }
+
+    /// Whether it is the practice of a study.
+    pub fn is_practice(&self) -> bool {
+        self.study.as_ref().is_some_and(|study| study.practice)
+    }
+
+    /// Whether the run is played by other rules than the shipped scenario whose name it has: parameters, or a fault.
+    pub fn has_own_parameters(&self) -> bool {
+        let shipped = Configuration::shipped();
+        let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
+        match self.scenario.as_str() {
+            // Lists of runs ask this of every run, and nearly all of them are of this kind.
+            "default" => !self.parameters.is_empty() || self.fault.is_some(),
+            // A scenario can use keys that the version that recorded the run did not know.
+            _ => as_shipped().is_none_or(|params| {
+                ![params.digest(), params.earlier_digest()].contains(&self.parameters_digest)
+            }),
+        }
+    }
+
+    /// The parameters the run was recorded with.
+    ///
+    /// # Errors
+    /// This program's parameters are others, or the differences do not fit it.
+    pub fn params(&self) -> Result<Params, RunError> {
+        let other = |own: String| RunError::OtherParameters {
+            id: self.id.clone(),
+            version: self.version.clone(),
+            recorded: self.parameters_digest.clone(),
+            own,
+        };
+        let text = toml::to_string(&self.parameters).expect("a table reads back");
+        let over = ParameterSource { name: "run.toml".to_owned(), text };
+        let loaded = Params::load(&shipped_sources(), &[over])
+            .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
+        let params = Params { fault: self.fault, ..loaded };
+        let own = params.digest();
+        if own == self.parameters_digest { Ok(params) } else { Err(other(own)) }
+    }
+}
+
+/// How many of a person's runs were in this world with this luck.
+pub fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
+    earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
+}
+
+/// Every parameter that differs from the shipped ones, as a table of tables.
+pub fn differences(params: &Params) -> Table {
+    let as_table = |params: &Params| match Value::try_from(params) {
+        Ok(Value::Table(table)) => table,
+        _ => Table::new(),
+    };
+    differing(&as_table(params), &as_table(&Params::shipped()))
+}
+
+fn differing(own: &Table, shipped: &Table) -> Table {
+    own.iter()
+        .filter_map(|(key, value)| match (value, shipped.get(key)) {
+            (value, Some(same)) if value == same => None,
+            (Value::Table(own), Some(Value::Table(shipped))) => {
+                Some((key.clone(), Value::Table(differing(own, shipped))))
+            }
+            (value, _) => Some((key.clone(), value.clone())),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::folder::configuration::Configuration;
+
+    fn manifest(params: &Params) -> Manifest {
+        Manifest {
+            format: FORMAT,
+            version: "0.1.0".to_owned(),
+            mechanics: MECHANICS,
+            id: "0123abcd".to_owned(),
+            created: "2026-11-21T10:00:00Z".to_owned(),
+            seed: 42,
+            days: 500,
+            cash: 1_000_000.0,
+            scenario: "paper".to_owned(),
+            mode: Mode::Sandbox,
+            participant: None,
+            earlier_runs: 0,
+            consent: None,
+            parameters_digest: params.digest(),
+            parent: None,
+            study: None,
+            lesson: None,
+            handout: None,
+            voice: None,
+            rules: None,
+            earlier: Vec::new(),
+            fault: None,
+            parameters: differences(params),
+        }
+    }
+
+    #[test]
+    fn every_scenario_comes_back_from_its_differences() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let configuration = Configuration::shipped();
+        for name in configuration.scenarios() {
+            let scenario = configuration.scenario(&name).expect("a scenario");
+            let params = configuration.parameters(&scenario, &[], false).expect("its parameters");
+            let own = manifest(&params);
+            own.write(folder.path()).expect("it is written");
+            let read = Manifest::read(folder.path()).expect("it is read");
+            assert_eq!(read, own);
+            assert_eq!(read.params().expect("its parameters"), params);
+        }
+        assert!(differences(&Params::shipped()).is_empty());
+    }
+
+    #[test]
+    fn other_parameters_and_formats_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut own = manifest(&Params::shipped());
+        own.parameters_digest = "0000000000000000".to_owned();
+        assert!(own.params().expect_err("another digest").to_string().contains("Nothing was changed"));
+        own.mechanics = MECHANICS + 1;
+        own.write(folder.path()).expect("it is written");
+        let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();
+        assert!(error.contains("version 0.1.0") && error.contains("Nothing was changed"), "{error}");
+        own.mechanics = MECHANICS;
+        own.format = FORMAT + 1;
+        own.write(folder.path()).expect("it is written");
+        let error = Manifest::read(folder.path()).expect_err("another format").to_string();
+        assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
+        std::fs::write(folder.path().join("run.toml"), "format = 1\nversion = ").expect("a file");
+        let error = Manifest::read(folder.path()).expect_err("damaged").to_string();
+        assert!(error.contains("line 2") && error.contains("trajectory was not touched"), "{error}");
+    }
+}

@@ -1,0 +1,74 @@
+//! How a run of the folder went, read from the lines that close its weeks: for lists and comparisons, without
+//! simulating anything.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::derived::Derived;
+use super::runs::run_folder;
+use crate::error::RunError;
+use crate::trajectory::{Line, Record, open_regular_file};
+
+/// The preview of a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct RunPreview {
+    /// Day and cash: day 0, then every day on which a week ended.
+    pub cash: Vec<(u32, f64)>,
+    /// Active subscriptions of individuals after the last week.
+    pub subscribers: u64,
+    /// Seats of companies after the last week.
+    pub seats: u64,
+    /// Monthly recurring revenue after the last week, dollars.
+    pub recurring_revenue: f64,
+}
+
+/// Reads the preview of a run. Lines that cannot be read are passed over: opening the run tells what is wrong with it.
+///
+/// # Errors
+/// The run or its files are not there.
+pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
+    let folder = run_folder(runs, id);
+    let Derived { manifest, .. } = Derived::of(&folder)?;
+    let path = folder.join("trajectory.jsonl");
+    let file = open_regular_file(&path).map_err(RunError::io(&path))?;
+    let mut preview = RunPreview { cash: vec![(0, manifest.cash)], ..RunPreview::default() };
+    let closing = ["\"kind\":\"week\"", "\"kind\":\"step\"", "\"kind\":\"end\""];
+    for line in BufReader::new(file).split(b'\n') {
+        let line = line.map_err(RunError::io(&path))?;
+        let text = String::from_utf8_lossy(&line);
+        // Most lines are calls; only those that look like the end of a week are read.
+        if closing.iter().any(|kind| text.contains(kind))
+            && let Some(line) = Line::unchecked(text.as_bytes())
+        {
+            preview.add(line.day, &line.record);
+        }
+    }
+    Ok(preview)
+}
+
+impl RunPreview {
+    fn add(&mut self, day: u32, record: &Record) {
+        let cash = match record {
+            Record::Week(closing) | Record::Step(closing) => closing.cash,
+            Record::End(end) => end.cash,
+            _ => return,
+        };
+        match self.cash.last_mut() {
+            Some(last) if last.0 == day => last.1 = cash,
+            _ => self.cash.push((day, cash)),
+        }
+        let Some(figures) = record.closing().map(|closing| &closing.figures) else { return };
+        if let Some(count) = figures.get("individual_subscribers").and_then(Value::as_u64) {
+            self.subscribers = count;
+        }
+        if let Some(count) = figures.get("enterprise_seats").and_then(Value::as_u64) {
+            self.seats = count;
+        }
+        if let Some(dollars) = figures.get("recurring_revenue").and_then(Value::as_f64) {
+            self.recurring_revenue = dollars;
+        }
+    }
+}

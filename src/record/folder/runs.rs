@@ -1,0 +1,329 @@
+//! The folder of runs: names, locks, the list.
+
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::derived::Derived;
+use super::lock::{is_served, lock_run};
+use super::manifest::Manifest;
+use super::mode::Mode;
+use crate::error::RunError;
+use crate::stamp::EarlierRun;
+use crate::trajectory::record::Ended;
+use crate::trajectory::{Line, Record};
+use crate::trajectory::{open_regular_file, policy_of, read_regular_file};
+
+/// A run in the list.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name.
+    pub id: String,
+    /// When it was created, RFC 3339.
+    pub created: String,
+    /// When it was last played, RFC 3339.
+    pub played: String,
+    /// Mode.
+    pub mode: Option<Mode>,
+    /// Seed.
+    pub seed: u64,
+    /// Scenario.
+    pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
+    /// A language model judges the posts of the player.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub judged_by_model: bool,
+    /// It goes on from weeks of another run.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_branch: bool,
+    /// The policy that decides its weeks; none where somebody else decides one, as far as its last lines tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub policy: Option<String>,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub starting_cash: f64,
+    /// Cash after the last week, dollars.
+    pub cash: f64,
+    /// How it ended, if it did.
+    pub ended: Option<Ended>,
+    /// A program plays it at this moment, through a server.
+    pub is_served: bool,
+    /// The run of which this folder is a copy under another name, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copy_of: Option<String>,
+    /// Why it cannot be read, if it cannot.
+    pub problem: Option<String>,
+}
+
+/// Folder of a run.
+pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
+    runs.join(id)
+}
+
+/// Folder, below that of all runs, in which participants have folders of their own.
+pub const PARTICIPANTS: &str = "participants";
+
+/// Folder of one participant's runs, so that several people at one machine do not meet each other's by accident.
+///
+/// # Errors
+/// The label cannot name a folder.
+pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+    if label.is_empty() || label.len() > 40 || label.starts_with('.') || !label.chars().all(fits) {
+        return Err(format!(
+            "{label:?} is not a participant label: use up to 40 letters, digits, hyphens, underscores and \
+             dots, not beginning with a dot"
+        ));
+    }
+    Ok(runs.join(PARTICIPANTS).join(label))
+}
+
+/// What the folder of a branch begins with that is not whole yet.
+pub const UNNAMED: &str = ".branch-";
+
+/// Whether a folder holds a branch that is not whole yet, or what is left of one: it is no run.
+pub fn is_unnamed(folder: &Path) -> bool {
+    folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNNAMED))
+}
+
+/// Whose runs a folder holds, if it is a participant's own.
+pub fn label_of(runs: &Path) -> Option<String> {
+    let own = runs.parent()?.file_name()? == PARTICIPANTS;
+    runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
+}
+
+/// The folder of the runs of all participants that a folder of runs belongs to, and the label of the participant whose own
+/// folder it is.
+pub fn base_of_runs(runs: &Path) -> (&Path, Option<String>) {
+    let label = label_of(runs);
+    let base = label.as_ref().and_then(|_| runs.parent()?.parent());
+    (base.unwrap_or(runs), label)
+}
+
+/// Every folder of runs that belongs with this one: the common one, then those of the participants by their labels.
+pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
+    let (base, _) = base_of_runs(runs);
+    let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
+    let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    own.sort_unstable();
+    own.insert(0, base.to_owned());
+    own
+}
+
+/// All runs, the last played first.
+///
+/// # Errors
+/// The folder exists and cannot be read.
+pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
+    let entries = match std::fs::read_dir(runs) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(RunError::Io { path: runs.to_owned(), error }),
+    };
+    let mut list: Vec<RunSummary> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|folder| !is_unnamed(folder))
+        .filter(|folder| folder.join("run.toml").exists() || folder.join("trajectory.jsonl").exists())
+        .map(|folder| summarise(&folder))
+        .collect();
+    list.sort_by(|left, right| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
+    Ok(list)
+}
+
+fn summarise(folder: &Path) -> RunSummary {
+    let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let manifest = match Derived::of(folder) {
+        Ok(Derived { manifest, .. }) => manifest,
+        Err(error) => return unreadable(id, error.to_string()),
+    };
+    let (last, problem) = match last_lines(&folder.join("trajectory.jsonl")) {
+        Ok(lines) => (lines, None),
+        Err(problem) => (Vec::new(), Some(problem)),
+    };
+    // Day and cash after the days that ran last, and how the run ended.
+    let closed = last.iter().rev().find_map(|line| match &line.record {
+        Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.cash)),
+        Record::End(end) => Some((line.day, end.cash)),
+        _ => None,
+    });
+    let ended = last.iter().rev().find_map(|line| match &line.record {
+        Record::End(end) => Some(end.reason),
+        _ => None,
+    });
+    RunSummary {
+        copy_of: (manifest.id != id).then(|| manifest.id.clone()),
+        id,
+        has_own_parameters: manifest.has_own_parameters()
+            || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
+        judged_by_model: manifest.voice.as_ref().is_some_and(|model| model.judge),
+        is_branch: manifest.parent.is_some(),
+        policy: policy_of(&last).map(str::to_owned),
+        created: manifest.created.clone(),
+        played: last.last().map_or(manifest.created, |line| line.at.clone()),
+        mode: Some(manifest.mode),
+        seed: manifest.seed,
+        scenario: manifest.scenario,
+        participant: manifest.participant,
+        day: closed.map_or(0, |(day, _)| day),
+        days: manifest.days,
+        starting_cash: manifest.cash,
+        cash: match closed {
+            Some((_, cash)) => cash,
+            // Nobody knows what is left.
+            None if problem.is_some() => 0.0,
+            None => manifest.cash,
+        },
+        ended,
+        is_served: is_served(folder),
+        problem,
+    }
+}
+
+/// Whether parameters may have been set while a run went on: in debug runs, in lessons, and in what branches from them.
+fn may_set_parameters(manifest: &Manifest) -> bool {
+    manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
+}
+
+/// Whether a run has set a parameter while it went on.
+fn sets_parameters(trajectory: &Path) -> bool {
+    let Ok(bytes) = read_regular_file(trajectory) else { return false };
+    let kind = br#""kind":"override""#;
+    bytes.windows(kind.len()).any(|window| window == kind)
+}
+
+fn unreadable(id: String, problem: String) -> RunSummary {
+    RunSummary {
+        id,
+        created: String::new(),
+        played: String::new(),
+        mode: None,
+        seed: 0,
+        scenario: String::new(),
+        has_own_parameters: false,
+        judged_by_model: false,
+        is_branch: false,
+        policy: None,
+        participant: None,
+        day: 0,
+        days: 0,
+        starting_cash: 0.0,
+        cash: 0.0,
+        ended: None,
+        is_served: false,
+        copy_of: None,
+        problem: Some(problem),
+    }
+}
+
+/// The lines at the end of a trajectory, enough to hold its last week; read from the end, for runs may be long.
+///
+/// # Errors
+/// The file cannot be read, or holds no line: then nobody knows how far the run has come.
+pub fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
+    let mut window: u64 = 64 << 10;
+    loop {
+        let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
+        let lines: Vec<Line> = text.lines().filter_map(|line| Line::unchecked(line.as_bytes())).collect();
+        let has_week = lines.iter().any(Line::closes_days);
+        let begins = || lines.iter().any(|line| matches!(line.record, Record::Start(_)));
+        match (has_week, whole) {
+            (true, _) => return Ok(lines),
+            (false, true) if begins() => return Ok(lines),
+            (false, true) => return Err(format!("{}: none of its lines can be read", path.display())),
+            (false, false) => window *= 8,
+        }
+    }
+}
+
+fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
+    let mut file = open_regular_file(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(window)))?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
+}
+
+/// The folder of a run to play, by its name, a unique beginning of it, or `latest`: the newest unfinished one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |run| run.ended.is_none())
+}
+
+/// The folder of a run to read, by its name, a unique beginning of it, or `latest`: the newest one.
+///
+/// # Errors
+/// There is none, or several begin like this.
+pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
+    find(runs, id, |_| true)
+}
+
+/// Whoever is nobody in particular finds the runs of all participants, as a list shows them.
+fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
+    let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
+    let folders = if label_of(runs).is_some() { vec![runs.to_owned()] } else { all_run_folders(runs) };
+    let mut list: Vec<(PathBuf, RunSummary)> = Vec::new();
+    for folder in folders {
+        list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
+    }
+    // Of those played at the same moment the first in the common folder.
+    list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
+    if id == "latest" {
+        let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
+        return newest.map(|(folder, _)| folder).ok_or_else(missing);
+    }
+    if let Some((folder, _)) = list.iter().find(|(_, run)| !id.is_empty() && run.id == id) {
+        return Ok(folder.clone());
+    }
+    let mut fitting = list.iter().filter(|(_, run)| id.len() >= 2 && run.id.starts_with(id));
+    match (fitting.next(), fitting.next()) {
+        (Some((folder, _)), None) => Ok(folder.clone()),
+        (Some(_), Some(_)) => {
+            Err(RunError::NotPossible(format!("several run ids begin with {id}; type more of the id")))
+        }
+        _ => Err(missing()),
+    }
+}
+
+/// Deletes a run with everything in its folder.
+///
+/// # Errors
+/// It is in use, or cannot be removed.
+pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let folder = find_run(runs, id)?;
+    let lock = lock_run(&folder, id)?;
+    drop(lock);
+    std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
+}
+
+/// What a person has played before: runs of their label in the folder of runs and in those of its participants; of
+/// somebody without a label those in this very folder.
+pub fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
+    let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let whole = entries.map(|entry| entry.path()).filter(|folder| !is_unnamed(folder));
+    let manifests = whole.filter_map(|folder| Derived::of(&folder).ok());
+    let manifests = manifests.map(|derived| derived.manifest);
+    let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
+    let mut earlier: Vec<EarlierRun> = own
+        .map(|manifest| EarlierRun {
+            run: manifest.id,
+            mode: manifest.mode,
+            seed: manifest.seed,
+            scenario: manifest.scenario,
+            created: manifest.created,
+        })
+        .collect();
+    earlier.sort_by(|one, other| one.created.cmp(&other.created).then_with(|| one.run.cmp(&other.run)));
+    earlier
+}

@@ -1,0 +1,10 @@
+//! The record of a run: its lines and their chain of hashes, its manifest, its folder with lock and configuration, and
+//! what the first line says of the study, the lesson and the hand-out that the run belongs to.
+
+pub mod error;
+pub mod folder;
+pub mod rules;
+pub mod stamp;
+pub mod trajectory;
+
+pub use error::RunError;

@@ -1,0 +1,225 @@
+//! `trajectory.jsonl`: the truth of a run, one line per action (docs/formats/trajectory.md).
+//!
+//! Lines are appended and never changed. Each names the hash of the one before and ends with a sum of its own, so
+//! what is cut, flipped or inserted shows, in the last line too. A line whose last byte is missing was never
+//! confirmed and is dropped.
+
+mod line;
+mod medium;
+#[cfg(any(test, feature = "test-kit"))]
+mod page_cache;
+mod policy;
+pub mod record;
+mod regular_file;
+mod synced_file;
+mod time;
+mod writer;
+
+use std::path::Path;
+
+pub use line::Line;
+pub use line::hash_of_first_line;
+#[cfg(any(test, feature = "test-kit"))]
+pub use medium::Medium;
+#[cfg(any(test, feature = "test-kit"))]
+pub use page_cache::PageCache;
+pub use policy::{policy_of, policy_rationale};
+pub use record::Record;
+pub use regular_file::{append_to_regular_file, open_regular_file, read_regular_file, read_regular_text};
+pub use time::scripted_steady;
+pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
+pub use writer::{Durability, TrajectoryWriter};
+
+use crate::error::RunError;
+use line::line_hash;
+use novamind_database::Position;
+
+/// The line that says how a run ended, among its lines; none while it is unfinished.
+pub fn end_of(lines: &[Line]) -> Option<&Line> {
+    lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
+}
+
+/// A trajectory that was read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trajectory {
+    /// Its lines.
+    pub lines: Vec<Line>,
+    /// Bytes of the file that hold them.
+    pub length: u64,
+    /// Bytes after the last complete line: a line that was never confirmed.
+    pub unfinished: usize,
+    /// The line that its first one goes on from, of a file that goes on from another.
+    goes_on_from: Option<Position>,
+}
+
+impl Trajectory {
+    /// Reads and checks a file: every line is JSON, numbered, and names the hash of the one before.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line is damaged; the error names it and says what is still good.
+    pub fn read(path: &Path) -> Result<Trajectory, RunError> {
+        Trajectory::of_file(path, &read_regular_file(path).map_err(RunError::io(path))?)
+    }
+
+    /// The line that says how the run ended; none while it is unfinished. In runs of format 1 others can follow it.
+    pub fn end(&self) -> Option<&Line> {
+        end_of(&self.lines)
+    }
+
+    /// Checks the bytes of a file as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// A line is damaged; the error names it and says what is still good.
+    pub fn of_file(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        Trajectory::parse(bytes).map_err(damaged_at(path))
+    }
+
+    /// Checks bytes as [`Trajectory::read`] does.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1.
+    pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
+        let mut trajectory = Trajectory::default();
+        trajectory.extend(bytes).map(|()| trajectory)
+    }
+
+    /// Checks the bytes of a file whose lines go on from the last of another.
+    ///
+    /// # Errors
+    /// A line is damaged; the error names it and says what is still good.
+    pub fn of_file_after(path: &Path, last: Position, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        let mut trajectory = Trajectory { goes_on_from: Some(last), ..Trajectory::default() };
+        trajectory.extend(bytes).map_err(damaged_at(path))?;
+        Ok(trajectory)
+    }
+
+    /// Number of the line that follows.
+    pub fn next_seq(&self) -> u64 {
+        self.goes_on_from.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
+    }
+
+    /// What the line that follows has to name.
+    pub fn last_hash(&self) -> String {
+        let before =
+            || self.goes_on_from.as_ref().map_or_else(|| line_hash(b""), |last| last.line_hash.clone());
+        self.lines.last().map_or_else(before, |line| line.hash.clone())
+    }
+
+    /// Whether every line ends with a sum. Before the first line is read nobody knows.
+    fn has_sums(&self) -> bool {
+        self.goes_on_from.is_some() || self.lines.first().is_none_or(Line::promises_sums)
+    }
+
+    /// Takes what follows in the file after the lines that are known.
+    ///
+    /// # Errors
+    /// (line, problem), lines from 1. The lines before it are kept.
+    pub fn extend(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
+        let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
+            let line = &text[..text.len() - 1];
+            let number = self.lines.len() + 1;
+            let line = Line::read(line, self.next_seq(), &self.last_hash(), self.has_sums())
+                .map_err(|problem| (number, problem))?;
+            self.lines.push(line);
+            self.length += text.len() as u64;
+        }
+        self.unfinished = bytes.len() - end;
+        Ok(())
+    }
+}
+
+/// A line of a file that is not what was written, as an error.
+pub fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
+    move |(line, problem)| RunError::Damaged {
+        path: path.to_owned(),
+        line,
+        safe: match line.saturating_sub(if problem == DOES_NOT_FOLLOW { 2 } else { 1 }) {
+            0 => "Nothing before it can be used".to_owned(),
+            good => format!("Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}"),
+        },
+        problem,
+    }
+}
+
+/// Each of two lines fits its own sum, and they contradict each other.
+pub const DOES_NOT_FOLLOW: &str = "the line does not follow from the one before: one of the two was changed";
+
+/// What can be done with the lines before a damaged one.
+pub const BRANCH_THEM: &str = ": `novamind runs rescue` makes a branch of them";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use serde_json::{Value, json};
+
+    /// The examples of the schema, one of each kind, without their frame.
+    fn examples() -> Vec<(String, Value)> {
+        let schema: Value =
+            serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");
+        let kinds = schema["$defs"].as_object().expect("definitions");
+        let examples = kinds.iter().filter_map(|(kind, own)| Some((kind, own.get("examples")?.as_array()?)));
+        examples.flat_map(|(kind, all)| all.iter().map(|one| (kind.clone(), one.clone()))).collect()
+    }
+
+    #[test]
+    fn every_kind_is_read_and_written_as_the_schema_shows_it() {
+        let examples = examples();
+        for (kind, example) in &examples {
+            let text = example.to_string();
+            let record = Record::read(kind, text.as_bytes()).expect(kind);
+            assert_eq!(record.kind(), kind);
+            let fields = example.as_object().expect("an object").iter();
+            let own = fields
+                .filter(|(name, _)| !["seq", "kind", "day", "at", "prev", "sum"].contains(&name.as_str()));
+            let own: serde_json::Map<String, Value> =
+                own.map(|(name, value)| (name.clone(), value.clone())).collect();
+            assert_eq!(Value::Object(record.fields()).to_string(), Value::Object(own).to_string());
+        }
+        let kinds: std::collections::BTreeSet<&str> =
+            examples.iter().map(|(kind, _)| kind.as_str()).collect();
+        assert_eq!(kinds.len(), 25, "{kinds:?}");
+    }
+
+    #[test]
+    fn a_field_that_is_missing_is_an_error_and_one_that_is_unknown_is_kept() {
+        for (kind, example) in examples() {
+            let (seq, previous) =
+                (example["seq"].as_u64().expect("a number"), example["prev"].as_str().expect("a hash"));
+            let read = |fields: &Value| Line::read(fields.to_string().as_bytes(), seq, previous, false);
+            let mut without_sum = example.clone();
+            let fields = without_sum.as_object_mut().expect("an object");
+            fields.remove("sum");
+            fields.insert("later".to_owned(), json!([1, "two"]));
+            assert_eq!(read(&without_sum).expect(&kind).own_fields()["later"], json!([1, "two"]));
+            let needed = match kind.as_str() {
+                "start" => "seed",
+                "call" => "tool",
+                "query" => "sql",
+                "view" => "screen",
+                "memo" | "note" => "digest",
+                "session" | "clock" => "event",
+                "limit" => "used_ms",
+                "select" => "which",
+                "dialog" => "outcome",
+                "help" => "term",
+                "draft" => "typed",
+                "question" => "form",
+                "answer" => "id",
+                "lesson" => "step",
+                "look" => "command",
+                "xray" => "shown_day",
+                "voice" => "what",
+                "advance" => "rationale",
+                "week" | "step" => "days_run",
+                "override" => "key",
+                "branch" => "from",
+                _ => "reason",
+            };
+            without_sum.as_object_mut().expect("an object").remove(needed);
+            let problem = read(&without_sum).expect_err("a field is missing");
+            assert!(problem.contains(&format!("missing field `{needed}`")), "{problem}");
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! What a line of a trajectory says, by its kind.
+//!
+//! Fields stand in the order in which they are written. A field that this version does not know is no error; a line keeps
+//! its text, so that a copy of it loses nothing.
+
+mod activity;
+mod answers;
+mod call;
+mod called_tool;
+mod lesson;
+mod notes;
+mod presence;
+mod request_id;
+mod start;
+mod voice;
+mod week;
+
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use novamind_base::notation::json_number;
+
+pub use activity::{
+    Activity, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help, Look, Select, View, XrayLook,
+};
+pub use answers::{Answered, Asked};
+pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
+pub use called_tool::CalledTool;
+pub use lesson::{LessonEvent, LessonNote};
+pub use notes::{Memo, Note, Query, QuerySource};
+pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
+pub use request_id::RequestId;
+pub use start::{Parent, Start};
+pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
+pub use week::{Advance, Branch, Calculated, Closing, End, Ended, FiledForecast, Override};
+
+/// What a line says.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Record {
+    /// The first line: what the run is.
+    Start(Box<Start>),
+    /// A tool was called.
+    Call(Call),
+    /// The database was asked.
+    Query(Query),
+    /// The person did something that changes nothing.
+    Activity(Activity),
+    /// The notes were kept, as format 1 tells it.
+    Memo(Memo),
+    /// The notes were kept.
+    Note(Note),
+    /// Rationale and forecasts were filed, and the week was let pass.
+    Advance(Advance),
+    /// A language model spoke, or did not.
+    Voice(VoiceAnswer),
+    /// A week has passed.
+    Week(Closing),
+    /// Single days of a debug run have passed.
+    Step(Closing),
+    /// A parameter was changed in a debug run.
+    Override(Override),
+    /// The run began as a branch of another.
+    Branch(Branch),
+    /// The run was over.
+    End(End),
+    /// A kind that this version does not know, by its name.
+    Unknown(String),
+}
+
+impl Record {
+    /// Name of the kind.
+    pub fn kind(&self) -> &str {
+        match self {
+            Record::Start(_) => "start",
+            Record::Call(_) => "call",
+            Record::Query(_) => "query",
+            Record::Activity(activity) => activity.kind(),
+            Record::Memo(_) => "memo",
+            Record::Note(_) => "note",
+            Record::Advance(_) => "advance",
+            Record::Voice(_) => "voice",
+            Record::Week(_) => "week",
+            Record::Step(_) => "step",
+            Record::Override(_) => "override",
+            Record::Branch(_) => "branch",
+            Record::End(_) => "end",
+            Record::Unknown(kind) => kind,
+        }
+    }
+
+    /// Reads a line of a kind.
+    pub fn read(kind: &str, line: &[u8]) -> serde_json::Result<Record> {
+        Ok(match kind {
+            "start" => Record::Start(serde_json::from_slice(line)?),
+            "call" => Record::Call(serde_json::from_slice(line)?),
+            "query" => Record::Query(serde_json::from_slice(line)?),
+            "memo" => Record::Memo(serde_json::from_slice(line)?),
+            "note" => Record::Note(serde_json::from_slice(line)?),
+            "advance" => Record::Advance(serde_json::from_slice(line)?),
+            "voice" => Record::Voice(serde_json::from_slice(line)?),
+            "week" => Record::Week(serde_json::from_slice(line)?),
+            "step" => Record::Step(serde_json::from_slice(line)?),
+            "override" => Record::Override(serde_json::from_slice(line)?),
+            "branch" => Record::Branch(serde_json::from_slice(line)?),
+            "end" => Record::End(serde_json::from_slice(line)?),
+            other => match Activity::read(other, line) {
+                Some(activity) => Record::Activity(activity?),
+                None => Record::Unknown(other.to_owned()),
+            },
+        })
+    }
+
+    /// Its fields, in their order.
+    pub fn fields(&self) -> Map<String, Value> {
+        let fields = match self {
+            Record::Start(start) => serde_json::to_value(start),
+            Record::Call(call) => serde_json::to_value(call),
+            Record::Query(query) => serde_json::to_value(query),
+            Record::Activity(activity) => activity.fields(),
+            Record::Memo(memo) => serde_json::to_value(memo),
+            Record::Note(note) => serde_json::to_value(note),
+            Record::Advance(advance) => serde_json::to_value(advance),
+            Record::Voice(said) => serde_json::to_value(said),
+            Record::Week(closing) | Record::Step(closing) => serde_json::to_value(closing),
+            Record::Override(change) => serde_json::to_value(change),
+            Record::Branch(branch) => serde_json::to_value(branch),
+            Record::End(end) => serde_json::to_value(end),
+            Record::Unknown(_) => Ok(Value::Null),
+        };
+        match fields {
+            Ok(Value::Object(fields)) => fields,
+            // Records hold nothing that JSON does not know.
+            _ => Map::new(),
+        }
+    }
+
+    /// The days it closes, if it closes some.
+    pub fn closing(&self) -> Option<&Closing> {
+        match self {
+            Record::Week(closing) | Record::Step(closing) => Some(closing),
+            _ => None,
+        }
+    }
+
+    /// Digest of the notes that it keeps, if it keeps some.
+    pub fn notes_digest(&self) -> Option<&str> {
+        match self {
+            Record::Memo(memo) => Some(&memo.digest),
+            Record::Note(note) => Some(&note.digest),
+            _ => None,
+        }
+    }
+
+    /// The call and its answer, if it is one that was accepted.
+    pub fn accepted_call(&self) -> Option<(&Call, &Value)> {
+        match self {
+            Record::Call(call @ Call { outcome: Outcome::Accepted(answer), .. }) => Some((call, answer)),
+            _ => None,
+        }
+    }
+}
+
+/// Whole amounts without a decimal point.
+fn shortest<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    json_number(*number).serialize(serializer)
+}
+
+fn shortest_if_any<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    number.map(json_number).serialize(serializer)
+}

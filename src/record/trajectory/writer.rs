@@ -1,0 +1,273 @@
+//! Appending lines, and when they are on the disk.
+
+use std::cell::RefCell;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value};
+
+use super::line::{Line, line_hash, with_sum};
+use super::medium::{Medium, NamedFile};
+use super::record::Record;
+use super::regular_file::{read_regular_file, write_to_regular_file};
+use super::synced_file::SyncedFile;
+use super::time::now;
+use crate::error::RunError;
+use crate::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
+use crate::trajectory::Trajectory;
+use novamind_database::Position;
+
+/// When a line has to be on the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Durability {
+    /// Before anything is confirmed.
+    Synced,
+    /// With the next synced line.
+    Written,
+}
+
+/// Appends lines.
+pub struct TrajectoryWriter {
+    /// The file; none for a run in memory.
+    file: Option<RefCell<SyncedFile>>,
+    path: PathBuf,
+    /// Lines that could not be written yet, in order, and must come first.
+    backlog: Vec<u8>,
+    next_seq: u64,
+    last_hash: String,
+    /// The moment that the last line carries.
+    last_at: String,
+    /// Why nothing is saved any more.
+    loss: Option<String>,
+    /// Where everything went when the file was no longer there.
+    aside: Option<PathBuf>,
+}
+
+impl TrajectoryWriter {
+    /// A trajectory in memory: only numbers and hashes are kept.
+    pub fn in_memory() -> TrajectoryWriter {
+        TrajectoryWriter {
+            file: None,
+            path: PathBuf::new(),
+            backlog: Vec::new(),
+            next_seq: 0,
+            last_hash: line_hash(b""),
+            last_at: String::new(),
+            loss: None,
+            aside: None,
+        }
+    }
+
+    /// A new file, whose name survives a power cut.
+    ///
+    /// # Errors
+    /// It exists already, or cannot be made. A file whose folder could not be synced is removed again.
+    pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
+        let file = File::options().create_new(true).read(true).append(true).open(path);
+        let file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
+        sync_folder(folder_of(path)).inspect_err(|_| drop(std::fs::remove_file(path)))?;
+        let file = Some(RefCell::new(SyncedFile::new(Box::new(file), 0)));
+        Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
+    }
+
+    /// A new file, or one that is there, whose lines go on from the last of another file.
+    ///
+    /// # Errors
+    /// It cannot be read or made, or is damaged.
+    pub fn open_after(path: &Path, last: Position) -> Result<TrajectoryWriter, RunError> {
+        match read_regular_file(path) {
+            Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::of_file_after(path, last, &bytes)?),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let (next_seq, last_hash) = (last.seq + 1, last.line_hash);
+                Ok(TrajectoryWriter { next_seq, last_hash, ..TrajectoryWriter::create(path)? })
+            }
+            Err(error) => Err(RunError::Io { path: path.to_owned(), error }),
+        }
+    }
+
+    /// Continues a file that was read; bytes after the good ones are cut off. The file is synced: a program that was killed may
+    /// have left lines that are not on the disk.
+    ///
+    /// # Errors
+    /// The file cannot be written or synced.
+    pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
+        let mut file = write_to_regular_file(path).and_then(NamedFile::of).map_err(RunError::io(path))?;
+        file.cut(read.length).and_then(|()| file.sync()).map_err(RunError::io(path))?;
+        Ok(TrajectoryWriter {
+            file: Some(RefCell::new(SyncedFile::new(Box::new(file), read.length))),
+            path: path.to_owned(),
+            next_seq: read.next_seq(),
+            last_hash: read.last_hash(),
+            last_at: read.lines.last().map(|line| line.at.clone()).unwrap_or_default(),
+            ..TrajectoryWriter::in_memory()
+        })
+    }
+
+    /// Number and hash of the last line.
+    pub fn position(&self) -> Position {
+        Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
+    }
+
+    /// The moment that the last line carries; empty before the first.
+    pub fn last_at(&self) -> &str {
+        &self.last_at
+    }
+
+    /// Appends a line and returns the moment it carries.
+    ///
+    /// # Errors
+    /// The disk refuses: then the line does not exist, and the file is as it was.
+    pub fn append(&mut self, day: u32, record: &Record, durability: Durability) -> Result<String, RunError> {
+        self.append_fields(record.kind(), day, record.fields(), durability)
+    }
+
+    /// Appends what another line says, on the day on which it was said.
+    ///
+    /// # Errors
+    /// As [`TrajectoryWriter::append`].
+    pub fn copy(&mut self, line: &Line) -> Result<(), RunError> {
+        let fields = line.own_fields();
+        self.append_fields(line.record.kind(), line.day, fields, Durability::Written).map(|_| ())
+    }
+
+    fn append_fields(
+        &mut self,
+        kind: &str,
+        day: u32,
+        fields: Map<String, Value>,
+        durability: Durability,
+    ) -> Result<String, RunError> {
+        let (bytes, hash, at) = self.line(kind, day, fields);
+        let written = self.write(&bytes, durability).map_err(|error| self.set_aside(error));
+        if written.is_ok() {
+            self.accept(hash, &at);
+        }
+        written.map(|()| at)
+    }
+
+    /// Appends a line about something that cannot be taken back. If the disk refuses, the line waits in memory
+    /// and goes first with the next one.
+    ///
+    /// # Errors
+    /// The disk refuses for now.
+    pub fn append_done(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
+        let (bytes, hash, at) = self.line(record.kind(), day, record.fields());
+        let written = self.write(&bytes, Durability::Synced);
+        self.accept(hash, &at);
+        if written.is_err() {
+            self.backlog.extend_from_slice(&bytes);
+        }
+        written.map_err(|error| self.set_aside(error))
+    }
+
+    /// Where the file is no longer there, writes everything that was confirmed beside its place, and says so.
+    fn set_aside(&mut self, error: RunError) -> RunError {
+        let RunError::Astray { path, .. } = error else { return error };
+        let aside = self.aside.get_or_insert_with(|| unsaved_file(&path)).clone();
+        let error = RunError::Astray { kept: self.write_aside(&aside).map(|()| aside), path };
+        self.loss = Some(error.to_string());
+        error
+    }
+
+    /// Writes a copy of everything that was confirmed. A copy that was written before is replaced only by a whole one.
+    fn write_aside(&mut self, aside: &Path) -> Result<(), String> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let accepted = file.get_mut().accepted().map_err(RunError::io(&self.path));
+        let written = accepted.and_then(|mut bytes| {
+            bytes.extend_from_slice(&self.backlog);
+            // The whole folder may be gone.
+            create_folder(folder_of(aside))?;
+            write_whole(aside, &bytes)
+        });
+        written.map_err(|error| match aside.exists() {
+            true => format!("{error}; {} holds an earlier copy", aside.display()),
+            false => error.to_string(),
+        })
+    }
+
+    /// Why nothing is saved any more, from the moment on at which that was noticed.
+    pub fn loss(&self) -> Option<&str> {
+        self.loss.as_deref()
+    }
+
+    fn accept(&mut self, hash: String, at: &str) {
+        self.next_seq += 1;
+        self.last_hash = hash;
+        at.clone_into(&mut self.last_at);
+    }
+
+    fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
+        let at = now();
+        let mut line = Map::new();
+        line.insert("seq".to_owned(), self.next_seq.into());
+        line.insert("kind".to_owned(), kind.into());
+        line.insert("day".to_owned(), day.into());
+        line.insert("at".to_owned(), at.clone().into());
+        line.insert("prev".to_owned(), self.last_hash.clone().into());
+        debug_assert!(
+            fields.keys().all(|name| !line.contains_key(name)),
+            "a field hides a part of the frame: {kind}"
+        );
+        line.extend(fields);
+        let mut bytes = with_sum(Value::Object(line).to_string().into_bytes());
+        let hash = line_hash(&bytes);
+        bytes.push(b'\n');
+        (bytes, hash, at)
+    }
+
+    fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
+        let Some(file) = &mut self.file else { return Ok(()) };
+        let file = file.get_mut();
+        if !file.is_ours(&self.path) {
+            // Lines of another program are not overwritten, and nothing is told to be saved that nobody finds.
+            return Err(RunError::Astray { path: self.path.clone(), kept: Err(String::new()) });
+        }
+        // Lines that waited are about what cannot be taken back.
+        let durability = if self.backlog.is_empty() { durability } else { Durability::Synced };
+        file.append(&[&self.backlog, bytes].concat(), durability).map_err(RunError::io(&self.path))?;
+        self.backlog.clear();
+        self.loss = None;
+        Ok(())
+    }
+
+    /// Puts the lines that were written on the disk, whatever still waits in memory.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync_written(&self) -> Result<(), RunError> {
+        let synced = self.file.as_ref().map_or(Ok(()), |file| file.borrow_mut().sync());
+        synced.map_err(RunError::io(&self.path))
+    }
+
+    /// Whether a line that was accepted is not on the disk yet.
+    pub fn has_unsynced_lines(&self) -> bool {
+        self.file.as_ref().is_some_and(|file| file.borrow().has_unsynced() || !self.backlog.is_empty())
+    }
+
+    /// Whether the file still stands where it is looked for, and no line waits for it.
+    pub fn is_complete(&self) -> bool {
+        let is_whole = |file: &SyncedFile| file.is_ours(&self.path) && file.is_intact();
+        self.backlog.is_empty() && self.file.as_ref().is_none_or(|file| is_whole(&file.borrow()))
+    }
+
+    /// Puts another medium in place of the file.
+    #[cfg(any(test, feature = "test-kit"))]
+    pub fn write_to(&mut self, medium: Box<dyn Medium>) {
+        self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
+    }
+
+    /// Puts everything on the disk.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn sync(&mut self) -> Result<(), RunError> {
+        self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))
+    }
+}
+
+/// A file beside a trajectory for what could not be written into it.
+fn unsaved_file(path: &Path) -> PathBuf {
+    let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
+    path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))
+}

@@ -1,0 +1,387 @@
+//! Starting a run.
+
+pub(crate) mod agreement;
+pub(crate) mod baseline;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use self::agreement::agreed;
+use crate::class::handout::HandoutEntry;
+use crate::lesson::conduct::LessonEntry;
+use crate::model_voice::joining::model_of;
+use crate::model_voice::speaker::{ModelVoice, Speaker};
+use crate::play::advance::DayReport;
+use crate::play::history::History;
+use crate::play::personal_clock::PersonalClock;
+use crate::play::projection::Projection;
+use crate::play::recorder::Recorder;
+use crate::play::simulation::Simulation;
+use crate::play::surroundings::RunSurroundings;
+use crate::resume::sealing::SealKey;
+use crate::resume::unnamed::remove_leftovers;
+use crate::state::Session;
+use crate::study::answer_book::AnswerBook;
+use crate::xray::breakpoint::list::Breakpoints;
+use novamind_database::{Location, Position, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
+use novamind_record::folder::consent::Agreed;
+use novamind_record::folder::consent::ConsentText;
+use novamind_record::folder::durable::create_folder;
+use novamind_record::folder::manifest::{FORMAT, Manifest, differences, same_world};
+use novamind_record::folder::mode::Mode;
+use novamind_record::folder::runs::{earlier_runs_of, label_of};
+use novamind_record::rules::SessionRules;
+use novamind_record::stamp::StudyStamp;
+use novamind_record::trajectory::now;
+use novamind_voice::model::settings::ModelSettings;
+use novamind_world::MECHANICS;
+use novamind_world::fault::Fault;
+use novamind_world::params::Params;
+
+/// What a new run is to be. What is left out comes from the scenario, then from the defaults.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewRun {
+    /// Seed of all chance; 42 if left out.
+    pub seed: Option<u64>,
+    /// Last day, at least 7; 500 if left out.
+    pub days: Option<u32>,
+    /// Cash on day 0, dollars above 0; a million if left out.
+    pub cash: Option<f64>,
+    /// Scenario.
+    pub scenario: String,
+    /// Single parameters, `(table.key, value)`; debug runs only.
+    pub overrides: Vec<(String, String)>,
+    /// The mechanism that is to be wrong; debug runs only.
+    pub fault: Option<Fault>,
+    /// Mode.
+    pub mode: Mode,
+    /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
+    pub participant: Option<String>,
+    /// How and when the person has agreed to the text that the experimenter asks for; baseline runs only.
+    pub agreed: Option<Agreed>,
+    /// The study it belongs to, and what that lays down.
+    pub study: Option<StudyEntry>,
+    /// The lesson it is a part of; lesson runs only.
+    pub lesson: Option<LessonEntry>,
+    /// The hand-out of a class that it begins with, and its name where that hand-out names it.
+    pub handout: Option<HandoutEntry>,
+    /// Where the run is kept.
+    pub storage: Storage,
+    /// Whether the database is kept up to date; without it queries are refused.
+    pub projection: bool,
+    /// Whether every call is on the disk before it is confirmed; otherwise once a week.
+    pub sync_calls: bool,
+    /// What seals its snapshots.
+    pub seal_key: SealKey,
+}
+
+/// What a study lays down for a new run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyEntry {
+    /// The study, and the place of the person in it.
+    pub stamp: StudyStamp,
+    /// By which rules it is played.
+    pub rules: SessionRules,
+    /// The text that participants agree to; none if none is asked for.
+    pub consent: Option<ConsentText>,
+    /// The language model that lends its voice, if the study has one.
+    pub voice: Option<ModelSettings>,
+}
+
+/// Where a run is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Storage {
+    /// In a folder of its own below this one.
+    Runs(PathBuf),
+    /// In memory: it is gone with the session.
+    Memory,
+}
+
+impl Default for NewRun {
+    fn default() -> Self {
+        NewRun {
+            seed: None,
+            days: None,
+            cash: None,
+            scenario: DEFAULT_SCENARIO.to_owned(),
+            overrides: Vec::new(),
+            fault: None,
+            mode: Mode::Sandbox,
+            participant: None,
+            agreed: None,
+            study: None,
+            lesson: None,
+            handout: None,
+            storage: Storage::Memory,
+            projection: true,
+            sync_calls: true,
+            seal_key: SealKey::default(),
+        }
+    }
+}
+
+impl Session {
+    /// Starts a run.
+    ///
+    /// # Errors
+    /// The scenario, the parameters or the values do not allow it, or the folder cannot be written. Then there
+    /// is no run.
+    pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
+        Session::create_telling(new, configuration, &mut |_| {})
+    }
+
+    /// The same, and tells each day of the weeks that a lesson plays before the student sees the company.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn create_telling(
+        new: NewRun,
+        configuration: &Configuration,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Session, RunError> {
+        let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.terms_of(new.clone()));
+        let shipped = Configuration::shipped();
+        // A lesson is the same on every machine.
+        let configuration = if new.lesson.is_some() { &shipped } else { configuration };
+        // A hand-out is the same on every machine.
+        let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
+        let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
+        let model = model_of(new.mode, laid_down, named)?;
+        let speaker = model.as_ref().map(Speaker::open).transpose().map_err(no_model)?;
+        let (manifest, params) = plan_run(&new, configuration)?;
+        let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };
+        let begun = Session::begin_stored(manifest, params, &new, tell)?;
+        Ok(Session { voice: ModelVoice { speaker, ..ModelVoice::default() }, ..begun })
+    }
+
+    /// Begins a run where it is to be kept.
+    fn begin_stored(
+        manifest: Manifest,
+        params: Params,
+        new: &NewRun,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Session, RunError> {
+        match &new.storage {
+            Storage::Memory => Session::begin(manifest, params, None, new, tell),
+            Storage::Runs(runs) => {
+                remove_leftovers(runs);
+                let folder = runs.join(&manifest.id);
+                create_folder(&folder)?;
+                let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
+                if begun.is_err() {
+                    // A run that did not begin leaves nothing behind.
+                    let _ = std::fs::remove_dir_all(&folder);
+                }
+                begun
+            }
+        }
+    }
+
+    pub(crate) fn begin(
+        manifest: Manifest,
+        params: Params,
+        folder: Option<PathBuf>,
+        new: &NewRun,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Session, RunError> {
+        let params = Arc::new(params);
+        if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
+            // Before the first line: a run never lacks its lesson.
+            entry.lesson.keep_with(folder)?;
+        }
+        let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
+        let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
+        let simulation = Simulation::open(&manifest, params);
+        let begun = Session::assemble(manifest, folder, simulation, Projection::of(projector));
+        let (position, seal_key) = (recorder.position(), new.seal_key.clone());
+        let mut session = Session { position, seal_key, recorder: Some(recorder), ..begun };
+        session.project_opening();
+        if let Some(entry) = &new.lesson {
+            session.begin_lesson(entry, tell)?;
+        }
+        Ok(session)
+    }
+
+    /// A session that nothing writes, and in which nothing has happened.
+    pub(crate) fn assemble(
+        manifest: Manifest,
+        folder: Option<PathBuf>,
+        simulation: Simulation,
+        projection: Projection,
+    ) -> Session {
+        Session {
+            manifest,
+            folder,
+            numbers: OnceLock::new(),
+            own_parameters: OnceLock::new(),
+            history: History::begin(&simulation.world),
+            simulation,
+            projection,
+            position: Position { seq: 0, line_hash: String::new() },
+            surroundings: RunSurroundings::default(),
+            viewed: BTreeMap::new(),
+            answers: AnswerBook::default(),
+            seal_key: SealKey::default(),
+            shadow: None,
+            is_shadow: false,
+            diary: Arc::default(),
+            breakpoints: Breakpoints::default(),
+            voice: ModelVoice::default(),
+            hidden_tables: None,
+            clock: PersonalClock::default(),
+            lesson: None,
+            company_answers: None,
+            memo_in_memory: String::new(),
+            remarks: Vec::new(),
+            recorder: None,
+        }
+    }
+
+    /// Hands the set-up of day 0 to the database.
+    pub(crate) fn project_opening(&self) {
+        self.projection.entries().write(|| self.entry());
+        self.projection.commit(&self.position);
+    }
+}
+
+fn start_projector(
+    wanted: bool,
+    folder: Option<&Path>,
+    owner: u32,
+    params: &Arc<Params>,
+) -> Result<Option<Projector>, RunError> {
+    if !wanted {
+        return Ok(None);
+    }
+    let location = folder.map_or_else(Location::memory, |folder| Location::File(folder.join("world.db")));
+    let (projector, _) = Projector::start(location, owner, params.clone(), |_| false)?;
+    Ok(Some(projector))
+}
+
+fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
+    let scenario = configuration.scenario(&new.scenario)?;
+    if new.mode == Mode::Baseline && !scenario.shipped {
+        let message =
+            format!("a baseline run needs a shipped scenario; {} is a file of your own", scenario.name);
+        return Err(RunError::NotPossible(message));
+    }
+    if new.lesson.is_some() && new.mode != Mode::Lesson {
+        let message = format!("a lesson is played in a lesson run; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    if !new.overrides.is_empty() && !matches!(new.mode, Mode::Debug | Mode::Lesson) {
+        let message = format!("parameters can be set in debug runs only; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    if new.fault.is_some() && new.mode != Mode::Debug {
+        let message = format!("a fault can be planted in debug runs only; this one would be {}", new.mode);
+        return Err(RunError::NotPossible(message));
+    }
+    let sound = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
+    let params = Params { fault: new.fault, ..sound };
+    let (days, cash) = scenario.terms(&params);
+    let days = new.days.unwrap_or(days);
+    check_days(days).map_err(RunError::NotPossible)?;
+    let cash = new.cash.unwrap_or(cash);
+    check_cash(cash).map_err(RunError::NotPossible)?;
+    let seed = new.seed.unwrap_or(params.run.seed);
+    if seed > i64::MAX as u64 {
+        return Err(RunError::NotPossible(format!("a seed is at most {}, not {seed}", i64::MAX)));
+    }
+    let of_folder = match &new.storage {
+        Storage::Runs(runs) => label_of(runs),
+        Storage::Memory => None,
+    };
+    let participant = new.participant.clone().or(of_folder);
+    let earlier = match &new.storage {
+        Storage::Runs(runs) => earlier_runs_of(runs, participant.as_deref()),
+        Storage::Memory => Vec::new(),
+    };
+    let (study, rules) = new.study.clone().map(|entry| (entry.stamp, entry.rules)).unzip();
+    let consent = match new.mode {
+        Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
+        Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
+    };
+    let handed_out = new.handout.clone().map_or((None, None), |entry| (entry.run, Some(entry.stamp)));
+    let manifest = Manifest {
+        format: FORMAT,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        mechanics: MECHANICS,
+        id: handed_out.0.unwrap_or_else(new_id),
+        created: now(),
+        seed,
+        days,
+        cash,
+        earlier_runs: same_world(&earlier, seed, &scenario.name),
+        scenario: scenario.name,
+        mode: new.mode,
+        participant,
+        consent,
+        parameters_digest: params.digest(),
+        parent: None,
+        study,
+        lesson: new.lesson.as_ref().map(LessonEntry::stamp),
+        handout: handed_out.1,
+        voice: None,
+        rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
+        earlier,
+        fault: new.fault,
+        parameters: differences(&params),
+    };
+    Ok((manifest, params))
+}
+
+/// A language model that was named and cannot speak.
+fn no_model(problem: String) -> RunError {
+    RunError::NotPossible(format!(
+        "the language model cannot lend its voice: {problem}. Nothing was recorded"
+    ))
+}
+
+/// Eight hexadecimal digits that no other run has, as good as certainly.
+pub(crate) fn new_id() -> String {
+    static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let moment =
+        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
+    let mix = format!("{moment} {} {count}", std::process::id());
+    blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_record::folder::runs::{all_run_folders, delete_run, list_runs, participant_folder};
+
+    #[test]
+    fn participants_have_folders_and_labels_of_their_own() {
+        let place = tempfile::tempdir().expect("a folder");
+        let base = place.path().join("runs");
+        let play = |runs: &Path| {
+            let storage = Storage::Runs(runs.to_owned());
+            let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
+            Session::create(new, &Configuration::shipped()).expect("a run").manifest().clone()
+        };
+        let [first, second] = ["P01", "P02"].map(|label| participant_folder(&base, label).expect("a label"));
+        assert_eq!(play(&base).participant, None);
+        assert_eq!(play(&first).participant.as_deref(), Some("P01"));
+        let last = play(&second);
+        assert_eq!(
+            (last.participant.as_deref(), last.earlier_runs),
+            (Some("P02"), 0),
+            "others' runs are not this person's"
+        );
+        assert_eq!(play(&second).earlier_runs, 1);
+        delete_run(&second, &last.id).expect("deleted");
+        for folder in [&base, &first, &second] {
+            assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
+            assert_eq!(all_run_folders(folder), [base.clone(), first.clone(), second.clone()]);
+        }
+        for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {
+            assert!(participant_folder(&base, label).is_err(), "{label}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What a new baseline run outside of a study keeps to: a label, and the terms by which results can be compared.
+
+use super::{NewRun, Storage};
+use novamind_base::notation::{dollars, grouped};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
+use novamind_record::folder::mode::Mode;
+use novamind_record::folder::runs::label_of;
+
+impl NewRun {
+    /// Checks that a person's baseline run has a label, and scenario, days and cash of the defaults. A study lays down its
+    /// own; other modes are free.
+    ///
+    /// # Errors
+    /// `NotPossible`, which says what to do instead; the scenario cannot be read.
+    pub fn check_baseline(&self, configuration: &Configuration) -> Result<(), RunError> {
+        if self.mode != Mode::Baseline || self.study.is_some() {
+            return Ok(());
+        }
+        let of_folder = match &self.storage {
+            Storage::Runs(runs) => label_of(runs),
+            Storage::Memory => None,
+        };
+        let label = self.participant.clone().or(of_folder);
+        if label.is_none_or(|label| label.trim().is_empty()) {
+            return Err(RunError::NotPossible(
+                "a baseline run needs a participant: name a label with --as or --participant, in the form under \
+                 Participant. Nothing was recorded"
+                    .to_owned(),
+            ));
+        }
+        let other = self.other_terms(configuration)?;
+        if other.is_empty() {
+            return Ok(());
+        }
+        Err(RunError::NotPossible(format!(
+            "a baseline run is played with {}, so that it can be compared; {} needs a study, or another mode. \
+             Nothing was recorded",
+            baseline_terms(configuration)?,
+            other.join(", ")
+        )))
+    }
+
+    /// Returns scenario, days and cash of the run where they differ from those of every baseline run outside of a study.
+    ///
+    /// # Errors
+    /// The scenario cannot be read.
+    pub fn other_terms(&self, configuration: &Configuration) -> Result<Vec<String>, RunError> {
+        let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
+        let other = [
+            (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
+            self.days.filter(|own| *own != days).map(in_days),
+            self.cash.filter(|own| *own != cash).map(dollars),
+        ];
+        Ok(other.into_iter().flatten().collect())
+    }
+}
+
+/// Returns scenario, days and cash of every baseline run outside of a study, in words.
+///
+/// # Errors
+/// The scenario cannot be read.
+pub fn baseline_terms(configuration: &Configuration) -> Result<String, RunError> {
+    let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
+    Ok(format!("scenario {DEFAULT_SCENARIO}, {} and {}", in_days(days), dollars(cash)))
+}
+
+fn in_days(days: u32) -> String {
+    format!("{} days", grouped(f64::from(days), 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(new: &NewRun) -> Option<String> {
+        new.check_baseline(&Configuration::shipped()).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_baseline_run_outside_of_a_study_has_a_label_and_the_terms_of_the_defaults() {
+        let base = NewRun { mode: Mode::Baseline, participant: Some("P01".to_owned()), ..NewRun::default() };
+        let named = NewRun { days: Some(500), cash: Some(1_000_000.0), seed: Some(7), ..base.clone() };
+        assert_eq!((refusal(&base), refusal(&named)), (None, None));
+        let runs = std::path::PathBuf::from("runs/participants/P01");
+        let of_folder = NewRun { participant: None, storage: Storage::Runs(runs), ..base.clone() };
+        assert_eq!(refusal(&of_folder), None);
+        for (new, part) in [
+            (NewRun { participant: None, ..base.clone() }, "--participant"),
+            (NewRun { participant: Some(" ".to_owned()), ..base.clone() }, "--participant"),
+            (NewRun { days: Some(28), ..base.clone() }, "28 days needs a study"),
+            (NewRun { cash: Some(2e6), ..base.clone() }, "$2,000,000 needs a study"),
+            (NewRun { scenario: "paper".to_owned(), ..base.clone() }, "scenario paper needs a study"),
+        ] {
+            let words = refusal(&new).expect(part);
+            assert!(words.contains(part), "{words}");
+            assert_eq!(refusal(&NewRun { mode: Mode::Sandbox, ..new }), None, "other modes are free");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Tests of what is derived from the first line of a run.
+
+use crate::playback::tests::recorded;
+use crate::resume::open::Access;
+use crate::resume::verify::verify;
+use crate::state::Session;
+use novamind_record::folder::mode::Mode;
+use novamind_record::folder::runs::{find_run, list_runs};
+use std::path::Path;
+use toml::Table;
+
+/// Opens a run whose `run.toml` holds a text, or is missing; returns what the person is told.
+fn opened(folder: &Path, text: Option<&str>) -> String {
+    let path = folder.join("run.toml");
+    match text {
+        Some(text) => std::fs::write(&path, text).expect("written"),
+        None => std::fs::remove_file(&path).expect("removed"),
+    }
+    let runs = folder.parent().expect("runs");
+    let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
+    let listed = list_runs(runs).expect("a list");
+    assert_eq!((listed.len(), &listed[0].id, listed[0].seed), (1, &id, 7));
+    assert_eq!((listed[0].problem.as_ref(), listed[0].participant.as_ref()), (None, None));
+    assert_eq!(find_run(runs, "latest").expect("a run"), folder);
+    assert!(verify(folder).is_ok(), "it verifies as it is");
+    assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "who only reads changes nothing");
+    let reader = Session::open(folder, Access::Read, false).expect("it opens");
+    assert!(reader.remarks().join(" ").contains("the first line of the trajectory counts"));
+    let session = Session::open(folder, Access::Write, true).expect("it opens");
+    assert_eq!((session.day(), session.manifest().mode, session.manifest().seed), (14, Mode::Baseline, 7));
+    session.remarks().join(" ")
+}
+
+#[test]
+fn whatever_is_done_to_the_manifest_the_first_line_counts() {
+    let run = recorded(Mode::Baseline, 2);
+    let path = run.folder.join("run.toml");
+    let good = std::fs::read_to_string(&path).expect("a manifest");
+    let edit = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from} in {good}");
+        good.replacen(from, to, 1)
+    };
+    let cases = [
+        (Some(edit("seed = 7", "seed = 8")), "said otherwise (seed)"),
+        (Some(edit("mode = \"baseline\"", "mode = \"debug\"\nparticipant = \"P99\"")), "(mode, participant)"),
+        (Some(edit("days = 35", "days = 350")), "(days)"),
+        (Some(edit("cash = 1000000.0", "cash = 9000000.0")), "(cash)"),
+        (Some(edit(&format!("id = \"{}\"", run.id), "id = \"00000000\"")), "(id)"),
+        (Some(edit("parameters_digest = \"", "parameters_digest = \"0")), "(parameters_digest)"),
+        (Some("seed = [".to_owned()), "was damaged (line 1"),
+        (Some(String::new()), "was damaged"),
+        (None, "was missing"),
+    ];
+    for (text, told) in cases {
+        let remark = opened(&run.folder, text.as_deref());
+        assert!(remark.contains(told) && remark.contains("made anew"), "{told}: {remark}");
+        let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
+        let mut expected: Table = good.parse().expect("TOML");
+        if text.is_none_or(|text| !text.contains("created")) {
+            // Nothing else tells the moment before the first line.
+            expected["created"] = restored["created"].clone();
+        }
+        assert_eq!(restored, expected, "{told}");
+        let again = Session::open(&run.folder, Access::Write, true).expect("it opens");
+        assert_eq!(again.remarks(), [""; 0], "it is told once");
+    }
+}
+
+#[test]
+fn files_of_two_runs_are_not_taken_for_one() {
+    let (one, other) = (recorded(Mode::Sandbox, 1), recorded(Mode::Sandbox, 1));
+    std::fs::copy(other.folder.join("trajectory.jsonl"), one.folder.join("trajectory.jsonl"))
+        .expect("copied");
+    let error = Session::open(&one.folder, Access::Write, true).err().expect("it is refused").to_string();
+    assert!(error.contains("contradicts run.toml"), "{error}");
+}

@@ -1,0 +1,59 @@
+//! Tests of the library of saved queries.
+
+use crate::create::NewRun;
+use crate::state::Session;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::library::*;
+use novamind_record::trajectory::record::Via;
+use serde_json::json;
+
+fn all_answer(session: &mut Session) {
+    for query in Library::shipped().queries() {
+        let rows = session.query(&query.sql).unwrap_or_else(|refusal| panic!("{}: {refusal}", query.name));
+        assert!(!rows.truncated, "{} is cut", query.name);
+        let head = Head::of(&query.sql);
+        assert!(head.title.is_some(), "{}", query.name);
+        assert!(head.what.is_some_and(|what| what.ends_with('.')), "{}", query.name);
+        for column in head.chart.iter().flat_map(|chart| chart.ys.iter().chain([&chart.x])) {
+            assert!(rows.columns.contains(column), "{} has no column {column}", query.name);
+        }
+    }
+}
+
+fn play(session: &mut Session, weeks: usize) {
+    for _ in 0..weeks {
+        let forecasts = session.naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+}
+
+#[test]
+fn every_shipped_query_is_answered_in_every_phase() {
+    let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    all_answer(&mut session);
+    let ads = json!({"S1": 750, "E1": 4000, "E2": 4000, "E3": 4000});
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60_000, "B": 250_000, "C": 1_200_000})),
+        ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": ads, "linkedin": ads}})),
+        ("set_capacity_tier", json!({"tier": 5})),
+        ("set_ads_strength", json!({"global_strength": 0.2})),
+        ("post_social_media", json!({"content": "We are here."})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    play(&mut session, 3);
+    all_answer(&mut session);
+    while session.observe().waiting.is_empty() && session.day() < 140 {
+        play(&mut session, 1);
+    }
+    let waiting = session.observe().waiting;
+    assert!(!waiting.is_empty(), "there must be threads");
+    let deals = json!({"deals": [[waiting[0].customer, [["C", 30.0], ["B", 20.0]]]]});
+    session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");
+    play(&mut session, 1);
+    all_answer(&mut session);
+}

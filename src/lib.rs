@@ -53,6 +53,8 @@ use novamind_base::{notation, statistics};
 #[doc(inline)]
 pub use novamind_console as console;
 #[doc(inline)]
+pub use novamind_course as course;
+#[doc(inline)]
 pub use novamind_database as database;
 #[doc(inline)]
 pub use novamind_glossary as glossary;
@@ -69,6 +71,8 @@ pub use novamind_rules as rules;
 pub use novamind_server as server;
 #[doc(inline)]
 pub use novamind_session as session;
+#[doc(inline)]
+pub use novamind_study as study;
 #[doc(inline)]
 pub use novamind_tools as tools;
 #[doc(inline)]

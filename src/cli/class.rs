@@ -19,9 +19,8 @@ use crate::report::class::{
     ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
 };
 use crate::report::count;
-use crate::session::{
-    Class, ClassCollection, ClassSources, CollectedClass, ToHandOut, find_run_to_read, write_whole,
-};
+use crate::session::{find_run_to_read, write_whole};
+use novamind_course::{Class, ClassCollection, ClassSources, CollectedClass, ToHandOut};
 
 /// Options of `class`.
 #[derive(Debug, Args)]

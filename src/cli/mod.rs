@@ -36,9 +36,10 @@ use clap::{Parser, Subcommand};
 pub use failure::Failure;
 
 use crate::session::{
-    Configuration, LabKey, Manifest, ModelSettings, RunError, STUDY_FILE, SealKey, Study, Trajectory,
-    lab_key_of, manifest_of, participant_folder, record_look, record_refused_code, seal_key_of,
+    Configuration, LabKey, Manifest, ModelSettings, RunError, SealKey, Trajectory, manifest_of,
+    participant_folder, record_look,
 };
+use novamind_study::{STUDY_FILE, Study, lab_key_of, record_refused_code, seal_key_of};
 
 /// Run a simulated AI subscription company for 500 days.
 ///

@@ -18,9 +18,11 @@ use crate::console::request::Request;
 use crate::console::theme::Theme;
 use crate::lab::play_opponents;
 use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Goal, Handout, LessonEntry, Library, Mode, NewRun,
-    RunError, Session, Study, find_run, steady,
+    Access, Configuration, ConsentGiven, ConsentMeans, Goal, LessonEntry, Library, Mode, NewRun, RunError,
+    Session, find_run, steady,
 };
+use novamind_course::Handout;
+use novamind_study::Study;
 
 /// Options of `play`.
 #[derive(Debug, Args, Clone, Default, PartialEq)]

@@ -50,7 +50,8 @@ use super::worker::{Job, Question};
 use crate::request::Request;
 use novamind_report::Story;
 use novamind_report::opponents::PlayOpponents;
-use novamind_session::{CodeCheck, Configuration, Library, TimeLeft};
+use novamind_session::{Configuration, Library, TimeLeft};
+use novamind_study::CodeCheck;
 
 pub use super::attention::Layer;
 pub use busy::Busy;

@@ -12,8 +12,9 @@ use super::request::{Recorded, Request};
 use super::resimulation::BranchesQuestion;
 use super::screens::{Figure, ScreenId};
 use novamind_glossary::Subject;
+use novamind_session::Goal;
 use novamind_session::identifiers::Group;
-use novamind_session::{Goal, Study};
+use novamind_study::Study;
 use novamind_tools::ToolId;
 
 impl Effect {

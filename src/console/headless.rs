@@ -18,7 +18,8 @@ use super::message::{Message, News, VisitNews};
 use super::request::{Recorded, Request, VisitRequest};
 use super::worker::{Job, Workers};
 use novamind_session::record::LeavingCause;
-use novamind_session::{Access, Goal, PlaybackPosition, Study};
+use novamind_session::{Access, Goal, PlaybackPosition};
+use novamind_study::Study;
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -9,14 +9,16 @@ use super::company::Company;
 use super::look_inside::{DaysRan, LookFound};
 use super::readings::Reading;
 use super::resimulation::BranchesFound;
+use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
 use novamind_report::opponents::Opponents;
 use novamind_session::record::Limit;
 use novamind_session::{
-    Change, CollectedClass, CurveExplorer, Debrief, DueQuestion, HiddenValues, Interrupt, Kin, Library,
-    NextStep, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
+    Change, CurveExplorer, Debrief, HiddenValues, Interrupt, Kin, Library, PlaybackPosition, Preview,
+    Refusal, Rows, TimeLeft, UnsentTexts, Week, Why, WhyProgress,
 };
+use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, ToolId};
 
 /// Something that arrives.

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use novamind_report::class::Shown;
-use novamind_session::{
-    Access, ConsentGiven, DecisionEdit, DueQuestion, Forecasts, Goal, Mode, NewRun, Study,
-};
+use novamind_session::{Access, ConsentGiven, DecisionEdit, Forecasts, Goal, Mode, NewRun};
+use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 
 /// Work that a person asked for.

@@ -38,8 +38,9 @@ use novamind_database::text::table;
 use novamind_report::research::late_in_words;
 use novamind_session::record::{Help, Select};
 use novamind_session::{
-    Activity, Causes, Change, CodeCheck, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
+    Activity, Causes, Change, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
 };
+use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, Kind, Module, ToolId};
 
 /// Words that run a week: the command, and the tool as agents call it.

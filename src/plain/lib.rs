@@ -30,7 +30,8 @@ use input::Read;
 use lines::Lines;
 use novamind_base::notation::printable;
 use novamind_session::record::LeavingCause;
-use novamind_session::{Interface, Library, Session, Study};
+use novamind_session::{Interface, Library, Session};
+use novamind_study::Study;
 
 /// How answers look and when the dialogue ends.
 #[derive(Debug, Clone, Copy, Default)]

@@ -9,7 +9,8 @@ use super::input::Read;
 use super::lines::Lines;
 use super::{Style, withdraws};
 use novamind_base::notation::printable;
-use novamind_session::{DueQuestion, Form, Session, Study, steady};
+use novamind_session::{Session, steady};
+use novamind_study::{DueQuestion, Form, Study};
 
 /// Asks everything that is due; how the dialogue ends, if it ends before all of it is answered.
 ///
@@ -27,7 +28,7 @@ pub(super) fn ask_due(
         if begins && !style.json {
             println!("== {} ==\n{}", printable(&question.title), printable(question.introduction.trim()));
         }
-        session.ask_question(question);
+        question.note_shown(session);
         show(question, style)?;
         if let Some(end) = answer(question, session, style, lines)? {
             return Ok(Some(end));
@@ -67,7 +68,7 @@ fn answer(
         match value {
             Ok(value) => {
                 let for_ms = steady().saturating_sub(shown).as_millis() as u64;
-                session.answer_question(due, &value, for_ms, 0);
+                due.note_answer(session, &value, for_ms, 0);
                 return Ok(None);
             }
             Err(problem) => refuse(due, &problem, style)?,

@@ -11,9 +11,9 @@ use super::{End, Style, dialogue, prompt, withdraws};
 use novamind_base::notation::printable;
 use novamind_report::prose::as_plain;
 use novamind_session::{
-    Agreed, Configuration, ConsentGiven, ConsentMeans, DECLINED, Library, NextStep, RunError, Session, Study,
-    Visit, steady,
+    Agreed, Configuration, ConsentGiven, ConsentMeans, Library, RunError, Session, steady,
 };
+use novamind_study::{DECLINED, NextStep, Study, Visit};
 
 /// What ends a visit early.
 enum Stop {

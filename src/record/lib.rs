@@ -1,6 +1,7 @@
 //! The record of a run: its lines and their chain of hashes, its manifest, its folder with lock and configuration, and
 //! what the first line says of the study, the lesson and the hand-out that the run belongs to.
 
+pub mod answer_book;
 pub mod error;
 pub mod folder;
 pub mod rules;

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::Logbook;
 use super::tables::StudyTables;
 use novamind_session::archive::Workshop;
-use novamind_session::{
-    CollectNote, Export, FoundRun, FoundVisit, Gathered, LabKey, LabPublicKey, RunError, Seal, SealKey,
-    Study, VisitSummary, gather, missing_places,
+use novamind_session::{Export, LabKey, LabPublicKey, RunError, Seal, SealKey};
+use novamind_study::{
+    CollectNote, FoundRun, FoundVisit, Gathered, Study, VisitSummary, gather, missing_places,
 };
 
 /// What is collected, and how.

@@ -4,9 +4,12 @@
 use crate::tables::headings;
 use novamind_base::notation::{dollars, grouped};
 use novamind_session::{
-    ASSIGNMENT_FILE, Assignment, AtLimit, AuditKind, BREAK_SECONDS, Configuration, DraftsKept,
-    FAST_WEEK_SECONDS, Form, FreeText, IDLE_AFTER, Moment, PracticeOffer, Questionnaire, ResultsShown,
-    RunError, SeedPlan, Study, TimeLimits, lab_public_key_of,
+    AtLimit, BREAK_SECONDS, Configuration, DraftsKept, FAST_WEEK_SECONDS, FreeText, IDLE_AFTER, ResultsShown,
+    RunError, TimeLimits,
+};
+use novamind_study::{
+    ASSIGNMENT_FILE, Assignment, AuditKind, Form, Moment, PracticeOffer, Questionnaire, SeedPlan, Study,
+    lab_public_key_of,
 };
 
 /// The protocol as Markdown.

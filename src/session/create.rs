@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use self::agreement::agreed;
-use crate::class::handout::HandoutEntry;
 use crate::lesson::conduct::LessonEntry;
 use crate::model_voice::joining::model_of;
 use crate::model_voice::speaker::{ModelVoice, Speaker};
@@ -22,9 +21,9 @@ use crate::play::surroundings::RunSurroundings;
 use crate::resume::sealing::SealKey;
 use crate::resume::unnamed::remove_leftovers;
 use crate::state::Session;
-use crate::study::answer_book::AnswerBook;
 use crate::xray::breakpoint::list::Breakpoints;
 use novamind_database::{Location, Position, Projector};
+use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_record::folder::consent::Agreed;
@@ -34,6 +33,7 @@ use novamind_record::folder::manifest::{FORMAT, Manifest, differences, same_worl
 use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{earlier_runs_of, label_of};
 use novamind_record::rules::SessionRules;
+use novamind_record::stamp::HandoutEntry;
 use novamind_record::stamp::StudyStamp;
 use novamind_record::trajectory::now;
 use novamind_voice::model::settings::ModelSettings;
@@ -342,7 +342,7 @@ fn no_model(problem: String) -> RunError {
 }
 
 /// Eight hexadecimal digits that no other run has, as good as certainly.
-pub(crate) fn new_id() -> String {
+pub fn new_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     let moment =

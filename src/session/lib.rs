@@ -6,8 +6,6 @@
 
 pub mod archive;
 mod ask;
-mod audit;
-mod class;
 mod counterfactual;
 mod create;
 mod curve;
@@ -22,27 +20,21 @@ mod record_tests;
 mod resume;
 mod same_world;
 mod state;
-mod study;
 mod whatif;
 mod why;
 mod xray;
 
-pub use archive::{Export, Imported, LabKey, LabPublicKey, Seal, import_run};
+pub use archive::{
+    Export, Imported, LabKey, LabPublicKey, Seal, Workshop, import_run, is_archive_name, is_run_name,
+    read_seal_key, write_seal_key,
+};
 pub use ask::{connection_to_file, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
-pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
-pub use class::class_file::{Class, ToHandOut};
-pub use class::collected_class::CollectedClass;
-pub use class::collecting::{ClassCollection, ClassSources};
-pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
-pub use class::finding::ClassFinding;
-pub use class::handout::Handout;
-pub use class::reference::{ClassReference, ranked_goal, share_of_good};
 pub use counterfactual::last_read::{LastRead, OfRecord};
 pub use counterfactual::one_each::unless_stopped;
 pub use counterfactual::script::{PastCall, PastDecision};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
-pub use create::{NewRun, Storage, StudyEntry};
+pub use create::{NewRun, Storage, StudyEntry, new_id};
 pub use curve::access::CurveLook;
 pub use curve::example::example_curve;
 pub use curve::explorer::{
@@ -64,7 +56,7 @@ pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
 pub use figures::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
-pub use figures::setting::{Audience, SettingId};
+pub use figures::setting::{Audience, SettingId, setting_values};
 pub use figures::sitting_count::SittingCount;
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use figures::truth::truth_behind;
@@ -123,10 +115,12 @@ pub use play::personal_clock::TimeLeft;
 pub use play::presence::{IDLE_AFTER, Interface};
 pub use play::undo::undone_calls;
 pub use play::week::Week;
-pub use playback::Playback;
 pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
+pub use playback::{Origin, Playback, read as read_recorded};
 pub use python::PYTHON_NOT_RUN;
+pub use resume::branch::write_past;
+pub use resume::integrity::Integrity;
 pub use resume::look::record_look;
 pub use resume::open::{Access, end_run};
 pub use resume::rebuild::rebuild_database;
@@ -135,21 +129,6 @@ pub use resume::sealing::SealKey;
 pub use resume::verify::{Verification, verify, verify_sealed};
 pub use same_world::SameWorld;
 pub use state::{AnswersCompanies, Session};
-pub use study::assignment::{ASSIGNMENT_FILE, Assignment, Place};
-pub use study::code::CodeCheck;
-pub use study::definition::{CONSENT_FILE, CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
-pub use study::due::DueQuestion;
-pub use study::gather::{CollectNote, FoundRun, FoundVisit, Gathered, gather, missing_places};
-pub use study::keys::{
-    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, lab_key_of, lab_public_key_of, make_keys, seal_key_of,
-};
-pub use study::questions::{Form, Moment, Question, Questionnaire};
-pub use study::remarks::{REMARKS, Remark, remarks, write_remark};
-pub use study::sittings::{Sitting, SittingState, sittings};
-pub use study::visit::{DECLINED, NextStep, Visit};
-pub use study::visit_log::{
-    VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits, visits_of,
-};
 pub use whatif::{
     Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
     FORMS, FirstChange, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference,

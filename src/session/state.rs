@@ -19,11 +19,11 @@ use crate::play::recorder::Recorder;
 use crate::play::simulation::Simulation;
 use crate::play::surroundings::RunSurroundings;
 use crate::resume::sealing::SealKey;
-use crate::study::answer_book::AnswerBook;
 use crate::xray::breakpoint::list::Breakpoints;
 use crate::xray::hidden_day::Diary;
 use crate::xray::hidden_tables::HiddenTables;
 use novamind_database::Position;
+use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::rules::SessionRules;
@@ -177,6 +177,11 @@ impl Session {
     /// The effective parameters.
     pub fn params(&self) -> &Params {
         &self.simulation.params
+    }
+
+    /// Answers to the questions of a study that the record holds.
+    pub fn answer_book(&self) -> &AnswerBook {
+        &self.answers
     }
 
     /// Score: cash after the last day, 0 after a bankruptcy, none before the end or when abandoned.

@@ -4,10 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::console::theme::Theme;
+use novamind::course::{Class, ClassCollection, ClassSources, Handout, ToHandOut};
 use novamind::rules::answers_to_companies;
-use novamind::session::{
-    Access, Class, ClassCollection, ClassSources, Configuration, Handout, Lesson, Session, ToHandOut, Via,
-};
+use novamind::session::{Access, Configuration, Lesson, Session, Via};
 use serde_json::json;
 
 use super::harness::Console;

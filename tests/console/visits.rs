@@ -4,10 +4,8 @@ use std::path::{Path, PathBuf};
 
 use novamind::console::glyphs::Glyphs;
 use novamind::console::request::{Recorded, Request};
-use novamind::session::{
-    Access, Activity, CodeDigest, ConsentMeans, Goal, Mode, Record, Study, Trajectory, VisitEvent,
-    lines_afterwards, visits,
-};
+use novamind::session::{Access, Activity, ConsentMeans, Goal, Mode, Record, Trajectory, lines_afterwards};
+use novamind::study::{CodeDigest, Study, VisitEvent, visits};
 
 use super::harness::Console;
 

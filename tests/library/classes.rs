@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use novamind::course::{Class, ClassCollection, ClassFinding, ClassSources, Handout, RunVerdict, ToHandOut};
 use novamind::report::class::{ClassView, Shown, as_html, columns_table, rows, shown_in_words};
 use novamind::rules::answers_to_companies;
 use novamind::session::{
-    Access, Class, ClassCollection, ClassFinding, ClassSources, Configuration, Export, Handout, Lesson,
-    NewRun, RunVerdict, SealKey, Session, Storage, ToHandOut, Via, manifest_of,
+    Access, Configuration, Export, Lesson, NewRun, SealKey, Session, Storage, Via, manifest_of,
 };
 use serde_json::json;
 use tempfile::TempDir;

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use novamind::session::{Activity, Record, Trajectory, VisitEvent, lines_afterwards, visits};
+use novamind::session::{Activity, Record, Trajectory, lines_afterwards};
+use novamind::study::{VisitEvent, visits};
 
 use crate::support::home::{Home, Said, id, said};
 

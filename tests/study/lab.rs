@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use novamind::session::Study;
+use novamind::study::Study;
 
 use crate::support::home::{Home, Said};
 

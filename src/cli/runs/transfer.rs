@@ -21,9 +21,10 @@ use crate::report::Logbook;
 use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
 use crate::session::{
-    Export as Sealing, FoundVisit, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey,
-    VISITS, folder_of, import_run, visits,
+    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey, folder_of,
+    import_run,
 };
+use novamind_study::{FoundVisit, VISITS, visits};
 
 /// Options of `runs export`.
 #[derive(Debug, Args)]

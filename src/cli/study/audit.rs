@@ -8,7 +8,8 @@ use super::read_study;
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::plain::table as aligned;
-use crate::session::{Audit, AuditFinding, Cell, Rows, RunFacts, Study, audit};
+use crate::session::{Cell, Rows};
+use novamind_study::{Audit, AuditFinding, RunFacts, Study, audit};
 
 /// Options of `study audit`.
 #[derive(Debug, Args)]

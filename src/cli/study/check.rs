@@ -5,7 +5,8 @@ mod design;
 use std::path::Path;
 
 use crate::cli::{Context, Failure, print};
-use crate::session::{LAB_KEY_FILE, Machine, Moment, PracticeOffer, SEAL_KEY_FILE, Study};
+use crate::session::Machine;
+use novamind_study::{LAB_KEY_FILE, Moment, PracticeOffer, SEAL_KEY_FILE, Study};
 
 /// Free bytes that a machine should have: a session of a large company with its database.
 const ROOM: u64 = 2 << 30;

@@ -6,7 +6,7 @@ use crossterm::event::{Event, KeyCode, KeyEventKind, KeyModifiers, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 
 use crate::cli::{Failure, print};
-use crate::session::CodeDigest;
+use novamind_study::CodeDigest;
 
 /// Fewest characters of a code.
 const FEWEST: usize = 4;

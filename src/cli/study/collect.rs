@@ -12,7 +12,8 @@ use crate::cli::runs::{tidy_up_on_signals, write_tables};
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::report::collection::{Collected, Collecting, LabKeys, collect};
-use crate::session::{CollectNote, LabKey, lab_key_of, lab_public_key_of, seal_key_of};
+use crate::session::LabKey;
+use novamind_study::{CollectNote, lab_key_of, lab_public_key_of, seal_key_of};
 
 /// Options of `study collect`.
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::cli::{Failure, print};
-use crate::session::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, make_keys};
+use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, make_keys};
 
 /// Makes the keys that lack and says what they are for.
 pub fn run(folder: &Path) -> Result<(), Failure> {

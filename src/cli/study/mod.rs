@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::{Context, Failure, play};
-use crate::session::Study;
+use novamind_study::Study;
 
 /// Options of `study`.
 #[derive(Debug, Args)]

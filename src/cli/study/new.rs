@@ -6,7 +6,8 @@ use clap::Args;
 use include_dir::{Dir, include_dir};
 
 use crate::cli::{Failure, print};
-use crate::session::{RunError, STUDY_FILE, Study};
+use crate::session::RunError;
+use novamind_study::{STUDY_FILE, Study};
 
 /// What a new study looks like.
 static TEMPLATE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/study");

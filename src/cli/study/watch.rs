@@ -10,9 +10,10 @@ use super::read_study;
 use crate::cli::{Context, Failure, print};
 use crate::notation::printable;
 use crate::plain::table as aligned;
-use crate::session::{
-    Cell, REMARKS, Remark, Rows, Sitting, SittingState, Study, VisitSummary, has_come, nanoseconds_of,
-    participant_folder, remarks, sittings, visits_of, week_of, write_remark,
+use crate::session::{Cell, Rows, nanoseconds_of, participant_folder, week_of};
+use novamind_study::{
+    REMARKS, Remark, Sitting, SittingState, Study, VisitSummary, has_come, remarks, sittings, visits_of,
+    write_remark,
 };
 
 /// Options of `study watch`.

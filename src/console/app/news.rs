@@ -19,9 +19,10 @@ use crate::text::number;
 use crate::tour::Tour;
 use crate::viewer::Viewer;
 use novamind_base::notation::{dollars, signed_dollars};
+use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
-use novamind_session::{Change, CollectedClass, Interrupt, Refusal, Week};
+use novamind_session::{Change, Interrupt, Refusal, Week};
 
 impl App {
     pub(super) fn news(&mut self, news: News) {

@@ -7,7 +7,7 @@ use crate::screens::menu::Menu;
 use crate::visit::questions::QuestionPage;
 use crate::visit::{VisitPage, VisitState};
 use crate::worker::Job;
-use novamind_session::{NextStep, Study};
+use novamind_study::{NextStep, Study};
 
 /// Said where something is not for participants.
 const KEPT: &str = "in a study only your own session is open";

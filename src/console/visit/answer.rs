@@ -8,7 +8,8 @@ use serde_json::Value;
 use crate::action::Action;
 use crate::request::GivenAnswer;
 use crate::widgets::{Editor, Field};
-use novamind_session::{DueQuestion, Form, steady};
+use novamind_session::steady;
+use novamind_study::{DueQuestion, Form};
 
 /// What was entered so far.
 #[derive(Debug, Clone)]

@@ -8,7 +8,7 @@ use crate::canvas::{Canvas, centered, rows_of};
 use crate::keys::Keys;
 use crate::text::wrapped;
 use crate::theme::Role;
-use novamind_session::DECLINED;
+use novamind_study::DECLINED;
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;

@@ -13,7 +13,7 @@ use super::agreement::{Agreement, READ_FIRST};
 use super::effect::Effect;
 use super::request::{Request, VisitRequest};
 use super::widgets::Field;
-use novamind_session::{DueQuestion, NextStep, Study};
+use novamind_study::{DueQuestion, NextStep, Study};
 
 /// What the console knows of the visit, on pages and in runs.
 pub struct VisitState {

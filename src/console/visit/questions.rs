@@ -16,7 +16,7 @@ use crate::request::{Request, VisitRequest};
 use crate::screens::Look;
 use crate::text::wrapped;
 use crate::theme::Role;
-use novamind_session::{DueQuestion, Form};
+use novamind_study::{DueQuestion, Form};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 92;
@@ -375,7 +375,7 @@ fn draw_options(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
 mod tests {
     use super::*;
     use crate::test_kit::{company, dialog_picture, in_dialog};
-    use novamind_session::Question;
+    use novamind_study::Question;
 
     fn page(text: &str, forms: &[Form]) -> QuestionPage {
         let due = |(at, form): (usize, &Form)| DueQuestion {

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::SessionThread;
 use crate::message::News;
+use novamind_course::{CollectedClass, Handout};
 use novamind_report::class::{ClassView, Shown};
-use novamind_session::{
-    Access, CollectedClass, Handout, RunError, Session, base_of_runs, participant_folder,
-};
+use novamind_session::{Access, RunError, Session, base_of_runs, participant_folder};
 
 impl SessionThread {
     /// Reads a class; what is not there of what is to be shown is told instead.

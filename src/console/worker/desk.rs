@@ -1,6 +1,7 @@
 //! The desk of a study: who has come, and what comes next for them.
 
-use novamind_session::{Agreed, DueQuestion, NextStep, RunError, Study, Visit};
+use novamind_session::{Agreed, RunError};
+use novamind_study::{DueQuestion, NextStep, Study, Visit};
 
 /// A study that is being visited.
 pub(super) struct Desk {

@@ -4,7 +4,8 @@ use super::desk::Desk;
 use super::{Open, SessionThread};
 use crate::message::{News, VisitNews};
 use crate::request::{GivenAnswer, VisitRequest};
-use novamind_session::{NextStep, RunError, Visit, record_refused_code};
+use novamind_session::RunError;
+use novamind_study::{NextStep, Visit, record_refused_code};
 
 impl SessionThread {
     /// Does what a participant's way asks for.
@@ -31,7 +32,7 @@ impl SessionThread {
             VisitRequest::GoOn => self.say_next(),
             VisitRequest::Ask(due) => {
                 if let Some(Open::Played(session)) = &mut self.open {
-                    session.ask_question(&due);
+                    due.note_shown(session);
                 }
             }
             VisitRequest::Answer(answers) => self.take_answers(&answers),
@@ -100,7 +101,7 @@ impl SessionThread {
     fn take_answers(&mut self, answers: &[GivenAnswer]) {
         let (Some(desk), Some(Open::Played(session))) = (&mut self.desk, &mut self.open) else { return };
         for GivenAnswer { due, value, for_ms, changes } in answers {
-            session.answer_question(due, value, *for_ms, *changes);
+            due.note_answer(session, value, *for_ms, *changes);
         }
         desk.due = desk.study.due(session);
         let due = desk.due.clone();

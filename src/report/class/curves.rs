@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CASH, ClassView, RankedStudent};
-use novamind_session::ClassRun;
+use novamind_course::ClassRun;
 
 /// A line or a point of a student in a drawing.
 pub struct StudentPoints<'a> {

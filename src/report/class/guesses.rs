@@ -2,7 +2,8 @@
 
 use super::ClassView;
 use super::curves::StudentPoints;
-use novamind_session::{ClassRun, GuessForm};
+use novamind_course::ClassRun;
+use novamind_session::GuessForm;
 
 /// A question of the lesson and the answers of the class.
 pub struct AskedClass<'a> {

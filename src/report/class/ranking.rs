@@ -1,7 +1,7 @@
 //! The ranking of a class: by the lesson's measure, relative to the good play on the same seed.
 
 use super::ClassView;
-use novamind_session::{ClassRun, RunVerdict};
+use novamind_course::{ClassRun, RunVerdict};
 
 /// A student in the ranking.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! `class.csv`: a row for each run that came back, and what its columns mean.
 
 use super::ClassView;
-use novamind_session::{ClassRun, StepEvidence};
+use novamind_course::{ClassRun, StepEvidence};
 
 /// Columns that every class has: name and meaning.
 const COLUMNS: [(&str, &str); 14] = [

@@ -7,7 +7,7 @@ use super::ranking::{RankedStudent, ranked};
 use crate::plot::{Drawn, plot};
 use crate::words::{count, money};
 use novamind_base::notation::{compact, percent, printable};
-use novamind_session::{ClassFinding, RunVerdict};
+use novamind_course::{ClassFinding, RunVerdict};
 
 /// What should be known, in a sentence that says what to do.
 pub fn finding_in_words(finding: &ClassFinding) -> String {

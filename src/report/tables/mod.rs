@@ -16,7 +16,8 @@ mod weeks;
 use serde::Serialize;
 
 use super::logbook::{Logbook, WeekLog};
-use novamind_session::{ForecastScore, FoundVisit, Line};
+use novamind_session::{ForecastScore, Line};
+use novamind_study::FoundVisit;
 
 pub use runs::RUNS;
 pub use weeks::WEEKS;

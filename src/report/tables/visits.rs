@@ -1,7 +1,7 @@
 //! `visits.csv`: a row for each line of the lists of visits, of those who have no run too.
 
 use super::{Heading, heading, word};
-use novamind_session::FoundVisit;
+use novamind_study::FoundVisit;
 
 /// The columns.
 pub(super) const HEADINGS: [Heading; 6] = [

@@ -68,7 +68,7 @@ impl LabKey {
     }
 
     /// The secret that seals the snapshots of a study; it does not lead back to the key.
-    pub(crate) fn seal_secret(&self) -> [u8; 32] {
+    pub fn seal_secret(&self) -> [u8; 32] {
         blake3::derive_key(SEAL_CONTEXT, &self.0.to_bytes())
     }
 
@@ -134,12 +134,12 @@ pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, Str
 }
 
 /// Reads `seal.key`.
-pub(crate) fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
+pub fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
     read_key(file, SEAL)
 }
 
 /// Writes `seal.key` into a new file that only its owner can read.
-pub(crate) fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
+pub fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
     write_secret(file, &key_text(SEAL, secret))
 }
 

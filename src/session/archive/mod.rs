@@ -29,7 +29,7 @@ use std::path::Path;
 pub use export::Export;
 pub use import::{Imported, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
-pub(crate) use lab_key::{read_seal_key, write_seal_key};
+pub use lab_key::{read_seal_key, write_seal_key};
 pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 
@@ -64,12 +64,12 @@ fn is_compressed(archive: &Path) -> bool {
 }
 
 /// Whether a file with this name is taken for an archive.
-pub(crate) fn is_archive_name(name: &str) -> bool {
+pub fn is_archive_name(name: &str) -> bool {
     [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
 }
 
 /// Whether this can be the name of a run: eight hexadecimal digits.
-pub(crate) fn is_run_name(name: &str) -> bool {
+pub fn is_run_name(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 

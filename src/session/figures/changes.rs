@@ -3,7 +3,7 @@
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::setting::{SettingId, values};
+use super::setting::{SettingId, setting_values};
 use novamind_world::settings::Settings;
 
 /// A setting that differs between two states.
@@ -62,7 +62,7 @@ mod kept {
 
 /// What differs, in the order of the tools; settings that exist in one state only count as 0 in the other.
 pub fn changes(old: &Settings, new: &Settings) -> Vec<Change> {
-    let (before, after) = (values(old), values(new));
+    let (before, after) = (setting_values(old), setting_values(new));
     let value_in = |list: &[(SettingId, f64)], wanted: SettingId| {
         list.iter().find(|(setting, _)| *setting == wanted).map(|(_, value)| *value)
     };

@@ -142,7 +142,7 @@ impl Display for Audience {
 }
 
 /// Every number that is set, in the order of the tools.
-pub(crate) fn values(settings: &Settings) -> Vec<(SettingId, f64)> {
+pub fn setting_values(settings: &Settings) -> Vec<(SettingId, f64)> {
     let core = &settings.core;
     let mut all: Vec<(SettingId, f64)> = Vec::new();
     all.extend(Plan::ALL.map(|plan| (SettingId::Price(plan), core.prices[plan])));

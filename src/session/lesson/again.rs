@@ -1,12 +1,12 @@
 //! Trying a step of a lesson again, from its beginning, in a run of its own.
 
 use super::conduct::LessonEntry;
-use crate::class::handout::HandoutEntry;
 use crate::create::{NewRun, Storage};
 use crate::resume::branch::branch_of_lesson;
 use crate::state::Session;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::mode::Mode;
+use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_tools::Refusal;

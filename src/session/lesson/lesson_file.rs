@@ -111,7 +111,7 @@ impl Lesson {
     ///
     /// # Errors
     /// A file is missing or wrong.
-    pub(crate) fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+    pub fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
         let text = |file| {
             let path = folder.join(file);
             std::fs::read_to_string(&path).map_err(RunError::io(&path))
@@ -125,12 +125,12 @@ impl Lesson {
     ///
     /// # Errors
     /// The first thing that is wrong, with line and key.
-    pub(crate) fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
+    pub fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
         Ok(Lesson::read(name, plan, texts, false)?)
     }
 
     /// Its plan and its texts, as they were written.
-    pub(crate) fn sources(&self) -> (&str, &str) {
+    pub fn sources(&self) -> (&str, &str) {
         (&self.plan_text, &self.texts)
     }
 
@@ -155,7 +155,7 @@ impl Lesson {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub(crate) fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
+    pub fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
         write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
         write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }

@@ -19,7 +19,7 @@ impl Measurement {
     ///
     /// # Errors
     /// The statement is refused, or answers with something else than one number.
-    pub(crate) fn of(&self, session: &mut Session, from_day: u32) -> Result<Option<f64>, String> {
+    pub fn of(&self, session: &mut Session, from_day: u32) -> Result<Option<f64>, String> {
         let weeks: Vec<WeekFigures> =
             session.weeks().iter().copied().filter(|week| week.day > from_day).collect();
         let value: Box<dyn Fn(&WeekFigures) -> f64> = match &self.source {

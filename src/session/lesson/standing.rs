@@ -48,7 +48,7 @@ impl LessonPart {
 
 impl LessonStanding {
     /// A lesson whose record says this.
-    pub(crate) fn of<'a>(
+    pub fn of<'a>(
         lesson: Arc<Lesson>,
         part: usize,
         lines: impl IntoIterator<Item = &'a Line>,

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use crate::state::Session;
-use crate::study::answer_book::AnswerBook;
+use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::Outcome;
 use novamind_record::trajectory::{Line, Record, Trajectory, read_regular_file};

@@ -23,7 +23,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
-use novamind_record::trajectory::record::Note;
+use novamind_record::trajectory::record::{Activity, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;
 use novamind_world::params::Params;
@@ -38,11 +38,14 @@ struct Stop {
 }
 
 /// Where the lines come from.
-pub(super) struct Origin {
+pub struct Origin {
+    /// The trajectory.
     pub path: PathBuf,
     /// Folder of the run; none for a trajectory that stands alone.
     pub folder: Option<PathBuf>,
+    /// The manifest.
     pub manifest: Manifest,
+    /// The parameters that the run was recorded with.
     pub params: Arc<Params>,
 }
 
@@ -378,8 +381,34 @@ fn apply(
     (lines.len().max(applied), Ok(ControlFlow::Continue(())))
 }
 
+impl Origin {
+    /// Simulates recorded lines again in memory. After each line, `after_line` sees the session as it was then. With
+    /// `has_database`, the database is complete at each note of a lesson.
+    ///
+    /// # Errors
+    /// The first line whose recorded state does not reproduce, or the first error of `after_line`.
+    pub fn replay(
+        &self,
+        lines: &[Line],
+        has_database: bool,
+        after_line: &mut dyn FnMut(&mut Session, &Line) -> Result<(), RunError>,
+    ) -> Result<Session, RunError> {
+        let start = || Projector::start(Location::memory(), 0, self.params.clone(), |_| false);
+        let projector = has_database.then(start).transpose()?.map(|(projector, _)| projector);
+        let mut session = Session::unwritten(self.manifest.clone(), None, self.params.clone(), projector);
+        for line in lines {
+            session.apply_line(&self.path, line)?;
+            if has_database && matches!(line.record, Record::Activity(Activity::Lesson(_))) {
+                session.commit_projection();
+            }
+            after_line(&mut session, line)?;
+        }
+        Ok(session)
+    }
+}
+
 /// Reads the lines of a run's folder, or of a trajectory file that stands alone.
-pub(super) fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
+pub fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     let (file, folder) = match path.is_dir() {
         true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
         false => {

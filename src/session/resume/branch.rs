@@ -189,7 +189,7 @@ fn makes_company(line: &Line) -> bool {
 ///
 /// # Errors
 /// The folder cannot be written.
-pub(crate) fn write_past(folder: &Path, manifest: &Manifest, lines: &[Line]) -> Result<(), RunError> {
+pub fn write_past(folder: &Path, manifest: &Manifest, lines: &[Line]) -> Result<(), RunError> {
     create_folder(folder)?;
     write_branch(folder, manifest, &shared_lines(lines))
 }

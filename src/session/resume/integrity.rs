@@ -17,9 +17,9 @@ use novamind_record::trajectory::record::VoiceAnswer;
 use novamind_record::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// What stood beside the trajectory before it was read.
-pub(crate) struct Integrity {
+pub struct Integrity {
     /// The snapshot, if there is one that is whole.
-    pub snapshot: Option<Snapshot>,
+    pub(crate) snapshot: Option<Snapshot>,
     /// How far the database has come, if it can be read.
     database: Option<Position>,
     /// The database is one of another run.
@@ -30,7 +30,7 @@ pub(crate) struct Integrity {
 
 impl Integrity {
     /// Asks them. Has to come before the trajectory is read, which may grow in between.
-    pub(crate) fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
+    pub fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
             remarks
@@ -49,7 +49,7 @@ impl Integrity {
     ///
     /// # Errors
     /// The first line that is missing or is not the one they saw.
-    pub(crate) fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
+    pub fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
         let database = self.database.clone().map(|position| ("world.db", position));
         let snapshot = self.snapshot.as_ref().map(|snapshot| (FILE, snapshot.position()));
         [database, snapshot].into_iter().flatten().try_for_each(|(file, position)| {

@@ -145,7 +145,7 @@ impl WeekFigure {
 
     /// Its value in a week whose groups are not told; none for a figure that is made of groups or hidden. Not a number where
     /// it has no value.
-    pub(crate) fn of_week(self, figures: &WeekFigures) -> Option<f64> {
+    pub fn of_week(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {
             return None;

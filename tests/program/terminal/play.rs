@@ -197,7 +197,7 @@ fn a_participant_sees_the_study_and_nothing_else_until_the_code_is_given() {
         .expect("it starts");
     assert!(made.status.success());
     let protocol = std::fs::read_to_string(folder.join("study.toml")).expect("a protocol");
-    let code = novamind::session::CodeDigest::of("open", "salt");
+    let code = novamind::study::CodeDigest::of("open", "salt");
     let protocol = protocol.replace("# code = \"…\"", &format!("code = \"{}\"", code.as_text()));
     std::fs::write(folder.join("study.toml"), protocol).expect("written");
     let study = folder.display().to_string();

@@ -1,7 +1,8 @@
 //! What a protocol lays down that a session of its length cannot do.
 
 use super::{Outcome, Point};
-use crate::session::{Configuration, Moment, RunError, Study};
+use crate::session::{Configuration, RunError};
+use novamind_study::{Moment, Study};
 
 /// The points of the design: questions, assignment, forecasts.
 pub(super) fn points(study: &Study, configuration: &Configuration) -> Vec<Point> {

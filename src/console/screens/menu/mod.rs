@@ -29,8 +29,9 @@ use class::ClassPage;
 use form::{ROWS, RunForm};
 use home::HomeEntry;
 use lessons::LessonList;
+use novamind_course::CollectedClass;
 use novamind_report::class::Shown;
-use novamind_session::{Access, CollectedClass, Configuration, Mode, RunPreview, RunSummary};
+use novamind_session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use path_form::{PathForm, PathWanted};
 use runs::Asked;
 

@@ -5,8 +5,8 @@ mod draw;
 mod tests;
 
 use crate::action::Action;
+use novamind_course::CollectedClass;
 use novamind_report::class::{ClassView, RankedStudent, Shown, asked, decisions, figures, ranked};
-use novamind_session::CollectedClass;
 
 /// Students of a page, to walk over.
 const PAGE: usize = 10;

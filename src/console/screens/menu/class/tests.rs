@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use super::*;
 use crate::test_kit::painted;
-use novamind_session::{
-    Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
-};
+use novamind_course::{Class, ClassCollection, ClassRun, Evidence, RunVerdict, StepEvidence, ToHandOut};
+use novamind_session::Lesson;
 
 /// A class of a lesson whose students have set prices from 10 up; the last one has not finished.
 fn collected(students: u32) -> CollectedClass {

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::{AuditFinding, AuditKind};
-use crate::archive::{LabPublicKey, Workshop, import_run, is_archive_name};
-use crate::study::definition::Study;
-use crate::study::keys::lab_public_key_of;
+use crate::definition::Study;
+use crate::keys::lab_public_key_of;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
+use novamind_session::{LabPublicKey, Workshop, import_run, is_archive_name};
 
 /// Archives of the study in folders that the lab has not signed, or that are damaged. Without a public key nothing is
 /// asked.

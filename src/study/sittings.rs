@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::study::definition::Study;
+use crate::definition::Study;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::lock::is_being_played;
 use novamind_record::folder::manifest::Manifest;

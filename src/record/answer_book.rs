@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use novamind_record::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
-use novamind_record::trajectory::{Line, Record};
+use crate::trajectory::record::{Activity, Answered, ClockEvent, PresenceEvent};
+use crate::trajectory::{Line, Record};
 
 /// What the record of a run says about questions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct AnswerBook {
+pub struct AnswerBook {
     /// Questionnaire, occasion and question of each answer.
     given: BTreeSet<(String, String, String)>,
     /// How often the person took up the run again, or started the clock again.
@@ -18,7 +18,7 @@ pub(crate) struct AnswerBook {
 
 impl AnswerBook {
     /// What lines say, in their order.
-    pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnswerBook {
+    pub fn of<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnswerBook {
         let mut book = AnswerBook::default();
         for line in lines {
             if let Record::Activity(activity) = &line.record {
@@ -29,7 +29,7 @@ impl AnswerBook {
     }
 
     /// Takes note of what a person did.
-    pub(crate) fn note(&mut self, activity: &Activity) {
+    pub fn note(&mut self, activity: &Activity) {
         match activity {
             Activity::Answer(answer) => {
                 let Answered { questionnaire, occasion, id, .. } = answer.clone();
@@ -45,7 +45,7 @@ impl AnswerBook {
     }
 
     /// Whether a question of a questionnaire was answered on an occasion.
-    pub(crate) fn has(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
+    pub fn has(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
         let place = (questionnaire.to_owned(), occasion.to_owned(), question.to_owned());
         self.given.contains(&place)
     }

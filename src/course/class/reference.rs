@@ -6,11 +6,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
-use crate::lesson::definition::{GoalBound, LessonPart};
-use crate::lesson::lesson_file::Lesson;
-use crate::lesson::reference::{PartPlay, play_part};
-use crate::state::AnswersCompanies;
 use novamind_record::error::RunError;
+use novamind_session::AnswersCompanies;
+use novamind_session::Lesson;
+use novamind_session::{GoalBound, LessonPart};
+use novamind_session::{PartPlay, play_part};
 
 /// The good play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -4,9 +4,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::archive::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
-use crate::resume::sealing::SealKey;
 use novamind_record::error::RunError;
+use novamind_session::SealKey;
+use novamind_session::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
 
 /// File of the private key.
 pub const LAB_KEY_FILE: &str = "lab.key";

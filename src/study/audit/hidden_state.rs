@@ -2,12 +2,12 @@
 
 use super::run_record::RunRecord;
 use super::{AuditFinding, AuditKind};
-use crate::play::afterwards::lines_afterwards;
-use crate::study::definition::Study;
+use crate::definition::Study;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::Activity;
 use novamind_record::trajectory::{Line, Record, seconds};
+use novamind_session::lines_afterwards;
 
 /// The first moment at which a run showed hidden state.
 struct HiddenView {

@@ -8,9 +8,6 @@ use super::assignment::Place;
 use super::definition::{PracticeOffer, SeedPlan, Study};
 use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
-use crate::create::{NewRun, Storage, StudyEntry};
-use crate::resume::open::Access;
-use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::consent::Agreed;
@@ -20,6 +17,9 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
 use novamind_record::stamp::StudyStamp;
+use novamind_session::Access;
+use novamind_session::Session;
+use novamind_session::{NewRun, Storage, StudyEntry};
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \

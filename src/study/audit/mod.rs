@@ -19,16 +19,16 @@ use serde::Serialize;
 pub use facts::RunFacts;
 pub use finding::{AuditFinding, AuditKind};
 
-use crate::play::afterwards::lines_afterwards;
-use crate::resume::integrity::Integrity;
-use crate::resume::verify::verify_sealed;
-use crate::study::definition::{Study, shortened};
-use crate::study::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
+use crate::definition::{Study, shortened};
+use crate::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::departures_of_file;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::{Line, Trajectory, seconds};
+use novamind_session::Integrity;
+use novamind_session::lines_afterwards;
+use novamind_session::verify_sealed;
 use run_record::{RunRecord, runs_in};
 
 /// What an audit of a study says.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::class_file::Class;
 use super::collecting::ClassCollection;
-use crate::lesson::lesson_file::Lesson;
 use novamind_record::error::RunError;
+use novamind_session::Lesson;
 
 /// A class with what was collected of it last.
 #[derive(Debug, Clone, PartialEq)]

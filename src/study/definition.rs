@@ -12,11 +12,11 @@ use super::assignment::Assignment;
 use super::code::CodeCheck;
 use super::keys::seal_key_of;
 use super::questions::Questionnaire;
-use crate::resume::sealing::SealKey;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_record::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 use novamind_record::trajectory::record::Activity;
+use novamind_session::SealKey;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::params::ParameterError;
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::study::definition::Study;
+use crate::definition::Study;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::runs::all_run_folders;

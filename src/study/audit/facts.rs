@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::figures::attendance::Attendance;
-use crate::figures::sitting_count::SittingCount;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{Activity, Outcome};
 use novamind_record::trajectory::{Record, Trajectory};
+use novamind_session::Attendance;
+use novamind_session::SittingCount;
 
 /// How a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]

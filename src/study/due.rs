@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use super::definition::Study;
 use super::questions::{Moment, Question, Questionnaire};
-use crate::state::Session;
 use novamind_record::rules::FreeText;
 use novamind_record::trajectory::record::{Activity, Answered, Asked};
+use novamind_session::Session;
 
 /// A question that is due.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ impl Study {
                 let open = own
                     .questions
                     .iter()
-                    .filter(|question| !session.answers.has(&own.name, &occasion, &question.id));
+                    .filter(|question| !session.answer_book().has(&own.name, &occasion, &question.id));
                 let due = |question: &Question| DueQuestion {
                     questionnaire: own.name.clone(),
                     title: own.title.clone(),
@@ -63,38 +63,39 @@ fn occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
             due.map(|week| format!("week {week}")).collect()
         }
         Moment::Break => {
-            let last = Some(session.answers.breaks).filter(|breaks| *breaks > 0 && session.ended().is_none());
+            let last =
+                Some(session.answer_book().breaks).filter(|breaks| *breaks > 0 && session.ended().is_none());
             last.map(|number| format!("break {number}")).into_iter().collect()
         }
         Moment::End => session.ended().map(|_| "end".to_owned()).into_iter().collect(),
     }
 }
 
-impl Session {
-    /// Records that a question is shown.
-    pub fn ask_question(&mut self, due: &DueQuestion) {
-        self.note_activity(Activity::Question(Asked {
-            questionnaire: due.questionnaire.clone(),
-            occasion: due.occasion.clone(),
-            id: due.question.id.clone(),
-            text: due.question.text.clone(),
-            form: due.question.form.id().to_owned(),
-            options: due.question.form.options(),
+impl DueQuestion {
+    /// Records that the question is shown.
+    pub fn note_shown(&self, session: &mut Session) {
+        session.note_activity(Activity::Question(Asked {
+            questionnaire: self.questionnaire.clone(),
+            occasion: self.occasion.clone(),
+            id: self.question.id.clone(),
+            text: self.question.text.clone(),
+            form: self.question.form.id().to_owned(),
+            options: self.question.form.options(),
         }));
     }
 
-    /// Records an answer; null where the question was passed over. Words are masked where the rules say so.
-    pub fn answer_question(&mut self, due: &DueQuestion, value: &Value, for_ms: u64, changes: u32) {
-        let masked = self.rules().free_text == FreeText::Masked && due.question.form.is_in_words();
+    /// Records an answer, null if the question was passed over. Words are masked if the rules require it.
+    pub fn note_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
+        let masked = session.rules().free_text == FreeText::Masked && self.question.form.is_in_words();
         let kept = match value.as_str().filter(|_| masked) {
             Some(words) => json!({ "length": words.chars().count() }),
             None => value.clone(),
         };
-        self.note_activity(Activity::Answer(Answered {
-            questionnaire: due.questionnaire.clone(),
-            occasion: due.occasion.clone(),
-            id: due.question.id.clone(),
-            as_expected: due.question.form.is_as_expected(value),
+        session.note_activity(Activity::Answer(Answered {
+            questionnaire: self.questionnaire.clone(),
+            occasion: self.occasion.clone(),
+            id: self.question.id.clone(),
+            as_expected: self.question.form.is_as_expected(value),
             value: kept,
             for_ms,
             changes,

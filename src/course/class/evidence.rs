@@ -6,20 +6,19 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::figures::setting::values;
-use crate::lesson::definition::GuessForm;
-use crate::lesson::lesson_file::Lesson;
-use crate::lesson::measurement::Measurement;
-use crate::lesson::standing::LessonStanding;
-use crate::playback::{Origin, read};
-use crate::resume::integrity::Integrity;
-use crate::resume::sealing::SealKey;
-use crate::state::Session;
-use crate::why::WeekFigure;
-use novamind_database::{Location, Projector};
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
+use novamind_session::GuessForm;
+use novamind_session::Integrity;
+use novamind_session::Lesson;
+use novamind_session::LessonStanding;
+use novamind_session::Measurement;
+use novamind_session::SealKey;
+use novamind_session::Session;
+use novamind_session::WeekFigure;
+use novamind_session::read_recorded;
+use novamind_session::setting_values;
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -73,9 +72,9 @@ pub struct GoalEvidence {
 /// # Errors
 /// The first line that does not fit; or the run is missing or of another version.
 pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
-    let (origin, trajectory) = read(folder)?;
-    let Origin { path, manifest, params, .. } = origin;
-    Integrity::of(folder, &manifest, &SealKey::default()).check(&path, &trajectory)?;
+    let (origin, trajectory) = read_recorded(folder)?;
+    let manifest = &origin.manifest;
+    Integrity::of(folder, manifest, &SealKey::default()).check(&origin.path, &trajectory)?;
     let stamp = manifest.lesson.as_ref();
     // By another lesson nothing of this one can be measured.
     let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
@@ -87,21 +86,14 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
     }
     let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));
     let asks = lesson.is_some_and(|lesson| lesson.asks_database());
-    let projector =
-        asks.then(|| Projector::start(Location::memory(), 0, params.clone(), |_| false)).transpose()?;
-    let session =
-        Session::unwritten(manifest.clone(), None, params, projector.map(|(projector, _)| projector));
-    let mut replay = Replay { session, standing, decisions: BTreeMap::new(), weeks: 0 };
-    for line in &trajectory.lines {
-        replay.session.apply_line(&path, line)?;
-        replay.look(&path, line)?;
-    }
-    Ok(Evidence { is_over: trajectory.end().is_some(), ..replay.evidence(manifest.seed) })
+    let mut replay = Replay { standing, decisions: BTreeMap::new(), weeks: 0 };
+    let session = origin
+        .replay(&trajectory.lines, asks, &mut |session, line| replay.look(session, &origin.path, line))?;
+    Ok(Evidence { is_over: trajectory.end().is_some(), ..replay.evidence(&session, manifest.seed) })
 }
 
 /// A run that is simulated again, and what was seen of it.
 struct Replay {
-    session: Session,
     standing: Option<LessonStanding>,
     decisions: BTreeMap<String, f64>,
     /// Weeks in which the student decided.
@@ -109,17 +101,17 @@ struct Replay {
 }
 
 impl Replay {
-    fn look(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
-        let days = self.session.params().run.days_per_week;
+    fn look(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
+        let days = session.params().run.days_per_week;
         let start = self.standing.as_ref().map_or(0, |own| own.own_part().start_weeks) * days;
-        if line.closes_days() && self.session.day() > start {
+        if line.closes_days() && session.day() > start {
             self.weeks += 1;
-            for (setting, value) in values(self.session.settings()) {
+            for (setting, value) in setting_values(session.settings()) {
                 *self.decisions.entry(setting.to_string()).or_default() += value;
             }
         }
         let Record::Activity(Activity::Lesson(note)) = &line.record else { return Ok(()) };
-        match self.differs(note) {
+        match self.differs(session, note) {
             None => Ok(()),
             Some(problem) => Err(RunError::Damaged {
                 path: path.to_owned(),
@@ -131,7 +123,7 @@ impl Replay {
     }
 
     /// In what a note about a goal, or about what was to be guessed, differs from the company simulated again.
-    fn differs(&mut self, note: &LessonNote) -> Option<String> {
+    fn differs(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
         let own = standing.step(step)?;
@@ -141,9 +133,8 @@ impl Replay {
             (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
             _ => return None,
         };
-        let from = standing.own_part().weeks_of(step).0 * self.session.params().run.days_per_week;
-        self.session.commit_projection();
-        let measured = measurement.of(&mut self.session, from).ok().flatten();
+        let from = standing.own_part().weeks_of(step).0 * session.params().run.days_per_week;
+        let measured = measurement.of(session, from).ok().flatten();
         let is_same = match (measured, note.value) {
             (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs().max(1.0),
             (one, other) => one == other,
@@ -159,12 +150,12 @@ impl Replay {
         })
     }
 
-    fn evidence(self, seed: u64) -> Evidence {
-        let Replay { session, standing, decisions, weeks } = self;
+    fn evidence(self, session: &Session, seed: u64) -> Evidence {
+        let Replay { standing, decisions, weeks } = self;
         let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
         // A quota without a limit is no number.
         let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
-        Evidence { decisions, ..evidence_of(&session, standing.as_ref(), seed) }
+        Evidence { decisions, ..evidence_of(session, standing.as_ref(), seed) }
     }
 }
 

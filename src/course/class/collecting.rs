@@ -11,14 +11,14 @@ use super::evidence::{ClassRun, Evidence, RunVerdict, examine};
 use super::finding::ClassFinding;
 use super::handout::{ENDING, HandedOut, Handout};
 use super::reference::{ClassReference, references};
-use crate::archive::Workshop;
-use crate::lesson::lesson_file::Lesson;
-use crate::state::AnswersCompanies;
-use crate::study::gather::{CollectNote, FoundRun, gather};
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::durable::write_whole;
 use novamind_record::folder::manifest::Manifest;
+use novamind_session::AnswersCompanies;
+use novamind_session::Lesson;
+use novamind_session::Workshop;
+use novamind_study::{CollectNote, FoundRun, gather};
 
 /// Name of the file in the folder of the class.
 const COLLECTED_FILE: &str = "collected.json";

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::archive::{LabPublicKey, import_run, is_archive_name};
-use crate::play::afterwards::lines_afterwards;
-use crate::study::assignment::Assignment;
-use crate::study::definition::shortened;
-use crate::study::visit_log::{VISITS, VisitEvent, VisitLine, visits};
+use crate::assignment::Assignment;
+use crate::definition::shortened;
+use crate::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Trajectory, nanoseconds};
+use novamind_session::lines_afterwards;
+use novamind_session::{LabPublicKey, import_run, is_archive_name};
 
 /// How deep folders are searched.
 const DEEPEST: usize = 12;

@@ -3,9 +3,6 @@
 use std::path::Path;
 
 use super::handout::HandedRun;
-use crate::archive::Workshop;
-use crate::resume::branch::write_past;
-use crate::resume::verify::verify;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::{FORMAT, Manifest};
@@ -14,6 +11,9 @@ use novamind_record::rules::SessionRules;
 use novamind_record::stamp::HandoutStamp;
 use novamind_record::trajectory::record::Parent;
 use novamind_record::trajectory::{Line, Record, Trajectory, now};
+use novamind_session::Workshop;
+use novamind_session::verify;
+use novamind_session::write_past;
 
 /// A run that can be handed out.
 pub(super) struct HandedPast {

@@ -5,11 +5,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::archive::is_run_name;
-use crate::create::{NewRun, Storage};
-use crate::lesson::conduct::LessonEntry;
-use crate::lesson::lesson_file::Lesson;
-use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::derived::Derived;
@@ -17,7 +12,12 @@ use novamind_record::folder::durable::{create_folder, write_whole};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{list_runs, participant_folder};
-use novamind_record::stamp::HandoutStamp;
+use novamind_record::stamp::{HandoutEntry, HandoutStamp};
+use novamind_session::Lesson;
+use novamind_session::LessonEntry;
+use novamind_session::Session;
+use novamind_session::is_run_name;
+use novamind_session::{NewRun, Storage};
 use novamind_world::params::ParameterSource;
 
 /// Format of hand-outs that this program writes.
@@ -233,26 +233,5 @@ impl Handout {
             let _ = std::fs::remove_dir_all(folder);
         }
         written
-    }
-}
-
-/// What a hand-out lays down for a new run.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HandoutEntry {
-    /// The hand-out.
-    pub stamp: HandoutStamp,
-    /// Name of the run; one of its own where the hand-out names another.
-    pub run: Option<String>,
-}
-
-impl HandoutEntry {
-    /// For the run that a hand-out begins.
-    fn of_first_run(stamp: HandoutStamp) -> HandoutEntry {
-        HandoutEntry { run: Some(stamp.run.clone()), stamp }
-    }
-
-    /// For a run that follows the one that the hand-out begins.
-    pub(crate) fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
-        HandoutEntry { stamp, run: None }
     }
 }

@@ -88,7 +88,7 @@ const FORMAT_2: [(&str, u32, usize, &str); 16] = [
     ("format2-class", 21, 3, "11a7457abcc1d4dd"),
     ("format2-class-run", 35, 5, "fbf4882923f9cda0"),
     ("format2-console", 14, 2, "4fa3c2d61589ba28"),
-    ("format2-debug", 28, 6, "45453f6fd2027b84"),
+    ("format2-debug", 28, 6, "da92ae3e2dc2334f"),
     ("format2-http", 14, 2, "a5006c9185d4e365"),
     ("format2-lesson", 21, 3, "ba049c147bd9f10e"),
     ("format2-mcp", 7, 1, "0b383245891d8956"),

@@ -11,7 +11,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use novamind::session::{Access, Session, Trajectory, lines_afterwards, manifest_text, verify};
+use novamind::session::{
+    Access, Configuration, Session, Trajectory, lines_afterwards, manifest_text, verify,
+};
 use novamind::tools::ToolId;
 use serde_json::{Value, json};
 
@@ -135,6 +137,35 @@ fn runs_of_format_2_have_lines_of_every_kind_and_calls_of_every_tool() {
     // `query` has lines of its own.
     let catalogue = ToolId::all().map(ToolId::name).filter(|tool| *tool != "query");
     assert_eq!(catalogue.filter(|tool| !tools.contains(*tool)).collect::<Vec<_>>(), [""; 0]);
+}
+
+/// Digests of the parameters of all scenarios, which recorded runs name.
+const DIGESTS: [(&str, &str); 13] = [
+    ("competitor-hard", "666f481a1d3f48e4"),
+    ("competitor-off", "85152183ce68c06c"),
+    ("competitor-stationary", "a04be5a00f7ed72c"),
+    ("competitor-u10", "e0ccf495b6d8f8d8"),
+    ("competitor-u20", "95b4e7a4758350d2"),
+    ("competitor-u30", "202096f952d53db6"),
+    ("corrected", "baf87cbd827fb0ac"),
+    ("default", "a9623642a136c0a4"),
+    ("demand-surges", "0ee35becde75cba2"),
+    ("paper", "aaad322fe79af0c7"),
+    ("practice", "ba85d9d75a79f837"),
+    ("reference-seed42", "bca7eb0607e77a56"),
+    ("short", "a9623642a136c0a4"),
+];
+
+#[test]
+fn parameters_of_scenarios_keep_the_digests_that_recorded_runs_name() {
+    let shipped = Configuration::shipped();
+    let digest = |name: String| {
+        let scenario = shipped.scenario(&name).expect("a scenario");
+        let params = shipped.parameters(&scenario, &[], false).expect("parameters");
+        (name, params.digest())
+    };
+    let digests: Vec<(String, String)> = shipped.scenarios().into_iter().map(digest).collect();
+    assert_eq!(digests, DIGESTS.map(|(name, digest)| (name.to_owned(), digest.to_owned())));
 }
 
 #[test]

@@ -6,8 +6,18 @@ use super::case::{cases, groups};
 use crate::support::home::Home;
 
 /// Options that choose a form of output, or a file that is written.
-const FORMS: [&str; 10] =
-    ["--json", "--csv", "--format", "--html", "--markdown", "--svg", "--text", "--metrics", "--card", "--session"];
+const FORMS: [&str; 10] = [
+    "--json",
+    "--csv",
+    "--format",
+    "--html",
+    "--markdown",
+    "--svg",
+    "--text",
+    "--metrics",
+    "--card",
+    "--session",
+];
 
 /// Commands and options without a case, and why.
 const EXCEPTIONS: [(&str, &str); 12] = [
@@ -62,7 +72,10 @@ impl Help {
                         values.extend(listed.trim_end_matches(']').split(", ").map(str::to_owned));
                     }
                     None => values.extend(
-                        line.trim_start().strip_prefix("- ").and_then(|rest| rest.split(':').next()).map(str::to_owned),
+                        line.trim_start()
+                            .strip_prefix("- ")
+                            .and_then(|rest| rest.split(':').next())
+                            .map(str::to_owned),
                     ),
                 }
             }
@@ -123,7 +136,8 @@ fn every_command_and_form_of_output_has_a_case() {
         covered(&case.arguments(), &wanted, &mut found);
     }
     let exceptions: BTreeSet<String> = EXCEPTIONS.iter().map(|(name, _)| (*name).to_owned()).collect();
-    let missing: Vec<&String> = wanted.iter().filter(|name| !found.contains(*name) && !exceptions.contains(*name)).collect();
+    let missing: Vec<&String> =
+        wanted.iter().filter(|name| !found.contains(*name) && !exceptions.contains(*name)).collect();
     assert!(missing.is_empty(), "without a case in tests/data/frozen/cases: {missing:#?}");
     let needless: Vec<&String> =
         exceptions.iter().filter(|name| found.contains(*name) || !wanted.contains(*name)).collect();

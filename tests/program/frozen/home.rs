@@ -58,16 +58,20 @@ impl FrozenHome {
     pub fn output_of(&mut self, case: &Case) -> String {
         let place = self.home.0.path().to_owned();
         let fill = |argument: String| {
-            let filled = self.ids.iter().fold(argument, |text, (name, id)| text.replace(&format!("{{{name}}}"), id));
+            let filled =
+                self.ids.iter().fold(argument, |text, (name, id)| text.replace(&format!("{{{name}}}"), id));
             filled.replace("{home}", &place.display().to_string())
         };
         let arguments: Vec<String> = case.arguments().into_iter().map(fill).collect();
         let mut command = self.home.program();
         command.current_dir(&place).args(arguments).env("TZ", "UTC");
-        for variable in ["COLUMNS", "LINES", "NO_COLOR", "NOVAMIND_PARTICIPANT", "NOVAMIND_STUDY", "NOVAMIND_CODE"] {
+        for variable in
+            ["COLUMNS", "LINES", "NO_COLOR", "NOVAMIND_PARTICIPANT", "NOVAMIND_STUDY", "NOVAMIND_CODE"]
+        {
             command.env_remove(variable);
         }
-        let said = if case.in_turn { in_turn(&mut command, &case.input) } else { said(&mut command, &case.input) };
+        let said =
+            if case.in_turn { in_turn(&mut command, &case.input) } else { said(&mut command, &case.input) };
         self.masks.keys = case.mask.clone();
         self.masks.find_new_ids(&self.home.runs());
         for file in &case.files {
@@ -151,7 +155,8 @@ fn is_derived(name: &str) -> bool {
 
 /// What is in a folder, sorted by name.
 fn sorted(folder: &Path) -> Vec<PathBuf> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
     paths.sort();
     paths
 }

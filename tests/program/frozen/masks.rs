@@ -8,9 +8,8 @@ use std::path::Path;
 const SECOND: usize = 19;
 
 /// Fields of new lines of `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` that depend on the machine or on the moment.
-const LINE_FIELDS: [&str; 10] = [
-    "prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms",
-];
+const LINE_FIELDS: [&str; 10] =
+    ["prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms"];
 
 /// Replacements for the folder of the test, moments that no recorded run has, and ids of new runs and classes.
 #[derive(Default)]
@@ -92,7 +91,9 @@ impl Masks {
         });
         // Recorded lines keep every byte: only a line with a masked moment is new.
         let lines = text.split_inclusive('\n');
-        lines.map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() }).collect()
+        lines
+            .map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() })
+            .collect()
     }
 
     fn without_moments(&self, text: &str) -> String {

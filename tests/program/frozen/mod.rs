@@ -27,7 +27,8 @@ fn root() -> PathBuf {
 /// Runs the cases of a group in one home, in their order, and compares each with its expected output.
 fn check(group: &str) {
     let mut home = FrozenHome::new();
-    let found = cases(group).iter().filter_map(|case| compare(group, &case.name, &home.output_of(case))).collect();
+    let found =
+        cases(group).iter().filter_map(|case| compare(group, &case.name, &home.output_of(case))).collect();
     report(found);
 }
 

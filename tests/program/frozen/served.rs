@@ -23,7 +23,12 @@ fn answers_over_http() {
         ("dashboard", "GET", "/dashboard", Value::Null),
         ("query", "POST", "/query", json!({ "sql": "SELECT * FROM config_history ORDER BY day" })),
         ("query-refused", "POST", "/query", json!({ "sql": "SELECT nothing FROM ledger" })),
-        ("week", "POST", "/next-week", json!({ "rationale": "on", "predictions": predictions(), "expected_day": 14 })),
+        (
+            "week",
+            "POST",
+            "/next-week",
+            json!({ "rationale": "on", "predictions": predictions(), "expected_day": 14 }),
+        ),
         ("week-refused", "POST", "/next-week", json!({ "rationale": "on" })),
         ("script", "POST", "/daily-scripts", json!({ "name": "s", "content": "SELECT 1" })),
         ("scripts", "GET", "/daily-scripts", Value::Null),

@@ -12,6 +12,8 @@ mod doors;
 mod edges;
 mod exports;
 mod forged;
+#[cfg(all(feature = "server", unix))]
+mod frozen;
 mod golden;
 mod hardship;
 #[cfg(feature = "server")]

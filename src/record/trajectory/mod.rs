@@ -222,4 +222,26 @@ mod tests {
             assert!(problem.contains(&format!("missing field `{needed}`")), "{problem}");
         }
     }
+
+    #[test]
+    fn recorded_lines_are_written_again_with_the_same_bytes() {
+        let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded");
+        let mut count = 0;
+        for folder in std::fs::read_dir(recorded).expect("a folder").flatten() {
+            if !folder.file_name().to_string_lossy().starts_with("format2-") {
+                continue;
+            }
+            let path = folder.path().join("trajectory.jsonl");
+            let text = std::fs::read_to_string(&path).expect("a trajectory");
+            let lines = Trajectory::read(&path).expect("it reads").lines;
+            for (line, text) in lines.iter().zip(text.lines()) {
+                let fields = Value::Object(line.record.fields()).to_string();
+                let own = Value::Object(line.own_fields()).to_string();
+                assert_eq!(fields, own, "{}: line {}", path.display(), line.seq + 1);
+                assert!(text.contains(&own[1..own.len() - 1]), "{}: line {}", path.display(), line.seq + 1);
+                count += 1;
+            }
+        }
+        assert!(count > 400, "{count}");
+    }
 }

@@ -198,20 +198,30 @@ impl Params {
     /// The digest without the keys of `ADDED_KEYS` for which `is_left_out` returns true, given their value and that of their
     /// earlier behaviour.
     fn digest_without(&self, is_left_out: impl Fn(&Json, &Json) -> bool) -> String {
-        let mut tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
-        for (table, key, earlier) in ADDED_KEYS {
-            let earlier = serde_json::from_str(earlier).expect("the list holds JSON");
-            let table = tables.get_mut(table).and_then(Json::as_object_mut);
-            if let Some(table) = table
-                && table.get(key).is_some_and(|value| is_left_out(value, &earlier))
-            {
-                table.shift_remove(key);
-            }
-        }
-        let mut canonical = tables.to_string().into_bytes();
-        canonical.extend(self.fault.into_iter().flat_map(|fault| fault.number().to_le_bytes()));
-        blake3::hash(&canonical).to_hex()[..16].to_owned()
+        let tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
+        digest_of(tables, self.fault, &ADDED_KEYS, is_left_out)
     }
+}
+
+/// The digest of parameters as JSON, without those of the added keys for which `is_left_out` returns true.
+fn digest_of(
+    mut tables: Json,
+    fault: Option<Fault>,
+    added: &[(&str, &str, &str)],
+    is_left_out: impl Fn(&Json, &Json) -> bool,
+) -> String {
+    for (table, key, earlier) in added {
+        let earlier = serde_json::from_str(earlier).expect("the list holds JSON");
+        let table = tables.get_mut(table).and_then(Json::as_object_mut);
+        if let Some(table) = table
+            && table.get(*key).is_some_and(|value| is_left_out(value, &earlier))
+        {
+            table.shift_remove(*key);
+        }
+    }
+    let mut canonical = tables.to_string().into_bytes();
+    canonical.extend(fault.into_iter().flat_map(|fault| fault.number().to_le_bytes()));
+    blake3::hash(&canonical).to_hex()[..16].to_owned()
 }
 
 #[cfg(test)]
@@ -234,5 +244,31 @@ mod tests {
                 "{table}.{key}: the default is the earlier behaviour"
             );
         }
+    }
+
+    #[test]
+    fn a_new_key_at_its_earlier_behaviour_changes_no_digest() {
+        let shipped = Params::shipped();
+        let mut rivals = shipped.clone();
+        rivals.competitor.competitor_feedback_u_max = 0.7;
+        let mut noisy = shipped.clone();
+        noisy.fidelity.insight_noise = InsightNoise::Release;
+        let faulty = Params { fault: Fault::numbered(3), ..shipped.clone() };
+        let added = [&ADDED_KEYS[..], &[("fidelity", "next_form", "\"release\"")]].concat();
+        let mut digests = std::collections::BTreeSet::new();
+        for params in [shipped, rivals, faulty, noisy] {
+            let with_key = |value: &str| {
+                let mut tables = serde_json::to_value(&params).expect("tables");
+                tables["fidelity"]["next_form"] = value.into();
+                tables
+            };
+            let digest =
+                |value, added| digest_of(with_key(value), params.fault, added, |own, earlier| own == earlier);
+            assert_eq!(digest("release", &added), params.digest(), "it is left out");
+            assert_ne!(digest("paper", &added), params.digest(), "another value counts");
+            assert_ne!(digest("release", &ADDED_KEYS), params.digest(), "it has to be listed");
+            digests.insert(params.digest());
+        }
+        assert_eq!(digests.len(), 4);
     }
 }

@@ -4,11 +4,17 @@
 //! both verified by whatever build runs the tests, one of a company that uses every lever there is, and one of a scenario
 //! that has had another key since. They also pin
 //! the mechanics: whoever changes what decisions lead to raises `world::MECHANICS` and records them anew.
+//!
+//! `format2-*` are runs of format 2, one of every kind. `tests/data/recorded/README.md` lists them.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use novamind::session::{Access, Session, verify};
+use novamind::session::{
+    Access, Configuration, Session, Trajectory, lines_afterwards, manifest_text, verify,
+};
+use novamind::tools::ToolId;
 use serde_json::{Value, json};
 
 use super::run::{copy, runs};
@@ -74,6 +80,101 @@ fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
     );
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
     assert!(!session.observe().has_own_parameters, "it plays the scenario as its version had it");
+}
+
+/// Runs of format 2, one of every kind: last day, states, beginning of the last state hash.
+const FORMAT_2: [(&str, u32, usize, &str); 16] = [
+    ("format2-adopted", 42, 6, "1dd30530ca85389a"),
+    ("format2-baseline", 21, 3, "f8ff62b143bd28af"),
+    ("format2-branch", 21, 3, "2521e4fbf13e0486"),
+    ("format2-class", 21, 3, "11a7457abcc1d4dd"),
+    ("format2-class-run", 35, 5, "fbf4882923f9cda0"),
+    ("format2-console", 14, 2, "4fa3c2d61589ba28"),
+    ("format2-debug", 28, 6, "da92ae3e2dc2334f"),
+    ("format2-http", 14, 2, "a5006c9185d4e365"),
+    ("format2-lesson", 21, 3, "ba049c147bd9f10e"),
+    ("format2-mcp", 7, 1, "0b383245891d8956"),
+    ("format2-planted", 14, 2, "f41d69d178810989"),
+    ("format2-policy", 11, 2, "f7299c81d531e3cb"),
+    ("format2-sandbox", 42, 6, "dcdaf5659213ff0a"),
+    ("format2-scripts", 14, 2, "11b6cc3d38d77d01"),
+    ("format2-study", 35, 5, "3df35b1f43f76ba5"),
+    ("format2-voice", 28, 4, "eb5283ec254125c1"),
+];
+
+#[test]
+fn runs_of_format_2_of_every_kind_reach_the_same_states() {
+    let folders = fs::read_dir(recorded("")).expect("a folder").flatten();
+    let names = folders.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let names: BTreeSet<String> = names.filter(|name| name.starts_with("format2-")).collect();
+    assert_eq!(names, FORMAT_2.map(|(name, ..)| name.to_owned()).into(), "each has its line in FORMAT_2");
+    for (name, day, states, hash) in FORMAT_2 {
+        let found = verify(&recorded(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!((found.day, found.states), (day, states), "{name}");
+        assert!(found.state_hash.starts_with(hash), "{name}: {}", found.state_hash);
+    }
+}
+
+#[test]
+fn runs_of_format_2_have_lines_of_every_kind_and_calls_of_every_tool() {
+    let (mut kinds, mut tools) = (BTreeSet::new(), BTreeSet::new());
+    for (name, ..) in FORMAT_2 {
+        let folder = recorded(name);
+        let run = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
+        let after = lines_afterwards(&folder, &run).expect("it reads");
+        for line in run.lines.iter().chain(&after.lines) {
+            kinds.insert(line.record.kind().to_owned());
+            tools.extend(line.own_fields().get("tool").and_then(Value::as_str).map(str::to_owned));
+        }
+    }
+    let schema: Value =
+        serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");
+    let known = schema["$defs"].as_object().expect("definitions").iter();
+    let known = known.filter(|(_, kind)| kind.pointer("/properties/kind").is_some());
+    // `memo` is written in format 1 only.
+    let known = known.map(|(kind, _)| kind.clone()).filter(|kind| kind != "memo");
+    assert_eq!(kinds, known.collect());
+    // `query` has lines of its own.
+    let catalogue = ToolId::all().map(ToolId::name).filter(|tool| *tool != "query");
+    assert_eq!(catalogue.filter(|tool| !tools.contains(*tool)).collect::<Vec<_>>(), [""; 0]);
+}
+
+/// Digests of the parameters of all scenarios, which recorded runs name.
+const DIGESTS: [(&str, &str); 13] = [
+    ("default", "a9623642a136c0a4"),
+    ("competitor-hard", "666f481a1d3f48e4"),
+    ("competitor-off", "85152183ce68c06c"),
+    ("competitor-stationary", "a04be5a00f7ed72c"),
+    ("competitor-u10", "e0ccf495b6d8f8d8"),
+    ("competitor-u20", "95b4e7a4758350d2"),
+    ("competitor-u30", "202096f952d53db6"),
+    ("corrected", "baf87cbd827fb0ac"),
+    ("demand-surges", "0ee35becde75cba2"),
+    ("paper", "aaad322fe79af0c7"),
+    ("practice", "ba85d9d75a79f837"),
+    ("reference-seed42", "bca7eb0607e77a56"),
+    ("short", "a9623642a136c0a4"),
+];
+
+#[test]
+fn parameters_of_scenarios_keep_the_digests_that_recorded_runs_name() {
+    let shipped = Configuration::shipped();
+    let digest = |name: String| {
+        let scenario = shipped.scenario(&name).expect("a scenario");
+        let params = shipped.parameters(&scenario, &[], false).expect("parameters");
+        (name, params.digest())
+    };
+    let digests: Vec<(String, String)> = shipped.scenarios().into_iter().map(digest).collect();
+    assert_eq!(digests, DIGESTS.map(|(name, digest)| (name.to_owned(), digest.to_owned())));
+}
+
+#[test]
+fn run_toml_of_format_2_is_rebuilt_to_the_same_bytes() {
+    for (name, ..) in FORMAT_2 {
+        let folder = recorded(name);
+        let file = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
+        assert_eq!(manifest_text(&folder).expect("it reads"), file, "{name}");
+    }
 }
 
 #[test]

@@ -1,0 +1,145 @@
+//! Every command and every option that chooses a form of output has a case.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::case::{cases, groups};
+use crate::support::home::Home;
+
+/// Options that choose a form of output, or a file that is written.
+const FORMS: [&str; 10] = [
+    "--json",
+    "--csv",
+    "--format",
+    "--html",
+    "--markdown",
+    "--svg",
+    "--text",
+    "--metrics",
+    "--card",
+    "--session",
+];
+
+/// Commands and options without a case, and why.
+const EXCEPTIONS: [(&str, &str); 12] = [
+    ("bench", "measures time"),
+    ("bench --json", "measures time"),
+    ("completions", "written by the library that parses the command line"),
+    ("study check", "says what this machine is like"),
+    ("serve", "its routes are cases of `served`"),
+    ("lesson play", "`play --lesson`"),
+    ("lesson play --json", "`play --json`"),
+    ("study start --json", "`play --json`"),
+    ("agent python", "needs Python"),
+    ("study key", "makes random keys"),
+    ("study code", "makes a random salt"),
+    ("lab golden", "plays 24 seeds at least; its text names no figure that others read"),
+];
+
+/// What the help of a command lists.
+#[derive(Default)]
+struct Help {
+    commands: Vec<String>,
+    /// Options of `FORMS` with their possible values.
+    forms: BTreeMap<String, Vec<String>>,
+}
+
+impl Help {
+    fn read(text: &str) -> Help {
+        let mut help = Help::default();
+        let (mut section, mut option) = ("", None::<String>);
+        for line in text.lines() {
+            if !line.starts_with(' ') && line.ends_with(':') {
+                section = line;
+                continue;
+            }
+            let words: Vec<&str> = line.split_whitespace().collect();
+            match (section, words.first()) {
+                // Names of commands are indented by two blanks, their descriptions by more.
+                ("Commands:", Some(name)) if line.starts_with("  ") && !line.starts_with("   ") => {
+                    help.commands.push((*name).to_owned());
+                }
+                // Names of options are indented by six blanks, or by two if they have a letter, too.
+                ("Options:", Some(name)) if line.starts_with("      --") => {
+                    option = FORMS.contains(name).then(|| (*name).to_owned());
+                    help.forms.extend(option.iter().map(|name| (name.clone(), Vec::new())));
+                }
+                ("Options:", Some(_)) if line.starts_with("  -") => option = None,
+                _ => {}
+            }
+            if let Some(values) = option.as_ref().and_then(|name| help.forms.get_mut(name)) {
+                match line.split_once("[possible values: ") {
+                    Some((_, listed)) => {
+                        values.extend(listed.trim_end_matches(']').split(", ").map(str::to_owned));
+                    }
+                    None => values.extend(
+                        line.trim_start()
+                            .strip_prefix("- ")
+                            .and_then(|rest| rest.split(':').next())
+                            .map(str::to_owned),
+                    ),
+                }
+            }
+        }
+        help.commands.retain(|name| name != "help");
+        help
+    }
+}
+
+/// Every command without subcommands, and its forms with each of their values.
+fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
+    let said = home.run(&[path, &["--help"]].concat());
+    assert_eq!(said.code, 0, "{path:?}: {}", said.err);
+    let help = Help::read(&said.out);
+    let name = path.join(" ");
+    if help.commands.is_empty() {
+        found.insert(name.clone());
+    }
+    if !path.is_empty() {
+        for (form, values) in help.forms {
+            match values.is_empty() {
+                true => found.extend([format!("{name} {form}")]),
+                false => found.extend(values.iter().map(|value| format!("{name} {form} {value}"))),
+            }
+        }
+    }
+    for command in &help.commands {
+        expected(home, &[path, &[command]].concat(), found);
+    }
+}
+
+/// The command of a case, and its forms with their values.
+fn covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeSet<String>) {
+    let mut name = String::new();
+    for word in arguments.iter().take_while(|word| !word.starts_with('-')) {
+        let longer = if name.is_empty() { word.clone() } else { format!("{name} {word}") };
+        match commands.iter().any(|known| known == &longer || known.starts_with(&format!("{longer} "))) {
+            true => name = longer,
+            false => break,
+        }
+    }
+    found.insert(name.clone());
+    for (word, next) in arguments.iter().zip(arguments[1..].iter().map(Some).chain([None])) {
+        if FORMS.contains(&word.as_str()) {
+            found.insert(format!("{name} {word}"));
+            found.extend(next.map(|value| format!("{name} {word} {value}")));
+        }
+    }
+}
+
+#[test]
+fn every_command_and_form_of_output_has_a_case() {
+    let (home, mut wanted, mut found) = (Home::new(), BTreeSet::new(), BTreeSet::new());
+    expected(&home, &[], &mut wanted);
+    assert!(wanted.len() > 100 && wanted.contains("query --format csv"), "{wanted:?}");
+    let all = groups().iter().flat_map(|group| cases(group)).collect::<Vec<_>>();
+    for case in &all {
+        covered(&case.arguments(), &wanted, &mut found);
+    }
+    let exceptions: BTreeSet<String> = EXCEPTIONS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let missing: Vec<&String> =
+        wanted.iter().filter(|name| !found.contains(*name) && !exceptions.contains(*name)).collect();
+    assert!(missing.is_empty(), "without a case in tests/data/frozen/cases: {missing:#?}");
+    let needless: Vec<&String> =
+        exceptions.iter().filter(|name| found.contains(*name) || !wanted.contains(*name)).collect();
+    assert!(needless.is_empty(), "exceptions that are none: {needless:?}");
+}

@@ -1,0 +1,187 @@
+//! A home with the recorded runs of format 2, in which cases run.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::case::Case;
+use super::masks::Masks;
+use super::{root, stored};
+use crate::support::home::{Home, Said, said};
+
+/// A home with the recorded runs of format 2, the study and the classes that some of them belong to, and a damaged copy.
+pub struct FrozenHome {
+    pub home: Home,
+    /// Ids of the recorded runs by the name of their folder, without `format2-`.
+    ids: BTreeMap<String, String>,
+    pub masks: Masks,
+}
+
+impl FrozenHome {
+    pub fn new() -> FrozenHome {
+        let home = Home::new();
+        let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded");
+        let mut masks = Masks::new(home.0.path());
+        let mut ids = BTreeMap::new();
+        for folder in sorted(&recorded) {
+            let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
+            let Some(name) = name.strip_prefix("format2-") else { continue };
+            let manifest: toml::Table = text(&folder.join("run.toml")).parse().expect("a manifest");
+            let id = manifest["id"].as_str().expect("an id").to_owned();
+            let belongs = ["study", "handout"].iter().any(|key| manifest.contains_key(*key));
+            let parent = match manifest.get("participant").and_then(toml::Value::as_str) {
+                Some(label) if belongs => home.runs().join("participants").join(label),
+                _ => home.runs(),
+            };
+            copy(&folder, &parent.join(&id), &mut masks);
+            masks.keep_id(&id);
+            ids.insert(name.to_owned(), id);
+        }
+        let damaged = home.0.path().join("damaged").join(&ids["debug"]);
+        copy(&recorded.join("format2-debug"), &damaged, &mut masks);
+        damage(&damaged.join("trajectory.jsonl"));
+        let input = root().join("input");
+        copy(&input, home.0.path(), &mut masks);
+        fs::rename(home.0.path().join("visits.jsonl"), home.runs().join("visits.jsonl")).expect("moved");
+        FrozenHome { home, ids, masks }
+    }
+
+    /// The id of the recorded run `format2-NAME`.
+    pub fn id(&self, name: &str) -> &str {
+        &self.ids[name]
+    }
+
+    /// Everything that a case prints and writes, with masks for what differs from one test to the next.
+    pub fn output_of(&mut self, case: &Case) -> String {
+        let place = self.home.0.path().to_owned();
+        let fill = |argument: String| {
+            let filled =
+                self.ids.iter().fold(argument, |text, (name, id)| text.replace(&format!("{{{name}}}"), id));
+            filled.replace("{home}", &place.display().to_string())
+        };
+        let arguments: Vec<String> = case.arguments().into_iter().map(fill).collect();
+        let mut command = self.home.program();
+        command.current_dir(&place).args(arguments).env("TZ", "UTC");
+        for variable in
+            ["COLUMNS", "LINES", "NO_COLOR", "NOVAMIND_PARTICIPANT", "NOVAMIND_STUDY", "NOVAMIND_CODE"]
+        {
+            command.env_remove(variable);
+        }
+        let said =
+            if case.in_turn { in_turn(&mut command, &case.input) } else { said(&mut command, &case.input) };
+        self.masks.keys = case.mask.clone();
+        self.masks.find_new_ids(&self.home.runs());
+        for file in &case.files {
+            self.masks.find_class(&place.join(file).join("class.toml"));
+            self.masks.find_new_ids(&place.join(file));
+        }
+        let mut output = stored(self.masks.apply(&said.out));
+        if !said.err.is_empty() {
+            write!(output, "--- standard error\n{}", self.masks.apply(&said.err)).expect("a text");
+        }
+        if said.code != 0 {
+            writeln!(output, "--- exit code {}", said.code).expect("a text");
+        }
+        for file in &case.files {
+            self.write_file(&place.join(file), &mut output);
+        }
+        output
+    }
+
+    /// Appends what a file, a folder or an archive contains.
+    fn write_file(&mut self, path: &Path, output: &mut String) {
+        if path.is_dir() {
+            for inner in sorted(path) {
+                self.write_file(&inner, output);
+            }
+            return;
+        }
+        let name = path.strip_prefix(self.home.0.path()).unwrap_or(path).display().to_string();
+        let Ok(bytes) = fs::read(path) else {
+            writeln!(output, "--- {}: missing", self.masks.apply(&name)).expect("a text");
+            return;
+        };
+        match name.ends_with(".tar") {
+            true => {
+                for entry in tar::Archive::new(&bytes[..]).entries().expect("members") {
+                    let mut entry = entry.expect("a member");
+                    let member = entry.path().expect("a name").display().to_string();
+                    let mut bytes = Vec::new();
+                    entry.read_to_end(&mut bytes).expect("bytes");
+                    self.write_bytes(&format!("{name}: {member}"), &bytes, output);
+                }
+            }
+            false => self.write_bytes(&name, &bytes, output),
+        }
+    }
+
+    fn write_bytes(&mut self, name: &str, bytes: &[u8], output: &mut String) {
+        let name = self.masks.apply(name);
+        let text = match (is_derived(&name), String::from_utf8(bytes.to_vec())) {
+            (false, Ok(text)) => stored(self.masks.apply(&text)),
+            _ => "(bytes)\n".to_owned(),
+        };
+        let end = if text.ends_with('\n') || text.is_empty() { "" } else { "\n(no line end)\n" };
+        write!(output, "--- {name}\n{text}{end}").expect("a text");
+    }
+}
+
+/// What a program prints if each line is sent once the one before it was answered. Notifications have no answer.
+fn in_turn(command: &mut Command, lines: &str) -> Said {
+    let mut child = command.spawn().expect("the program starts");
+    let mut input = child.stdin.take().expect("a pipe");
+    let mut output = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut out = String::new();
+    for line in lines.lines() {
+        writeln!(input, "{line}").expect("sent");
+        if !line.contains("\"method\": \"notifications/") {
+            output.read_line(&mut out).expect("an answer");
+        }
+    }
+    drop(input);
+    output.read_to_string(&mut out).expect("text");
+    let ended = child.wait_with_output().expect("the program ends");
+    let err = String::from_utf8(ended.stderr).expect("UTF-8");
+    Said { out, err, code: ended.status.code().expect("it ends by itself") }
+}
+
+/// A file that only the program reads and makes again: the database, the snapshot, the lock with the number of a process.
+fn is_derived(name: &str) -> bool {
+    ["world.db", "snapshot.bin", "lock"].iter().any(|end| name.ends_with(end))
+}
+
+/// What is in a folder, sorted by name.
+fn sorted(folder: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    paths
+}
+
+fn text(path: &Path) -> String {
+    fs::read_to_string(path).expect("a text")
+}
+
+/// Changes a figure in the last week of a record.
+fn damage(trajectory: &Path) {
+    let whole = text(trajectory);
+    let at = whole.rfind("\"cash\":").expect("a figure") + "\"cash\":".len();
+    fs::write(trajectory, format!("{}1{}", &whole[..at], &whole[at..])).expect("written");
+}
+
+/// Copies a folder and lets the moments in its files pass through the masks.
+fn copy(from: &Path, to: &Path, masks: &mut Masks) {
+    fs::create_dir_all(to).expect("a folder");
+    for path in sorted(from) {
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy(&path, &target, masks);
+            continue;
+        }
+        masks.keep_moments(&text(&path));
+        fs::copy(&path, target).expect("copied");
+    }
+}

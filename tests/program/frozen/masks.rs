@@ -1,0 +1,144 @@
+//! What differs from one test to the next, and what takes its place. Everything else is compared as it is.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// Characters of a moment up to its second: `2026-11-27T13:30:46`.
+const SECOND: usize = 19;
+
+/// Fields of new lines of `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` that depend on the machine or on the moment.
+const LINE_FIELDS: [&str; 10] =
+    ["prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms"];
+
+/// Replacements for the folder of the test, moments that no recorded run has, and ids of new runs and classes.
+#[derive(Default)]
+pub struct Masks {
+    place: String,
+    seconds: BTreeSet<String>,
+    ids: BTreeSet<String>,
+    new_ids: BTreeMap<String, String>,
+    /// Keys whose values are masked, in JSON and TOML.
+    pub keys: Vec<String>,
+}
+
+impl Masks {
+    pub fn new(place: &Path) -> Masks {
+        let place = place.display().to_string();
+        Masks { place, ..Masks::default() }
+    }
+
+    /// Does not mask the moments of a text.
+    pub fn keep_moments(&mut self, text: &str) {
+        self.seconds.extend(moments(text).map(|(_, moment)| moment[..SECOND].to_owned()));
+    }
+
+    /// Does not mask an id.
+    pub fn keep_id(&mut self, id: &str) {
+        self.ids.insert(id.to_owned());
+    }
+
+    /// Masks the ids of the runs that are new below a folder, the oldest first.
+    pub fn find_new_ids(&mut self, below: &Path) {
+        let mut new = Vec::new();
+        self.new_runs(below, &mut new);
+        new.sort();
+        for (_, id) in new {
+            self.mask_id(&id);
+        }
+    }
+
+    /// The runs below a folder that were not recorded: when each was created, and its id.
+    fn new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
+        for folder in fs::read_dir(below).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
+            match fs::read_to_string(folder.join("run.toml")) {
+                Ok(_) if self.ids.contains(&id) => {}
+                Ok(manifest) => {
+                    let created = manifest.lines().find(|line| line.starts_with("created = "));
+                    found.push((created.unwrap_or_default().to_owned(), id));
+                }
+                Err(_) if folder.is_dir() => self.new_runs(&folder, found),
+                Err(_) => {}
+            }
+        }
+    }
+
+    /// Masks the ids of a class and of the runs that its hand-outs begin, if the file is there.
+    pub fn find_class(&mut self, file: &Path) {
+        let Ok(text) = fs::read_to_string(file) else { return };
+        let class: toml::Table = text.parse().expect("a class");
+        let students = class["student"].as_array().expect("students").iter().map(|student| &student["run"]);
+        let ids = std::iter::once(&class["class"]).chain(students).filter_map(toml::Value::as_str);
+        for id in ids.filter(|id| !self.ids.contains(*id)).collect::<Vec<_>>() {
+            self.mask_id(id);
+        }
+    }
+
+    /// Masks an id as `RUN1`, `RUN2` and so on.
+    pub fn mask_id(&mut self, id: &str) {
+        let next = format!("RUN{}", self.new_ids.len() + 1);
+        self.new_ids.entry(id.to_owned()).or_insert(next);
+    }
+
+    /// A text with the masks.
+    pub fn apply(&self, text: &str) -> String {
+        let text = text.replace(&self.place, "HOME");
+        let text = self.new_ids.iter().fold(text, |text, (id, mask)| text.replace(id, mask));
+        let text = self.without_moments(&text);
+        let text = self.keys.iter().fold(text, |text, key| {
+            without_value(without_value(text, &format!("\"{key}\":")), &format!("\n{key} = "))
+        });
+        // Recorded lines keep every byte: only a line with a masked moment is new.
+        let lines = text.split_inclusive('\n');
+        lines
+            .map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() })
+            .collect()
+    }
+
+    fn without_moments(&self, text: &str) -> String {
+        let (mut masked, mut done) = (String::new(), 0);
+        for (at, moment) in moments(text).filter(|(_, moment)| !self.seconds.contains(&moment[..SECOND])) {
+            masked.push_str(&text[done..at]);
+            masked.push_str("NOW");
+            done = at + moment.len();
+        }
+        masked.push_str(&text[done..]);
+        masked
+    }
+}
+
+/// The moments of a text, each with its place.
+fn moments(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let starts = text.match_indices('T').filter_map(|(at, _)| at.checked_sub("0000-00-00".len()));
+    starts.filter_map(|at| Some((at, moment_at(text.get(at..)?)?)))
+}
+
+/// The moment in RFC 3339 with which a text begins.
+fn moment_at(text: &str) -> Option<&str> {
+    let bytes = text.as_bytes();
+    let pattern = b"0000-00-00T00:00:00";
+    let fits = |(byte, form): (&u8, &u8)| if *form == b'0' { byte.is_ascii_digit() } else { byte == form };
+    if bytes.len() < SECOND || !bytes.iter().zip(pattern).all(fits) {
+        return None;
+    }
+    let more = bytes[SECOND..].iter().take_while(|byte| byte.is_ascii_digit() || **byte == b'.').count();
+    let zone = bytes.get(SECOND + more).is_some_and(|byte| *byte == b'Z');
+    text.get(..SECOND + more + usize::from(zone))
+}
+
+/// A new line of a record without the values of `LINE_FIELDS`.
+fn masked_line(line: &str) -> String {
+    LINE_FIELDS.iter().fold(line.to_owned(), |line, field| without_value(line, &format!("\"{field}\":")))
+}
+
+/// A text without the values that follow a key: plain values of JSON and TOML.
+fn without_value(mut text: String, key: &str) -> String {
+    let mut from = 0;
+    while let Some(at) = text[from..].find(key).map(|at| from + at + key.len()) {
+        let end = text[at..].find([',', '}', '\n']).map_or(text.len(), |end| at + end);
+        text.replace_range(at..end, "MASKED");
+        from = at;
+    }
+    text
+}

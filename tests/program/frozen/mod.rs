@@ -1,0 +1,120 @@
+//! Frozen output: what the program prints and writes for others to read, compared byte for byte.
+//!
+//! A case is a command line in `tests/data/frozen/cases/GROUP.toml`. Its expected output is `tests/data/frozen/GROUP/NAME.txt`:
+//! standard output, then standard error, the exit code, and the files it wrote, where there are any.
+//! `NOVAMIND_WRITE_FROZEN=1 cargo test --test program frozen` writes the expected outputs again.
+
+mod case;
+mod coverage;
+mod home;
+mod masks;
+mod served;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use case::cases;
+use home::FrozenHome;
+
+/// Outputs above this length are stored as their length and BLAKE3 digest.
+const MAX_STORED_BYTES: usize = 100_000;
+
+/// `tests/data/frozen`.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/frozen")
+}
+
+/// Runs the cases of a group in one home, in their order, and compares each with its expected output.
+fn check(group: &str) {
+    let mut home = FrozenHome::new();
+    let found =
+        cases(group).iter().filter_map(|case| compare(group, &case.name, &home.output_of(case))).collect();
+    report(found);
+}
+
+#[track_caller]
+fn report(differences: Vec<String>) {
+    assert!(
+        differences.is_empty(),
+        "{}\nIf the change is deliberate, write the outputs again with NOVAMIND_WRITE_FROZEN=1 and say in the changelog \
+         what readers have to adapt.",
+        differences.join("\n")
+    );
+}
+
+/// Compares an output with the expected one, or writes it. Returns the first line that differs.
+fn compare(group: &str, name: &str, output: &str) -> Option<String> {
+    let path = root().join(group).join(format!("{name}.txt"));
+    if std::env::var_os("NOVAMIND_WRITE_FROZEN").is_some() {
+        fs::create_dir_all(root().join(group)).expect("a folder");
+        fs::write(&path, output).expect("written");
+        return None;
+    }
+    let Ok(expected) = fs::read_to_string(&path) else {
+        return Some(format!("{group}/{name}: there is no expected output"));
+    };
+    if expected == output {
+        return None;
+    }
+    let (mut old, mut new) = (expected.split('\n'), output.split('\n'));
+    let mut line = 1;
+    loop {
+        match (old.next(), new.next()) {
+            (before, now) if before == now => line += 1,
+            (before, now) => {
+                let [before, now] = around(before.unwrap_or("(end)"), now.unwrap_or("(end)"));
+                return Some(format!("{group}/{name}, line {line}:\n  expected {before}\n  found    {now}"));
+            }
+        }
+    }
+}
+
+/// Two lines from shortly before the place in which they differ.
+fn around<'a>(before: &'a str, now: &'a str) -> [String; 2] {
+    let same = before.chars().zip(now.chars()).take_while(|(one, other)| one == other).count();
+    let part = |line: &'a str| -> String { line.chars().skip(same.saturating_sub(60)).take(160).collect() };
+    [part(before), part(now)]
+}
+
+/// A text, or its length and digest if it is long.
+fn stored(text: String) -> String {
+    match text.len() {
+        0..=MAX_STORED_BYTES => text,
+        length => format!("({length} bytes, BLAKE3 {})\n", blake3::hash(text.as_bytes()).to_hex()),
+    }
+}
+
+#[test]
+fn commands_that_describe_the_program() {
+    check("catalogue");
+}
+
+#[test]
+fn commands_that_read_runs() {
+    check("runs");
+}
+
+#[test]
+fn exports_and_imports() {
+    check("exports");
+}
+
+#[test]
+fn commands_of_the_laboratory() {
+    check("lab");
+}
+
+#[test]
+fn lessons_classes_and_studies() {
+    check("people");
+}
+
+#[test]
+fn runs_that_are_played() {
+    check("play");
+}
+
+#[test]
+fn programs_that_play() {
+    check("agents");
+}

@@ -104,6 +104,14 @@ pub fn shown<S: Screen + Default>(session: &mut Session, company: &Company) -> S
     screen
 }
 
+/// A run that was played for some weeks, its company, and a screen that knows all of it.
+pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
+    let mut session = played(weeks);
+    let company = Company::of(&session);
+    let screen = shown(&mut session, &company);
+    (session, company, screen)
+}
+
 /// Lets a screen do an action.
 pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
     let keys = Keys::shipped();
@@ -138,17 +146,17 @@ pub fn drawn(screen: &dyn Screen, company: &Company, width: u16, height: u16) ->
     picture(screen, company, width, height).join("\n")
 }
 
-/// Draws a screen in windows of every width and every height, one size in ten of all small ones, with each of its panes in
-/// the focus.
+/// Draws a screen in a few small and some large windows, with each of its panes in the focus. `tests/console/sizes.rs` draws
+/// every screen in many more.
 pub fn sweep(screen: &mut dyn Screen, company: &Company) {
     for focus in 0..screen.panes() {
         screen.set_focus(focus);
         let small = (0..=70).flat_map(|width| (0..=25).map(move |height| (width, height)));
-        let small = small.filter(|(width, height)| (width + 3 * height) % 17 == 0);
+        let small = small.filter(|(width, height)| (width + 3 * height) % 151 == 0);
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             drawn(screen, company, width, height);
-            // One of these in six is enough to see that a pane alone fits as well.
-            if height % 6 == 0 || height > 25 {
+            // Some of these are enough to see that a pane alone fits as well.
+            if height % 6 == 0 || height == 37 {
                 zoomed(screen, company, width, height);
             }
         }

@@ -1,20 +1,58 @@
 //! Companies that policies have led, on the disk.
 
-use std::path::Path;
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 
 use novamind::lab::{Collector, Policy, RunSpec, play};
 use novamind::session::Configuration;
 
-/// Lets a policy of `tests/data/policies` lead a company until a day.
+/// Files of a folder of runs: path below it and bytes.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
+/// A policy, a seed and a day.
+type Key = (String, u64, u32);
+
+/// Companies that tests of this process have asked for.
+static LED: LazyLock<Mutex<HashMap<Key, Arc<OnceLock<Files>>>>> = LazyLock::new(Mutex::default);
+
+/// Lets a policy of `tests/data/policies` lead a company until a day. Tests that ask for the same company share it.
 pub fn led(policy: &str, seed: u64, until: u32, runs: &Path) {
+    let shared =
+        Arc::clone(LED.lock().expect("companies").entry((policy.to_owned(), seed, until)).or_default());
+    for (path, bytes) in shared.get_or_init(|| files_of(policy, seed, until)) {
+        let path = runs.join(path);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, bytes).expect("a file");
+    }
+}
+
+fn files_of(policy: &str, seed: u64, until: u32) -> Files {
+    let runs = tempfile::tempdir().expect("a folder");
     let configuration = Configuration::shipped();
     let file = format!("{}/tests/data/policies/{policy}", env!("CARGO_MANIFEST_DIR"));
     let policy = Policy::find(&file, &configuration).expect("a policy");
     let spec = RunSpec {
         until: Some(until),
-        save: Some(runs.to_owned()),
+        save: Some(runs.path().to_owned()),
         projection: true,
         ..RunSpec::of_seed(seed)
     };
     play(&policy, &spec, &configuration, &mut Collector::idle()).expect("a run");
+    let mut files = Vec::new();
+    read(runs.path(), runs.path(), &mut files);
+    files
+}
+
+fn read(folder: &Path, base: &Path, files: &mut Files) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            read(&path, base, files);
+        } else {
+            let below = path.strip_prefix(base).expect("below the folder").to_owned();
+            files.push((below, fs::read(path).expect("a file")));
+        }
+    }
 }

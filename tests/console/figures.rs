@@ -10,11 +10,8 @@ use super::company::led;
 use super::harness::Console;
 
 /// A young company, one with enterprise deals, one in trouble: policy, seed, last days of weeks.
-const COMPANIES: [(&str, u64, [u32; 3]); 3] = [
-    ("opening.toml", 7, [7, 14, 28]),
-    ("companies.toml", 11, [35, 63, 84]),
-    ("crisis.toml", 5, [28, 49, 70]),
-];
+const COMPANIES: [(&str, u64, [u32; 2]); 3] =
+    [("opening.toml", 7, [7, 28]), ("companies.toml", 11, [35, 84]), ("crisis.toml", 5, [28, 70])];
 
 /// Windows whose screens are read.
 const SIZES: [(u16, u16); 2] = [(80, 24), (200, 57)];

@@ -1,24 +1,25 @@
 //! What can be checked of looks without eyes: words that are cut although there is room, halves that stay empty.
 
-use std::fmt::Write;
-
 use super::harness::Console;
 
 /// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
 pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
-/// The screen in windows of these sizes; what is cut although there is room joins the complaints. Its own size stays.
+/// The screen in the usual window. What is cut although there is room, in windows of all these sizes, joins the complaints. The
+/// size of the console stays.
 pub fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
     let own = console.size;
-    let mut text = String::new();
+    let mut usual = String::new();
     for size in SIZES {
         console.size = size;
         let letters = console.screen();
         complaints.extend(cut_with_room(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
-        writeln!(text, "{}×{}\n{letters}", size.0, size.1).expect("text");
+        if size == (120, 40) {
+            usual = letters;
+        }
     }
     console.size = own;
-    text
+    usual
 }
 
 /// Blanks behind a cut word that are room, not the gap between two columns.

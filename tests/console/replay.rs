@@ -299,7 +299,7 @@ fn random_keys_break_no_replay() {
     };
     let mut console = open((120, 40));
     let mut taken_over = 0;
-    for _ in 0..1_200 {
+    for _ in 0..500 {
         match dice.roll(12) {
             0 => console.size = (40 + dice.roll(140) as u16, 10 + dice.roll(50) as u16),
             1 => console.press("esc"),

@@ -2,23 +2,13 @@
 
 use std::path::Path;
 
-use novamind::session::{
-    Configuration, Mode, NewRun, Session, Storage, Trajectory, Via, lines_afterwards, verify,
-};
+use novamind::session::{Mode, Session, Trajectory, Via, lines_afterwards, verify};
 use serde_json::json;
 
-use crate::support::company::{open_shop, week, weeks};
+use crate::support::company::{begin_run, open_shop, week, weeks};
 
 fn run_in(folder: &Path, mode: Mode) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(56),
-        mode,
-        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
-        storage: Storage::Runs(folder.to_owned()),
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = begin_run(folder, mode, 56);
     open_shop(&mut session);
     session
 }

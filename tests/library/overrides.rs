@@ -4,26 +4,14 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use novamind::session::{
-    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Storage, Trajectory, Via,
+    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Trajectory, Via,
     list_runs, rescue, verify,
 };
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{call, open_shop, rows, week, weeks};
+use crate::support::company::{begin_run, call, open_shop, rows, week, weeks};
 use crate::support::forging::forge;
-
-fn run_in(folder: &Path, mode: Mode) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(140),
-        mode,
-        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
-        storage: Storage::Runs(folder.to_owned()),
-        ..NewRun::default()
-    };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
-}
 
 fn set(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
     session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
@@ -31,7 +19,7 @@ fn set(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
 
 /// A run of eight weeks in which parameters of all shapes are set: at once, in the middle of a week, and from later days on.
 fn changed(folder: &Path) -> Session {
-    let mut session = run_in(folder, Mode::Debug);
+    let mut session = begin_run(folder, Mode::Debug, 140);
     open_shop(&mut session);
     weeks(&mut session, 2);
     set(&mut session, "group.S1.c_max_mean", json!(90), None);
@@ -84,7 +72,7 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
     let (own, day, hash) = (place(&session), session.day(), session.state_hash());
     let seen = tables(&mut session);
     let unchanged = {
-        let mut other = run_in(folder.path(), Mode::Debug);
+        let mut other = begin_run(folder.path(), Mode::Debug, 140);
         open_shop(&mut other);
         weeks(&mut other, 8);
         other.state_hash()
@@ -203,7 +191,7 @@ fn branches_and_rescued_runs_keep_what_was_set_before_them_and_are_debug_runs() 
 fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
-        let mut session = run_in(folder.path(), mode);
+        let mut session = begin_run(folder.path(), mode, 140);
         open_shop(&mut session);
         let before = states(&place(&session)).len();
         let tried = |session: &mut Session| {
@@ -225,7 +213,7 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
         assert_eq!(tried(&mut session), told, "{mode}");
         assert_eq!(states(&place(&session)).len(), before);
     }
-    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut session = begin_run(folder.path(), Mode::Debug, 140);
     session.end().expect("it ends");
     let refused = session.set_parameter("group.S1.c_max_mean", &json!(300), None).expect_err("it is over");
     assert_eq!(refused.code, "run_over");
@@ -235,7 +223,7 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
 #[test]
 fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut session = begin_run(folder.path(), Mode::Debug, 140);
     week(&mut session);
     let own = place(&session);
     let lines = || Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines.len();
@@ -275,7 +263,7 @@ fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
 #[test]
 fn a_line_that_sets_a_parameter_cannot_be_forged() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut session = begin_run(folder.path(), Mode::Debug, 140);
     set(&mut session, "operations.base_outage_prob", json!(0.9), Some(10));
     weeks(&mut session, 2);
     let own = place(&session);
@@ -323,7 +311,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
 #[test]
 fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut session = begin_run(folder.path(), Mode::Debug, 140);
     assert!(!session.observe().has_own_parameters);
     let own = |id: &str| {
         let list = list_runs(folder.path()).expect("a list");
@@ -418,7 +406,7 @@ fn whatever_is_set_the_days_go_on() {
 #[test]
 fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(runs.path(), Mode::Debug);
+    let mut session = begin_run(runs.path(), Mode::Debug, 140);
     open_shop(&mut session);
     weeks(&mut session, 3);
     let today = session.day();
@@ -450,7 +438,7 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
 #[test]
 fn a_table_that_names_nothing_is_refused_and_elements_of_lists_are_called_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug);
+    let mut session = begin_run(folder.path(), Mode::Debug, 140);
     for (key, value, said) in [
         ("group", json!({}), "a table that names no parameter"),
         ("group", json!({ "S1": {} }), "a table that names no parameter"),

@@ -24,42 +24,6 @@ fn runs(folder: &tempfile::TempDir) -> Storage {
 }
 
 #[test]
-fn a_run_is_played_left_and_continued_to_the_same_state() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut straight = create(new_run(Storage::Memory));
-    open_shop(&mut straight);
-    weeks(&mut straight, 8);
-
-    let mut session = create(new_run(runs(&folder)));
-    let place = session.folder().expect("a folder").to_owned();
-    open_shop(&mut session);
-    for number in 0..8 {
-        week(&mut session);
-        if number % 3 == 0 {
-            drop(session);
-            session = Session::open(&place, Access::Write, true).expect("it opens");
-        }
-    }
-    assert_eq!(session.state_hash(), straight.state_hash());
-    assert_eq!(session.observe().cash, straight.observe().cash);
-    for sql in [
-        "SELECT sum(amount) FROM ledger",
-        "SELECT sum(customer_id * start_day) FROM subscriptions WHERE status = 'subscribed'",
-        "SELECT sum(usage_units * customer_id) FROM daily_usage",
-        "SELECT sum(issue_id * days_open) FROM issues",
-        "SELECT count(*) FROM predictions",
-        "SELECT count(*) FROM enterprise_turns",
-        "SELECT count(*) FROM notifications",
-        "SELECT max(id) FROM ledger",
-    ] {
-        assert_eq!(number(&mut session, sql), number(&mut straight, sql), "{sql}");
-    }
-    drop(session);
-    let verification = verify(&place).expect("it verifies");
-    assert_eq!((verification.states, verification.day), (8, 56));
-}
-
-#[test]
 fn the_database_holds_what_the_run_says() {
     let mut session = create(new_run(Storage::Memory));
     open_shop(&mut session);
@@ -266,28 +230,6 @@ fn bankruptcy_ends_the_week_and_the_run() {
     let broke = session.advance("spend", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     assert_eq!((broke.figures.day, broke.figures.days_run), (5, 5));
     assert!((broke.figures.cash - -425.0).abs() < 1e-9);
-}
-
-#[test]
-fn a_week_that_was_confirmed_but_not_finished_is_simulated_again() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(new_run(runs(&folder)));
-    open_shop(&mut session);
-    week(&mut session);
-    week(&mut session);
-    let reached = session.state_hash();
-    let place = session.folder().expect("a folder").to_owned();
-    drop(session);
-    let path = place.join("trajectory.jsonl");
-    let text = std::fs::read_to_string(&path).expect("text");
-    let without_last = &text[..text[..text.len() - 1].rfind('\n').expect("lines") + 1];
-    std::fs::write(&path, without_last).expect("a cut");
-    let mut session = Session::open(&place, Access::Write, true).expect("it opens");
-    assert_eq!((session.day(), session.state_hash()), (14, reached));
-    assert!(session.remarks()[0].contains("simulated again"), "{:?}", session.remarks());
-    assert_eq!(number(&mut session, "SELECT max(day) FROM service_day"), 14.0);
-    drop(session);
-    assert_eq!(verify(&place).expect("it verifies").states, 2);
 }
 
 #[test]

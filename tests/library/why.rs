@@ -3,12 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use novamind::session::{
-    Causes, Condition, Configuration, Mode, NewRun, OfRecord, Refusal, Session, Storage, WeekQuestion, Why,
-};
+use novamind::session::{Causes, Condition, Mode, OfRecord, Refusal, Session, WeekQuestion, Why};
 use serde_json::json;
 
-use crate::support::company::{call, number, open_shop, week, weeks};
+use crate::support::company::{begin_run, call, number, open_shop, week, weeks};
 
 fn asked(text: &str) -> WeekQuestion {
     text.parse().unwrap_or_else(|problem| panic!("{text}: {problem:?}"))
@@ -21,14 +19,7 @@ fn why(session: &Session, text: &str) -> Result<Why, Refusal> {
 
 /// Some weeks, then one with dearer plans.
 fn run_in(folder: &Path) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(140),
-        mode: Mode::Debug,
-        storage: Storage::Runs(folder.to_owned()),
-        ..NewRun::default()
-    };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = begin_run(folder, Mode::Debug, 140);
     open_shop(&mut session);
     let spend = json!({"targeted_spend": {"content_marketing": {"S1": 900, "S2": 400, "S3": 400}}});
     call(&mut session, "set_targeted_ad_spend", spend);

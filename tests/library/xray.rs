@@ -10,19 +10,7 @@ use novamind::session::{
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{column, open_shop, rows, week, weeks};
-
-fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
-    let new = NewRun {
-        seed: Some(7),
-        days: Some(days),
-        mode,
-        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
-        storage: Storage::Runs(folder.to_owned()),
-        ..NewRun::default()
-    };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
-}
+use crate::support::company::{begin_run, column, open_shop, rows, week, weeks};
 
 fn s2() -> Group {
     Group::parse("S2").expect("a group")
@@ -42,7 +30,7 @@ fn looks(lines: &Trajectory) -> Vec<(String, String)> {
 fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
-        let mut session = run_in(folder.path(), mode, 28);
+        let mut session = begin_run(folder.path(), mode, 28);
         open_shop(&mut session);
         week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
@@ -71,8 +59,8 @@ fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
 #[test]
 fn looking_changes_no_hash_and_each_look_is_a_line() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut watched = run_in(folder.path(), Mode::Debug, 60);
-    let mut alone = run_in(folder.path(), Mode::Debug, 60);
+    let mut watched = begin_run(folder.path(), Mode::Debug, 60);
+    let mut alone = begin_run(folder.path(), Mode::Debug, 60);
     for session in [&mut watched, &mut alone] {
         open_shop(session);
         week(session);
@@ -105,7 +93,7 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
 #[test]
 fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug, 60);
+    let mut session = begin_run(folder.path(), Mode::Debug, 60);
     open_shop(&mut session);
     let mut recorded: BTreeMap<(u32, &str), (f64, u32)> = BTreeMap::new();
     for _ in 0..6 {
@@ -156,7 +144,7 @@ fn individual(session: &mut Session, customer: u32, day: Option<u32>) -> Custome
 #[test]
 fn the_lens_says_what_the_tables_say_of_a_customer() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug, 90);
+    let mut session = begin_run(folder.path(), Mode::Debug, 90);
     open_shop(&mut session);
     weeks(&mut session, 8);
     session.call("set_prices", &json!({"A": 24, "B": 50}), Via::Script).expect("dearer");
@@ -223,7 +211,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
     assert_eq!(refused(&mut session, u32::MAX, None), "customer_not_found");
     let late = whole(&known.last().expect("a customer")[0]).expect("a customer");
     assert_eq!(refused(&mut session, late, Some(1)), "day_unknown");
-    let mut sandbox = run_in(folder.path(), Mode::Sandbox, 28);
+    let mut sandbox = begin_run(folder.path(), Mode::Sandbox, 28);
     assert_eq!(refused(&mut sandbox, 2, None), "not_in_this_mode");
     assert_eq!(refused(&mut sandbox, u32::MAX, Some(3)), "not_in_this_mode");
 }
@@ -357,7 +345,7 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
 #[test]
 fn a_run_that_is_only_read_is_not_looked_into() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_in(folder.path(), Mode::Debug, 28);
+    let mut session = begin_run(folder.path(), Mode::Debug, 28);
     open_shop(&mut session);
     weeks(&mut session, 2);
     session.save().expect("saved");
@@ -373,7 +361,7 @@ fn a_run_that_is_only_read_is_not_looked_into() {
     assert!(refused.message.contains("query --xray"), "{refused}");
     drop(read);
     assert_eq!(std::fs::read(own.join("trajectory.jsonl")).expect("bytes"), before);
-    let mut sandbox = run_in(folder.path(), Mode::Sandbox, 28);
+    let mut sandbox = begin_run(folder.path(), Mode::Sandbox, 28);
     let refused = sandbox.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(
         refused.message.contains("write customers alone") && !refused.message.contains("xray"),

@@ -25,7 +25,8 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIST = pathlib.Path(__file__).with_name("errors.toml")
-COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md", "assets", "configs", "src", "tests"]
+COPIED = ["Cargo.toml", "Cargo.lock", "build.rs", "clippy.toml", "rustfmt.toml", "README.md"]
+COPIED += ["assets", "configs", "docs", "src", "tests"]
 # Seconds after which a suite that hangs counts as having noticed.
 LONGEST = 1200
 SWITCH = '''//! Which planted error is made.
@@ -70,9 +71,17 @@ def copy(folder, planted):
     for error in planted:
         path = folder / error["file"]
         path.write_text(plant(path.read_text(), error))
-    (folder / "src/planted.rs").write_text(SWITCH)
-    library = folder / "src/lib.rs"
-    library.write_text(library.read_text() + "\n#[doc(hidden)]\npub mod planted;\n")
+    for crate in {crate_of(folder, error) for error in planted}:
+        (crate / "planted.rs").write_text(SWITCH)
+        library = next(crate / name for name in ["lib.rs", "mod.rs"] if (crate / name).exists())
+        library.write_text(library.read_text() + "\n#[doc(hidden)]\npub mod planted;\n")
+
+
+def crate_of(folder, error):
+    """The folder with the sources of the crate in which an error is made."""
+    for parent in (folder / error["file"]).parents:
+        if (parent / "Cargo.toml").exists():
+            return parent / "src" if parent == folder else parent
 
 
 def cargo(folder, arguments, number, target):

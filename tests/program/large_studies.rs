@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use crate::support::home::{Home, said};
 
-/// 200 short runs.
+/// 100 short runs.
 const STUDY: &str = r#"
 name = "small"
 policies = ["P0", "P1b"]
-seeds = "1..50"
+seeds = "1..25"
 days = 28
 
 [grid]
@@ -124,7 +124,7 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     let file = study(&home, STUDY);
     let whole = alone.run(&["lab", "study", &file]);
     assert_eq!(whole.code, 0, "{}", whole.err);
-    assert_eq!(whole.out.lines().count(), 201);
+    assert_eq!(whole.out.lines().count(), 101);
 
     let out = home.0.path().join("shards");
     let scheduler = Scheduler::of(&home, &file, &out);
@@ -135,17 +135,17 @@ fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split(
     signal("-KILL", process.trim());
     assert!(!Scheduler::wait(first), "a killed shard is a failure");
     let before = kept_runs(&home, &own);
-    assert!((3..50).contains(&before), "killed in the middle: {before}");
+    assert!((3..25).contains(&before), "killed in the middle: {before}");
     let folder = out.to_string_lossy().into_owned();
     home.run(&["lab", "merge", &folder]).fails(1, &["missing: small.3-of-4.csv", "nothing was written"]);
 
     assert!(Scheduler::wait(scheduler.start(true)), "the shard is played to its end");
     assert_eq!(
         kept_runs(&home, &own),
-        50 + usize::from(has_half_a_line(&home, &own)),
+        25 + usize::from(has_half_a_line(&home, &own)),
         "no run is played twice"
     );
-    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 50, "the others are not played again");
+    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "the others are not played again");
     let merged = home.run(&["lab", "merge", &folder]);
     assert_eq!((merged.code, merged.err.as_str()), (0, ""));
     assert_eq!(merged.out.as_bytes(), whole.out.as_bytes());

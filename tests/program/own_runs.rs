@@ -164,7 +164,7 @@ fn figures_on_the_page_of_experiments_are_those_of_their_commands() {
 }
 
 #[test]
-#[ignore = "takes ten minutes in a release build"]
+#[ignore = "slow: .ci/full runs it"]
 fn figures_that_take_minutes_are_those_of_their_commands() {
     commands_say_what_is_claimed("Figures that take minutes");
 }

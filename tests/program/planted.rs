@@ -64,6 +64,7 @@ fn ask(home: &Home, run: &str, commands: &[String]) -> String {
 }
 
 #[test]
+#[ignore = "slow: .ci/full runs it"]
 fn the_page_of_answers_says_what_the_program_shows() {
     let home = Home::new();
     let sound = play(&home, None);

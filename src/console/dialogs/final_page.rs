@@ -486,7 +486,7 @@ mod tests {
         for session in [test_kit::finished(), test_kit::ruined()] {
             let (page, company) = page(&session);
             for (width, height) in
-                (0..130).step_by(9).flat_map(|width| (0..44).step_by(3).map(move |height| (width, height)))
+                (0..130).step_by(26).flat_map(|width| (0..44).step_by(6).map(move |height| (width, height)))
             {
                 picture(&page, &company, width, height);
             }

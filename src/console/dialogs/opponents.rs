@@ -163,7 +163,7 @@ mod tests {
         let refused = page(Err(Refusal::new("not_possible", "parameters were set")));
         assert!(picture(&refused, &company, 60, 14).contains("parameters were set"));
         for (width, height) in
-            (0..130).step_by(9).flat_map(|width| (0..44).step_by(3).map(move |height| (width, height)))
+            (0..130).step_by(26).flat_map(|width| (0..44).step_by(8).map(move |height| (width, height)))
         {
             picture(&waits, &company, width, height);
             picture(&refused, &company, width, height);

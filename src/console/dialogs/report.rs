@@ -466,7 +466,8 @@ mod tests {
     #[test]
     fn it_draws_in_windows_of_every_size() {
         let company = Company::of(&test_kit::played(3));
-        for (width, height) in (0..90).step_by(7).flat_map(|width| (0..30).map(move |height| (width, height)))
+        for (width, height) in
+            (0..90).step_by(21).flat_map(|width| (0..30).step_by(4).map(move |height| (width, height)))
         {
             picture(&Report::new(Some("x ".repeat(99))), &company, width, height);
         }

@@ -1,7 +1,7 @@
 //! Cut and flipped bytes: nothing wrong is ever accepted, and nothing is lost that can be had again.
 //!
-//! A few places are tried in every run of the tests, 2,000 with
-//! `cargo test --release --test library -- --ignored damage`.
+//! A few places are tried in every run of the tests, 2,000 in
+//! `.ci/full`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -114,7 +114,7 @@ fn damage_in_the_trajectory_is_named_and_refused() {
 }
 
 #[test]
-#[ignore = "minutes: all places"]
+#[ignore = "slow: .ci/full runs it"]
 fn damage_everywhere() {
     damage_beside_the_trajectory(1000);
     damage_in_the_trajectory(1000);

@@ -1,7 +1,7 @@
 //! The built program is killed at random moments of plain play: whatever it had answered `ok` to is there.
 //!
-//! 12 kills in every run of the tests (console play is killed in `tests/program/terminal`), 500 with
-//! `cargo test --release --test library -- --ignored kill`.
+//! 12 kills in every run of the tests (console play is killed in `tests/program/terminal`), 200 in
+//! `.ci/full`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -153,7 +153,7 @@ fn what_was_confirmed_survives_a_kill() {
 }
 
 #[test]
-#[ignore = "minutes: all kills"]
-fn what_was_confirmed_survives_five_hundred_kills() {
-    kills(500);
+#[ignore = "slow: .ci/full runs it"]
+fn what_was_confirmed_survives_many_kills() {
+    kills(200);
 }

@@ -194,27 +194,6 @@ fn sets_colour(parameters: &str) -> bool {
 }
 
 #[test]
-fn what_was_confirmed_survives_a_kill() {
-    let runs = tempfile::tempdir().expect("a folder");
-    let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
-    terminal.wait_for("day 0/500");
-    terminal.type_keys("8\r\r12\t25\t55\r");
-    terminal.wait_for("pricing.set_prices");
-    terminal.type_keys("\x13");
-    terminal.wait_for("set_prices: done");
-    terminal.signal("-KILL");
-    terminal.killed();
-    let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
-    terminal.wait_for("day 0/500");
-    terminal.wait_for("Tools ●3");
-    terminal.type_keys("c");
-    terminal.wait_for("Changes of this week");
-    terminal.wait_for("→ 12");
-    terminal.type_keys("\x03");
-    assert_eq!(terminal.end().0, 0);
-}
-
-#[test]
 fn a_failure_of_the_program_gives_the_terminal_back_and_names_the_run() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal =

@@ -9,7 +9,7 @@ use super::pty::Terminal;
 use crate::support::dice::Dice;
 
 const KILLS: usize = 8;
-/// With `cargo test --release --test program -- --ignored kill`.
+/// In `.ci/full`.
 const ALL_KILLS: usize = 100;
 
 fn only_run(runs: &Path) -> PathBuf {
@@ -92,7 +92,7 @@ fn what_the_screen_confirmed_survives_a_kill() {
 }
 
 #[test]
-#[ignore = "minutes: all kills"]
+#[ignore = "slow: .ci/full runs it"]
 fn what_the_screen_confirmed_survives_every_kill() {
     kills(ALL_KILLS);
 }

@@ -1,14 +1,12 @@
 use super::model::*;
 use super::*;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, played, shown, sweep};
+use crate::test_kit::{act, drawn, on_screen, played};
 use novamind_session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
 
 #[test]
 fn the_books_agree_with_the_ledger() {
-    let mut session = played(5);
-    let company = Company::of(&session);
-    let screen: Cash = shown(&mut session, &company);
+    let (mut session, company, screen) = on_screen::<Cash>(5);
     let books = &screen.books;
     let sql = format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger GROUP BY 1, 2");
     let mut entries = 0;
@@ -34,9 +32,7 @@ fn the_books_agree_with_the_ledger() {
 
 #[test]
 fn a_waterfall_arrives_whatever_the_room() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let screen: Cash = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Cash>(3);
     let books = &screen.books;
     for room in 0..20 {
         let steps = waterfall(books, &company, 2, room);
@@ -51,9 +47,7 @@ fn a_waterfall_arrives_whatever_the_room() {
 
 #[test]
 fn a_category_leads_to_its_ledger_rows() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut screen: Cash = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Cash>(3);
     for _ in 0..20 {
         let Some(Effect::RunSql(sql)) = act(&mut screen, Action::Open, &company).pop() else {
             panic!("no statement");
@@ -73,9 +67,7 @@ fn a_category_leads_to_its_ledger_rows() {
 
 #[test]
 fn every_figure_of_the_books_is_made_of_its_rows() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let mut screen: Cash = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Cash>(6);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let books = screen.books.clone();
@@ -102,9 +94,7 @@ fn every_figure_of_the_books_is_made_of_its_rows() {
 
 #[test]
 fn every_pane_says_which_figure_is_selected() {
-    let mut session = played(5);
-    let company = Company::of(&session);
-    let mut screen: Cash = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Cash>(5);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
@@ -128,25 +118,6 @@ fn every_pane_says_which_figure_is_selected() {
 }
 
 #[test]
-fn a_pane_can_have_the_whole_screen() {
-    let mut session = played(5);
-    let company = Company::of(&session);
-    let mut screen: Cash = shown(&mut session, &company);
-    for (pane, words) in [
-        (CashPane::Books, "Books of week 5"),
-        (CashPane::Weeks, "Income and costs by week"),
-        (CashPane::Forecasts, "Forecasts 1 week"),
-        (CashPane::Waterfall, "From week 4"),
-        (CashPane::Curve, "week 5: $"),
-    ] {
-        screen.focus_on(pane);
-        let text = crate::test_kit::zoomed(&screen, &company, 80, 21);
-        assert!(text.lines().next().is_some_and(|line| line.contains(words)), "{words} in\n{text}");
-        assert_eq!(text.matches('┏').count(), 1, "{text}");
-    }
-}
-
-#[test]
 fn forecasts_are_compared_once_their_day_has_come() {
     let company = Company::of(&played(2));
     let all = filed_forecasts(&company.journal, &company.cash_by_day);
@@ -166,20 +137,8 @@ fn the_mean_is_that_of_four_weeks_or_of_as_many_as_there_are() {
 }
 
 #[test]
-fn it_is_drawn_in_every_window_with_and_without_data() {
-    for weeks in [0, 1, 9] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Cash::default(), &company);
-        sweep(&mut shown::<Cash>(&mut session, &company), &company);
-    }
-}
-
-#[test]
 fn the_small_window_shows_books_and_way() {
-    let mut session = played(4);
-    let company = Company::of(&session);
-    let screen: Cash = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Cash>(4);
     let text = drawn(&screen, &company, 80, 21);
     for words in ["payments", "compute", "net", "week 4", "From week 3 to 4", "day 28"] {
         assert!(text.contains(words), "{words} in\n{text}");

@@ -1,7 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, played, shown, sweep};
+use crate::test_kit::{act, drawn, on_screen, sweep};
 use novamind_session::{Cell as Value, Session};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::Channel;
@@ -12,9 +12,7 @@ fn group(id: &str) -> Group {
 
 #[test]
 fn the_groups_agree_with_the_figures_of_the_week() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let screen: Customers = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Customers>(6);
     let sum = |figure: &dyn Fn(&CustomerFacts) -> f64, enterprise: bool| {
         let groups = company.seen.known_groups.iter().filter(|group| group.is_enterprise() == enterprise);
         groups.map(|group| figure(&screen.market.of(*group))).sum::<f64>()
@@ -66,9 +64,7 @@ fn a_reading_replaces_what_it_said_before() {
 
 #[test]
 fn a_group_opens_and_leads_to_its_tools() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Customers = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Customers>(2);
     act(&mut screen, Action::Down, &company);
     act(&mut screen, Action::Open, &company);
     assert_eq!((screen.open, Screen::panes(&screen)), (Some(1), OPENED.len()));
@@ -112,9 +108,7 @@ fn made(session: &mut Session, sql: &str, what: &str) -> f64 {
 
 #[test]
 fn every_figure_of_the_table_is_made_of_its_rows() {
-    let mut session = played(7);
-    let company = Company::of(&session);
-    let screen: Customers = shown(&mut session, &company);
+    let (mut session, company, screen) = on_screen::<Customers>(7);
     for group in &company.seen.known_groups {
         let facts = screen.market.of(*group);
         let flow = facts.week(7);
@@ -139,9 +133,7 @@ fn every_figure_of_the_table_is_made_of_its_rows() {
 
 #[test]
 fn the_triangle_is_made_of_customers_who_stayed() {
-    let mut session = played(9);
-    let company = Company::of(&session);
-    let mut screen: Customers = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Customers>(9);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
@@ -168,9 +160,7 @@ fn the_triangle_is_made_of_customers_who_stayed() {
 
 #[test]
 fn every_pane_of_a_group_has_its_figures() {
-    let mut session = played(8);
-    let company = Company::of(&session);
-    let mut screen: Customers = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Customers>(8);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.show(group("S1"), &company);
@@ -200,9 +190,7 @@ fn every_pane_of_a_group_has_its_figures() {
 
 #[test]
 fn all_columns_are_there_and_a_mark_says_where() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut screen: Customers = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Customers>(3);
     let wide = drawn(&screen, &company, 250, 57);
     for head in ["of market", "level", "ad $/new", "per seat", "churn 30d", "name", "dev/day"] {
         assert!(wide.contains(head), "{head} in\n{wide}");
@@ -217,20 +205,8 @@ fn all_columns_are_there_and_a_mark_says_where() {
 }
 
 #[test]
-fn it_is_drawn_in_every_window_with_and_without_data() {
-    for weeks in [0, 1, 5] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Customers::default(), &company);
-        sweep(&mut shown::<Customers>(&mut session, &company), &company);
-    }
-}
-
-#[test]
 fn the_small_window_shows_groups_and_channels() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let screen: Customers = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Customers>(3);
     let text = drawn(&screen, &company, 80, 21);
     for words in ["group", "E3", "referral_program", "Leads per $1,000", "content_marketing"] {
         assert!(text.contains(words), "{words} in\n{text}");

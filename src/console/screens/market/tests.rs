@@ -4,7 +4,7 @@ use super::*;
 use crate::keys::Keys;
 use crate::posts::PostKind;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, played, shown, sweep};
+use crate::test_kit::{act, drawn, on_screen, played, shown};
 use novamind_session::{Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -37,9 +37,7 @@ fn week(session: &mut Session) {
 
 #[test]
 fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
-    let mut session = played(1);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Market>(1);
     act(&mut screen, Action::LevelUp, &company);
     let text = drawn(&screen, &company, 120, 37);
     assert!(text.contains("level 3: $175,000, 5 days, then ±25%"), "{text}");
@@ -62,9 +60,7 @@ fn a_study_is_chosen_asked_for_and_shown_until_it_is_done() {
 
 #[test]
 fn attempts_find_groups_and_are_listed() {
-    let mut session = played(0);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Market>(0);
     assert!(drawn(&screen, &company, 120, 37).contains("no attempts yet: m pays for one"));
     let mut found = None;
     for _ in 0..25 {
@@ -110,9 +106,7 @@ fn the_report_tells_estimates_and_what_the_truth_can_be() {
 
 #[test]
 fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
-    let mut session = played(1);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Market>(1);
     let group = company.seen.known_groups[2];
     screen.focus_on(MarketPane::News);
     screen.show(group);
@@ -135,14 +129,10 @@ fn a_group_leads_to_its_customers_and_unknown_ones_are_explained() {
 
 #[test]
 fn the_economy_is_shown_with_its_lag() {
-    let mut session = played(0);
-    let company = Company::of(&session);
-    let screen: Market = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Market>(0);
     let text = drawn(&screen, &company, 120, 37);
     assert!(text.contains("published on day 31, 30"), "{text}");
-    let mut session = played(10);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Market>(10);
     assert_eq!(screen.facts.economy.len(), 2);
     for (width, height) in [(120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
@@ -160,9 +150,7 @@ fn the_economy_is_shown_with_its_lag() {
 
 #[test]
 fn the_small_window_shows_groups_and_report() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Market>(2);
     let text = drawn(&screen, &company, 80, 21);
     for words in
         ["6 known · 20 to find", "next study", "→2 $60.0k 3d ±40%", "level 1 · ±65%", "budget", "r study"]
@@ -177,24 +165,8 @@ fn the_small_window_shows_groups_and_report() {
 }
 
 #[test]
-fn it_is_drawn_in_every_window_with_and_without_data() {
-    for weeks in [0, 6] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Market::default(), &company);
-        let mut screen = shown::<Market>(&mut session, &company);
-        sweep(&mut screen, &company);
-        screen.focus_on(MarketPane::Groups);
-        act(&mut screen, Action::Last, &company);
-        sweep(&mut screen, &company);
-    }
-}
-
-#[test]
 fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
-    let mut session = played(12);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Market>(12);
     let rivals = screen.news.iter().filter(|item| item.rival.is_some()).count();
     assert!(rivals > 0 && rivals < screen.news.len(), "{rivals} of {}", screen.news.len());
     screen.focus_on(MarketPane::Economy);
@@ -229,22 +201,5 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
                 .query(&figure.sql.expect("rows"))
                 .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
         }
-    }
-}
-
-#[test]
-fn a_zoomed_pane_has_the_window() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut screen: Market = shown(&mut session, &company);
-    for (pane, own, other) in [
-        (MarketPane::Groups, "Groups", "┌ Economy"),
-        (MarketPane::Economy, "Economy", "┌ Groups"),
-        (MarketPane::News, "Rivals", "┌ Attempts"),
-    ] {
-        screen.focus_on(pane);
-        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
-        let first = text.lines().next().expect("a line");
-        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
     }
 }

@@ -341,8 +341,8 @@ fn every_page_is_drawn_in_every_window() {
         ];
         for page in pages {
             menu.page = page;
-            for width in (0..130).step_by(13) {
-                for height in (0..40).step_by(3) {
+            for width in (0..130).step_by(26) {
+                for height in (0..40).step_by(6) {
                     shown(&menu, width, height);
                 }
             }

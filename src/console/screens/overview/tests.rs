@@ -1,7 +1,7 @@
 use super::*;
 use crate::effect::Effect;
 use crate::screens::{Screen, ScreenId};
-use crate::test_kit::{act, courted, drawn, played, shown, sweep};
+use crate::test_kit::{act, courted, drawn, on_screen, played, shown};
 use novamind_report::needs::{Place, Problem};
 use novamind_session::{Cell as Value, Session};
 use news::NewsKind;
@@ -56,9 +56,7 @@ fn every_figure_of_the_week_is_made_of_its_rows() {
 
 #[test]
 fn the_selected_figure_names_figure_and_weeks() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let mut screen: Overview = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Overview>(6);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     screen.focus_on(OverviewPane::Week);
@@ -148,9 +146,7 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
 
 #[test]
 fn no_word_of_a_need_is_cut_while_there_is_room() {
-    let mut session = played(0);
-    let company = Company::of(&session);
-    let screen: Overview = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Overview>(0);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = drawn(&screen, &company, width, height);
         let last = company.needs[0].text.split_whitespace().next_back().expect("a word");
@@ -159,24 +155,12 @@ fn no_word_of_a_need_is_cut_while_there_is_room() {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }
-    let mut session = played(9);
-    let company = Company::of(&session);
-    let screen: Overview = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Overview>(9);
     let large = drawn(&screen, &company, 200, 57);
     for words in
         ["Usage against capacity", "4-wk mean", "Delivered quality", "expected", "95 %", "New this week"]
     {
         assert!(large.contains(words), "{words} in\n{large}");
-    }
-}
-
-#[test]
-fn it_is_drawn_in_every_window_with_and_without_data() {
-    for weeks in [0, 1, 9] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Overview::default(), &company);
-        sweep(&mut shown::<Overview>(&mut session, &company), &company);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, played, shown, sweep};
+use crate::test_kit::{act, drawn, on_screen, played, shown};
 use novamind_report::plan_margins::PlanUse;
 use novamind_tools::ToolId;
 
@@ -33,9 +33,7 @@ fn plans_earn_what_is_paid_less_what_is_used() {
 
 #[test]
 fn the_readings_agree_with_the_company() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let screen: Product = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Product>(6);
     let week = company.seen.last_week.expect("a week");
     assert_eq!(screen.days.len(), 42);
     let usage: f64 = screen.days[35..].iter().map(|day| day.usage).sum();
@@ -52,9 +50,7 @@ fn the_readings_agree_with_the_company() {
 
 #[test]
 fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Product = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Product>(2);
     screen.focus_on(ProductPane::Capacity);
     screen.places[ProductPane::Capacity as usize] = 5;
     let effects = act(&mut screen, Action::Open, &company);
@@ -69,9 +65,7 @@ fn a_rung_of_the_ladder_leads_to_the_form_with_that_tier() {
 
 #[test]
 fn every_pane_leads_somewhere() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Product = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Product>(2);
     for pane in ProductPane::VARIANTS {
         screen.focus_on(*pane);
         for _ in 0..12 {
@@ -103,20 +97,8 @@ fn every_pane_leads_somewhere() {
 }
 
 #[test]
-fn it_is_drawn_in_every_window_with_and_without_data() {
-    for weeks in [0, 1, 5] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Product::default(), &company);
-        sweep(&mut shown::<Product>(&mut session, &company), &company);
-    }
-}
-
-#[test]
 fn the_small_window_has_a_line_on_everything() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let screen: Product = shown(&mut session, &company);
+    let (_, company, screen) = on_screen::<Product>(3);
     let text = drawn(&screen, &company, 80, 21);
     let titles = ProductPane::VARIANTS.iter().map(|pane| pane.title());
     for words in titles.chain(["tier 2", "margin", "units/day", "◆ now"]) {
@@ -129,9 +111,7 @@ const MOST: f64 = 5000.0;
 
 #[test]
 fn figures_are_made_of_their_rows() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let mut screen: Product = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Product>(6);
     let keys = crate::keys::Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 5 };
     for pane in ProductPane::VARIANTS {
@@ -184,23 +164,6 @@ fn what_was_not_read_yet_is_not_called_nothing() {
     screen.focus_on(ProductPane::Research);
     let text = crate::test_kit::zoomed(&screen, &company, 120, 37);
     assert!(text.contains("▼ now") && text.contains("$/0.01"), "{text}");
-}
-
-#[test]
-fn a_zoomed_pane_has_the_window() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut screen: Product = shown(&mut session, &company);
-    for (pane, own, other) in [
-        (ProductPane::Quality, "Quality", "┌ Plans"),
-        (ProductPane::Issues, "Issues", "┌ Capacity"),
-        (ProductPane::Research, "R&D", "┌ Service"),
-    ] {
-        screen.focus_on(pane);
-        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
-        let first = text.lines().next().expect("a line");
-        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
-    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::action::Scope;
 use crate::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, played, shown, sweep};
+use crate::test_kit::{act, drawn, on_screen, played, shown, sweep};
 use novamind_session::{Refusal, Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -139,9 +139,7 @@ fn figures_are_made_of_their_rows() {
 
 #[test]
 fn a_post_is_written_checked_asked_for_and_sent() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Social = shown(&mut session, &company);
+    let (mut session, company, mut screen) = on_screen::<Social>(2);
     let effects = act(&mut screen, Action::SendPost, &company);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("nothing to publish")));
     let answered = screen.post().expect("a post").number;
@@ -177,9 +175,7 @@ fn a_post_is_written_checked_asked_for_and_sent() {
 
 #[test]
 fn a_refused_post_keeps_the_draft() {
-    let mut session = played(1);
-    let company = Company::of(&session);
-    let mut screen: Social = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Social>(1);
     act(&mut screen, Action::Compose, &company);
     write(&mut screen, &company, "Again");
     act(&mut screen, Action::SendPost, &company);
@@ -196,9 +192,7 @@ fn a_refused_post_keeps_the_draft() {
 
 #[test]
 fn what_was_looked_at_is_not_new() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Social = shown(&mut session, &company);
+    let (_, _, mut screen) = on_screen::<Social>(2);
     let week = screen.others.iter().filter(|post| post.day > 7).count();
     assert_eq!((screen.unseen(), week > 0), (week, true));
     screen.looked_at();
@@ -206,13 +200,7 @@ fn what_was_looked_at_is_not_new() {
 }
 
 #[test]
-fn it_is_drawn_in_every_window_with_and_without_posts() {
-    for weeks in [0, 1] {
-        let mut session = played(weeks);
-        let company = Company::of(&session);
-        sweep(&mut Social::default(), &company);
-        sweep(&mut shown::<Social>(&mut session, &company), &company);
-    }
+fn a_draft_is_drawn_in_every_window() {
     let mut session = talked();
     let company = Company::of(&session);
     let mut screen: Social = shown(&mut session, &company);
@@ -222,21 +210,4 @@ fn it_is_drawn_in_every_window_with_and_without_posts() {
     sweep(&mut screen, &company);
     let empty = drawn(&Social::default(), &company, 80, 21);
     assert!(empty.contains("no posts yet: run a week"), "{empty}");
-}
-
-#[test]
-fn a_zoomed_pane_has_the_window() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut screen: Social = shown(&mut session, &company);
-    for (pane, own, other) in [
-        (SocialPane::Feed, "Feed", "┌ New post"),
-        (SocialPane::Draft, "New post", "┌ Feed"),
-        (SocialPane::Own, "Our posts", "┌ Feed"),
-    ] {
-        screen.focus_on(pane);
-        let text = crate::test_kit::zoomed(&screen, &company, 100, 30);
-        let first = text.lines().next().expect("a line");
-        assert!(first.contains(own) && !text.contains(other), "{own} alone in\n{text}");
-    }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::action::Scope;
 use crate::keys::{Chord, Keys};
 use crate::screens::Screen;
-use crate::test_kit::{act, company, drawn, played, shown, sweep};
+use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
 use crate::request::Request;
 use novamind_session::{Refusal, Via};
 use novamind_tools::ToolId;
@@ -206,9 +206,7 @@ fn drafts_stay_when_another_tool_is_looked_at() {
 
 #[test]
 fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut tools: Tools = shown(&mut session, &company);
+    let (_, company, mut tools) = on_screen::<Tools>(2);
     tools.show(ToolId::SetPrices, &company);
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 10 };
@@ -240,9 +238,7 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
 
 #[test]
 fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
-    let mut session = played(5);
-    let company = Company::of(&session);
-    let mut tools: Tools = shown(&mut session, &company);
+    let (mut session, company, mut tools) = on_screen::<Tools>(5);
     tools.show(ToolId::SetTargetedAdSpend, &company);
     let form = tools.form(&company).expect("a form");
     let place = form.sheet.place_of("targeted_spend.content_marketing.S1").expect("a cell");
@@ -293,9 +289,7 @@ fn calls_of_the_week_and_drafts_go_to_a_file() {
 
 #[test]
 fn a_field_names_its_term_and_its_history() {
-    let mut session = played(3);
-    let company = Company::of(&session);
-    let mut tools: Tools = shown(&mut session, &company);
+    let (mut session, company, mut tools) = on_screen::<Tools>(3);
     let keys = Keys::shipped();
     let look = Look { company: &company, keys: &keys, page: 10 };
     let mut asked = std::collections::BTreeSet::new();
@@ -380,9 +374,7 @@ fn columns_of_projects_stand_apart() {
 
 #[test]
 fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
-    let mut session = played(6);
-    let company = Company::of(&session);
-    let mut screen: Tools = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Tools>(6);
     let sold: Vec<&str> =
         Plan::ALL.into_iter().filter(|plan| screen.sales.of_plan(*plan).usage().is_some()).map(Plan::id).collect();
     assert!(sold.len() >= 2, "{sold:?}");

@@ -7,7 +7,7 @@ use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::theme::Theme;
 use novamind_session::{Configuration, Mode, NewRun, Session, Storage, Via};
-use crate::test_kit::{act, company, drawn, played, shown, sweep};
+use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
 
 fn open(company: Company) -> Company {
     Company { may_look_inside: true, ..company }
@@ -139,9 +139,7 @@ fn a_day_is_typed_with_a_group_or_a_customer_or_alone_and_has_to_be_there() {
 
 #[test]
 fn nothing_is_asked_where_hidden_state_stays_hidden() {
-    let mut session = played(2);
-    let company = Company::of(&session);
-    let mut screen: Xray = shown(&mut session, &company);
+    let (_, company, mut screen) = on_screen::<Xray>(2);
     assert!(screen.ask().is_empty());
     screen.show_breakpoints();
     assert!(screen.ask().is_empty());

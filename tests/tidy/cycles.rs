@@ -1,0 +1,282 @@
+//! Modules of a crate that import each other in a cycle. A module is a folder or a file directly below the folder of its
+//! crate. The file of the crate itself (`lib.rs`, `mod.rs`) is not a module: what it exports belongs to the module it is from.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::PathBuf;
+
+use super::{files, root};
+
+/// Cycles of up to this many modules need no entry in the table.
+const MAX_UNLISTED: usize = 3;
+
+/// Larger cycles that exist: crate and modules. The table only shrinks: a new module in a cycle has to be split or moved.
+const KNOWN: &[(&str, &str)] = &[
+    ("console", "attention dialogs effect lesson screens tour"),
+    ("record", "error folder rules stamp trajectory"),
+    (
+        "session",
+        "ask counterfactual create figures lesson model_voice play playback python resume state why xray",
+    ),
+    (
+        "tools",
+        "analytics arguments bounds calculations catalogue describe documentation enterprise infrastructure market \
+         marketing pricing research scripts spec time",
+    ),
+    ("world", "context customers enterprise events finance held market morning product retention state"),
+];
+
+#[test]
+fn cycles_of_modules_only_shrink() {
+    let mut found = BTreeSet::new();
+    let mut imports = 0;
+    for unit in units() {
+        let edges = unit.imports();
+        imports += edges.values().map(BTreeSet::len).sum::<usize>();
+        let large = cycles(&edges).into_iter().filter(|cycle| cycle.len() > MAX_UNLISTED);
+        found.extend(large.map(|cycle| (unit.name.clone(), cycle.join(" "))));
+    }
+    assert!(imports > 100, "imports are found");
+    let known: BTreeSet<(String, String)> =
+        KNOWN.iter().map(|(unit, modules)| ((*unit).to_owned(), (*modules).to_owned())).collect();
+    assert_eq!(
+        found, known,
+        "left: cycles that exist, right: the table. Replace a row by a smaller cycle, and never by a larger one"
+    );
+}
+
+/// A crate, or a module of the root crate that has a folder in `src`.
+struct Unit {
+    name: String,
+    folder: PathBuf,
+    /// What follows `crate::` in the path of one of its modules.
+    prefix: Vec<String>,
+}
+
+/// The root crate without the crates below it, and each folder of `src`.
+fn units() -> Vec<Unit> {
+    let sources = root().join("src");
+    let entries = fs::read_dir(&sources).expect("the sources").map(|entry| entry.expect("an entry").path());
+    let mut units: Vec<Unit> = entries
+        .filter(|path| path.is_dir())
+        .map(|folder| {
+            let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
+            let prefix = if folder.join("Cargo.toml").exists() { vec![] } else { vec![name.clone()] };
+            Unit { name, folder, prefix }
+        })
+        .collect();
+    units.sort_by(|one, other| one.name.cmp(&other.name));
+    units.push(Unit { name: "src".to_owned(), folder: sources, prefix: Vec::new() });
+    units
+}
+
+/// A source file: the modules that lead to it from its crate, and its text without tests and comments.
+struct File {
+    module: Vec<String>,
+    text: String,
+}
+
+impl Unit {
+    /// What each module imports of the others.
+    fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
+        let files = self.files();
+        let modules: BTreeSet<&str> =
+            files.iter().filter_map(|file| file.module.first()).map(String::as_str).collect();
+        let of_crate = files.iter().filter(|file| file.module.is_empty());
+        let exported = of_crate.flat_map(|file| paths(&file.text)).filter(|path| path.is_export);
+        let exports: BTreeMap<String, String> = exported
+            .filter_map(|path| {
+                let module = path.names.into_iter().find(|name| modules.contains(name.as_str()))?;
+                Some((path.exported, module))
+            })
+            .collect();
+        let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for file in &files {
+            let Some(own) = file.module.first() else { continue };
+            let edges = imports.entry(own.clone()).or_default();
+            for path in paths(&file.text) {
+                let name = self.first_name(&file.module, &path.names);
+                let module = name.filter(|name| modules.contains(name.as_str()));
+                let module = module.or_else(|| exports.get(name?));
+                edges.extend(module.filter(|module| *module != own).cloned());
+            }
+        }
+        imports
+    }
+
+    fn files(&self) -> Vec<File> {
+        let is_root_crate = self.folder.join("lib.rs").exists() && self.prefix.is_empty();
+        let elsewhere = |path: &PathBuf| {
+            let folders = path.ancestors().skip(1).take_while(|folder| **folder != self.folder);
+            is_root_crate && folders.into_iter().any(|folder| folder.join("Cargo.toml").exists())
+        };
+        let mut all = Vec::new();
+        let mut for_tests = BTreeSet::new();
+        for path in files(&self.folder, "rs").into_iter().filter(|path| !elsewhere(path)) {
+            let below = path.strip_prefix(&self.folder).expect("below the crate");
+            let mut module: Vec<String> =
+                below.iter().map(|name| name.to_string_lossy().replace(".rs", "")).collect();
+            if ["mod", "lib", "main"].contains(&module.last().expect("a name").as_str()) {
+                module.pop();
+            }
+            let (text, tests) = without_tests(&fs::read_to_string(&path).expect("a source"));
+            for_tests.extend(tests.into_iter().map(|name| [module.as_slice(), &[name]].concat()));
+            all.push(File { module, text });
+        }
+        let is_test = |file: &File| for_tests.iter().any(|test| file.module.starts_with(test));
+        all.retain(|file| !is_test(file));
+        all
+    }
+
+    /// The name directly below the crate to which a path in a module leads; `None` if it leads elsewhere.
+    fn first_name<'a>(&self, from: &[String], path: &'a [String]) -> Option<&'a String> {
+        let up = path.iter().take_while(|name| *name == "super").count();
+        let rest = if path.first()? == "crate" {
+            path[1..].strip_prefix(self.prefix.as_slice())?
+        } else {
+            &path[up..]
+        };
+        (path[0] == "crate" || up == from.len()).then(|| rest.first())?
+    }
+}
+
+/// A text without comments and without what `#[cfg(test)]` stands before; the modules among that.
+fn without_tests(text: &str) -> (String, Vec<String>) {
+    let (mut kept, mut modules) = (String::new(), Vec::new());
+    let mut lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    while let Some(line) = lines.next() {
+        if line.trim() != "#[cfg(test)]" {
+            kept += line;
+            kept += "\n";
+            continue;
+        }
+        let indent = line.len() - line.trim_start().len();
+        for line in lines.by_ref() {
+            let declared = line.trim().split_once("mod ").and_then(|(_, rest)| rest.strip_suffix(';'));
+            modules.extend(declared.map(str::to_owned));
+            if line.len() - line.trim_start().len() == indent && line.ends_with([';', '}']) {
+                break;
+            }
+        }
+    }
+    (kept, modules)
+}
+
+/// A path in a text: `crate::figures::Week` by its names.
+struct Names {
+    names: Vec<String>,
+    /// How others call it.
+    exported: String,
+    /// Whether it is in a `pub use`.
+    is_export: bool,
+}
+
+/// Every path of a text, those of `use a::{b, c}` one by one.
+fn paths(text: &str) -> impl Iterator<Item = Names> {
+    let mut all = Vec::new();
+    let mut end = 0;
+    for (at, _) in text.match_indices("::") {
+        let begin = text[..at].rfind(|sign: char| !is_of_name(sign)).map_or(0, |before| before + 1);
+        let line = text[..begin].rsplit('\n').next().unwrap_or_default().trim_start();
+        if begin < end || begin == at || line.ends_with("(in ") {
+            continue;
+        }
+        let is_export = line.starts_with("pub") && line.ends_with("use ");
+        end = begin + tree(&text[begin..], &[], is_export, &mut all);
+    }
+    all.into_iter()
+}
+
+fn is_of_name(sign: char) -> bool {
+    sign.is_alphanumeric() || sign == '_'
+}
+
+/// Reads one tree of paths; returns its length.
+fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) -> usize {
+    let mut names = prefix.to_vec();
+    let mut at = 0;
+    loop {
+        at += text[at..].len() - text[at..].trim_start().len();
+        let rest = &text[at..];
+        if rest.starts_with('{') {
+            at += 1;
+            while !text[at..].trim_start().starts_with('}') && at < text.len() {
+                at += tree(&text[at..], &names, is_export, all).max(1);
+                at += text[at..].find([',', '}']).unwrap_or(0);
+                at += usize::from(text[at..].starts_with(','));
+            }
+            return at + text[at..].find('}').map_or(0, |end| end + 1);
+        }
+        let length = rest.find(|sign: char| !is_of_name(sign)).unwrap_or(rest.len());
+        names.push(rest[..length].to_owned());
+        at += length;
+        if length == 0 || !text[at..].starts_with("::") {
+            break;
+        }
+        at += 2;
+    }
+    let alias = text[at..]
+        .trim_start()
+        .strip_prefix("as ")
+        .and_then(|rest| Some(rest.split(|sign: char| !is_of_name(sign)).next()?.to_owned()));
+    names.retain(|name| !name.is_empty());
+    let last = names.iter().rfind(|name| *name != "self").cloned();
+    all.push(Names { exported: alias.or(last).unwrap_or_default(), names, is_export });
+    at
+}
+
+/// Modules that reach each other.
+fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
+    let mut reach = imports.clone();
+    loop {
+        let further = |reached: &BTreeSet<String>| -> BTreeSet<String> {
+            let next = reached.iter().filter_map(|module| reach.get(module)).flatten();
+            next.chain(reached).cloned().collect()
+        };
+        let more: BTreeMap<String, BTreeSet<String>> =
+            reach.iter().map(|(module, reached)| (module.clone(), further(reached))).collect();
+        if more == reach {
+            break;
+        }
+        reach = more;
+    }
+    let in_cycles = reach.iter().filter(|(module, reached)| reached.contains(*module));
+    let cycle = |(module, reached): (&String, &BTreeSet<String>)| -> Vec<String> {
+        reached
+            .iter()
+            .filter(|other| reach.get(*other).is_some_and(|back| back.contains(module)))
+            .cloned()
+            .collect()
+    };
+    in_cycles.map(cycle).collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+#[test]
+fn paths_are_read_with_their_groups_and_names() {
+    let text = "pub(in crate::a) fn f() {}\npub use b::{C, d::{self, E as F}};\nuse super::g::H;\nlet i = crate::j::k(l::<m>);";
+    let read: Vec<(String, String, bool)> =
+        paths(text).map(|path| (path.names.join("::"), path.exported, path.is_export)).collect();
+    let path = |names: &str, exported: &str, is_export| (names.to_owned(), exported.to_owned(), is_export);
+    assert_eq!(
+        read,
+        [
+            path("b::C", "C", true),
+            path("b::d::self", "d", true),
+            path("b::d::E", "F", true),
+            path("super::g::H", "H", false),
+            path("crate::j::k", "k", false),
+            path("l", "l", false),
+        ]
+    );
+    let (kept, modules) = without_tests(
+        "use a::B;\n#[cfg(test)]\nmod c;\nfn d() {}\n#[cfg(test)]\nmod tests {\n    use e::F;\n}\nfn g() {}\n",
+    );
+    assert_eq!((kept.as_str(), modules), ("use a::B;\nfn d() {}\nfn g() {}\n", vec!["c".to_owned()]));
+}
+
+#[test]
+fn cycles_are_found_where_they_are() {
+    let edges = [("a", vec!["b"]), ("b", vec!["c"]), ("c", vec!["a", "d"]), ("d", vec![])];
+    let of = |(from, to): (&str, Vec<&str>)| (from.to_owned(), to.into_iter().map(str::to_owned).collect());
+    assert_eq!(cycles(&edges.into_iter().map(of).collect()), [["a", "b", "c"]]);
+}

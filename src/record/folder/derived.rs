@@ -37,7 +37,8 @@ impl Derived {
             Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
             Ok(own) => {
                 let manifest = with_what_no_line_says(told, &own);
-                let problem = difference(&own, &manifest);
+                let problem = difference_in_names(&own, &manifest)
+                    .map(|names| format!("run.toml said otherwise ({names})"));
                 (manifest, problem)
             }
         };
@@ -99,6 +100,23 @@ fn unusable(error: &RunError) -> String {
     }
 }
 
+/// Checks that a manifest says what the first line of a trajectory says, in every field that both have.
+///
+/// # Errors
+/// The line does not start a run, or a field differs: one of the two files belongs to another run.
+pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+    let told = Manifest::of_start(path, first)?;
+    let Some(names) = difference_in_names(manifest, &with_what_no_line_says(told, manifest)) else {
+        return Ok(());
+    };
+    Err(RunError::Damaged {
+        path: path.to_owned(),
+        line: 1,
+        problem: format!("the start of the trajectory contradicts run.toml ({names})"),
+        safe: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
+    })
+}
+
 /// What `run.toml` says otherwise than the first line, a sentence each; `told` is what the line says.
 pub fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
     let own = match Manifest::read(folder) {
@@ -113,10 +131,10 @@ pub fn departures_of_file(folder: &Path, told: &Manifest) -> Vec<String> {
     differ.map(words).collect()
 }
 
-/// Names of the fields in which two manifests differ.
-fn difference(own: &Manifest, told: &Manifest) -> Option<String> {
+/// Names of the fields in which two manifests differ, separated by commas; `None` if they are equal.
+fn difference_in_names(own: &Manifest, told: &Manifest) -> Option<String> {
     let names: Vec<String> = differences(own, told).into_iter().map(|(name, ..)| name).collect();
-    (!names.is_empty()).then(|| format!("run.toml said otherwise ({})", names.join(", ")))
+    (!names.is_empty()).then(|| names.join(", "))
 }
 
 /// The fields in which two manifests differ, with the values of both.

@@ -16,7 +16,7 @@ use crate::play::surroundings::RunSurroundings;
 use crate::state::Session;
 use novamind_database::{Entry, Location, Position, Projector};
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::Derived;
+use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::runs::find_run;
@@ -300,30 +300,6 @@ impl Session {
             self.remarks.extend(remark);
         }
     }
-}
-
-/// The first line must say what the manifest says: otherwise one of the two files belongs to another run.
-pub(crate) fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
-    let damaged = |problem: &str| RunError::Damaged {
-        path: path.to_owned(),
-        line: 1,
-        problem: problem.to_owned(),
-        safe: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
-    };
-    let Some(Record::Start(start)) = first.map(|line| &line.record) else {
-        return Err(damaged("the trajectory does not begin with the start of a run"));
-    };
-    let same = start.run == manifest.id
-        && start.seed == manifest.seed
-        && start.days == manifest.days
-        && start.cash == manifest.cash
-        && start.mode == manifest.mode
-        && start.parameters_digest == manifest.parameters_digest
-        && start.scenario == manifest.scenario
-        && start.participant == manifest.participant
-        && start.voice == manifest.voice
-        && start.consent == manifest.consent;
-    if same { Ok(()) } else { Err(damaged("the start of the trajectory contradicts run.toml")) }
 }
 
 /// The figures that stand beside a state are derived from it.

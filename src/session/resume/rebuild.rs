@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::integrity::Integrity;
-use super::open::{Access, Keeping, check_start, open_projector, usable};
+use super::open::{Access, Keeping, open_projector, usable};
 use super::sealing::SealKey;
 use super::snapshot::SnapshotPlace;
 use crate::state::Session;
 use crate::xray::permission::may_look_inside;
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::Derived;
+use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Record, Trajectory};

@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use super::branch::branch_of;
 use super::integrity::Integrity;
-use super::open::check_start;
 use super::sealing::SealKey;
 use crate::state::Session;
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::Derived;
+use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};

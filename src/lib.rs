@@ -1,23 +1,10 @@
 //! NovaMind console: a terminal in which a person runs a simulated AI subscription company for 500 days, with exactly
 //! the information and controls that software agents get in the CEO-Bench benchmark.
 //!
-//! # The house
+//! # Crates
 //!
-//! | floor | houses | what lives there |
-//! |---|---|---|
-//! | 6 | [`cli`] | one file per subcommand; maps failures to exit codes |
-//! | 5 | [`console`], [`plain`], `server`, [`lab`] | the terminal application; the same game line by line; the same game for programs over HTTP and the Model Context Protocol; policies, metrics, comparison with reference figures and of runs with each other, the check of lessons, speed |
-//! | 4 | [`report`], [`rules`] | rules that answer companies; a week and a whole run told: what changed, split by the ledger, behaviour measures, the report as Markdown and as a page, the logbook of a session and the tables for research |
-//! | 3 | [`session`] | one run: open, act, query, advance, record, resume from snapshots, replay, play back, branch, rescue, hand over, ask why and what if, look inside, lessons and classes. The only door to a world |
-//! | 3 | [`glossary`] | what every term, tool, argument, table and column means, for people |
-//! | 2 | [`tools`], [`database`], [`voice`] | the catalogue of tools; the observable company in SQLite and its guarded queries; words for facts, and the judge of the player's posts |
-//! | 1 | [`world`] | the simulator: pure, deterministic, no files, no clock, no SQL, no prose |
-//!
-//! The simulator is a package of its own; the others are modules of this one.
-//!
-//! `notation` writes and reads numbers for all of them, `statistics` tells a few of them, `shipped` holds scenarios, lessons, themes and policies. Arrows point down only; houses on one floor never import each
-//! other; the upper floors use nothing of `world` but plain identifiers, except `lab`, which works on debug runs and
-//! reads the x-ray. `tests/tidy` holds this true.
+//! The root package holds the command line, [`cli`]. Its library re-exports the crates of the workspace for tests and for
+//! documentation. `docs/architecture.md` names what each crate contains and which crates it may import.
 //!
 //! * A day is a list: [`world::day::step_day`] reads as the order of the day, one line per mechanism.
 //! * Mechanisms push facts ([`world::events`]); `database` turns them into rows, `voice` some into words.

@@ -31,18 +31,15 @@ use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
 use super::attention::{Edit, Layers, PresenceWatch, Stopwatch, Typing};
-use super::canvas::Click;
 use super::company::Company;
 use super::dialogs::Dialog;
 use super::dialogs::filing::FilingDialog;
 use super::effect::Effect;
-use super::glyphs::Glyphs;
-use super::keys::{Chord, Keys};
+use super::keys::Keys;
 use super::message::{DayTold, Message};
 use super::readings::Reading;
 use super::screens::menu::Menu;
 use super::screens::{Look, Screen, ScreenId, Screens};
-use super::theme::Theme;
 use super::tour::Tour;
 use super::viewer::Viewer;
 use super::visit::{VisitPage, VisitState};
@@ -52,6 +49,10 @@ use novamind_report::Story;
 use novamind_report::opponents::PlayOpponents;
 use novamind_session::{Configuration, Library, TimeLeft};
 use novamind_study::CodeCheck;
+use novamind_tui::canvas::Click;
+use novamind_tui::chord::Chord;
+use novamind_tui::glyphs::Glyphs;
+use novamind_tui::theme::Theme;
 
 pub use super::attention::Layer;
 pub use busy::Busy;
@@ -273,7 +274,7 @@ impl App {
             keys: settings.keys,
             glyphs: settings.glyphs,
             mouse: true,
-            themes: Theme::all(&settings.configuration),
+            themes: crate::themes::all(&settings.configuration),
             configuration: settings.configuration,
             again: settings.again,
             stage: Stage::Menu(menu),

@@ -1,7 +1,8 @@
 //! Every key of the console as text, made from the table of actions: for the terminal and for the documents.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
-use super::keys::{Keys, written};
+use super::keys::Keys;
+use novamind_tui::chord::written;
 
 /// Actions of each place that has any, with their keys: the place, then title, keys and explanation of each action.
 fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {

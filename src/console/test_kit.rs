@@ -6,15 +6,15 @@ use ratatui::layout::Rect;
 use serde_json::{Value, json};
 
 use super::action::Action;
-use super::canvas::Canvas;
 use super::company::Company;
 use super::dialogs::{Dialog, Outcome};
 use super::effect::Effect;
 use super::keys::Keys;
 use super::readings::Reading;
 use super::screens::{Look, Screen};
-use super::theme::Theme;
 use novamind_session::{Configuration, NewRun, Rows, Session, Storage, Via};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Theme;
 
 /// A run in memory on its first day.
 pub fn session() -> Session {
@@ -181,7 +181,7 @@ pub fn dialog_picture(dialog: &dyn Dialog, company: &Company, width: u16, height
 pub fn painted(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
-    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
+    let theme = Theme::bundled("mono").expect("a theme");
     draw(&mut Canvas::new(&mut buffer, &theme), area);
     let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (0..height).map(|y| line(y).trim_end().to_owned()).collect()

@@ -15,7 +15,6 @@ use crate::look_inside::DaysRan;
 use crate::message::{Instead, News};
 use crate::request::Request;
 use crate::screens::{Look, ScreenId, Screens};
-use crate::text::number;
 use crate::tour::Tour;
 use crate::viewer::Viewer;
 use novamind_base::notation::{dollars, signed_dollars};
@@ -23,6 +22,7 @@ use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
 use novamind_session::{Change, Interrupt, Refusal, Week};
+use novamind_tui::text::number;
 
 impl App {
     pub(super) fn news(&mut self, news: News) {

@@ -113,7 +113,7 @@ impl App {
                 self.load();
             }
             Effect::Copy(text) => {
-                self.say(format!("copied: {}", crate::canvas::fit(&text, 60)));
+                self.say(format!("copied: {}", novamind_tui::canvas::fit(&text, 60)));
                 self.orders.push(Order::Copy(text));
             }
             Effect::ShowText(title, text) => {

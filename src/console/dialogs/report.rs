@@ -7,20 +7,20 @@ use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, fit};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::overview::figures::{self, METRICS};
 use crate::screens::overview::needs::screen_of;
 use crate::screens::{Figure, Look, ScreenId};
-use crate::text::{arrow, flowed, short_dollars, wrapped};
-use crate::theme::Role;
-use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_base::notation::{dollars, grouped, short_dollars, signed_dollars};
 use novamind_report::WeekReport;
 use novamind_report::needs::Need;
 use novamind_report::week::Move;
 use novamind_session::{ScoredForecast, Verdict, WeekFigure};
 use novamind_tools::Forecast;
+use novamind_tui::canvas::{Canvas, Click, centered, fit};
+use novamind_tui::text::{arrow, flowed, wrapped};
+use novamind_tui::theme::Role;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -107,7 +107,7 @@ impl Dialog for Report {
         let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
         let inside = canvas.pane(own, &title, "", true);
         canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
-        canvas.click(own, Click::Do(Action::Cancel));
+        canvas.click(own, Click::Do(Action::Cancel.into()));
         for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
         {
             let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };

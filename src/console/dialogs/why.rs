@@ -8,15 +8,15 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, fit, rows_of};
 use crate::effect::Effect;
 use crate::message::News;
 use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::spark::bar;
 use novamind_report::why::{CauseLine, equation, heading, lines};
 use novamind_session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
+use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::bar;
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;

@@ -8,13 +8,13 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::canvas::Canvas;
 use super::company::Company;
 use super::effect::Effect;
 use super::keys::Keys;
 use super::message::News;
 use super::readings::Reading;
 use novamind_session::{Rows, WeekQuantity};
+use novamind_tui::canvas::Canvas;
 
 /// The list of screens, in the order of their keys: a screen, and the room it lives in.
 macro_rules! screens {

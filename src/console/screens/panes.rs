@@ -7,9 +7,9 @@ use ratatui::layout::Rect;
 
 use super::{Figure, Look, PaneKeys, Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click};
 use crate::effect::Effect;
-use crate::widgets::{Field, Table};
+use novamind_tui::canvas::{Canvas, Click};
+use novamind_tui::widgets::{Field, Table};
 
 /// What stands in the border of a pane.
 #[derive(Default)]

@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use crate::action::Action;
 use crate::request::GivenAnswer;
-use crate::widgets::{Editor, Field};
 use novamind_session::steady;
 use novamind_study::{DueQuestion, Form};
+use novamind_tui::widgets::{Editor, Field};
 
 /// What was entered so far.
 #[derive(Debug, Clone)]

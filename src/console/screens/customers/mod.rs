@@ -27,13 +27,13 @@ use self::opened::Opened;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Look, ScreenState};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_session::Rows;
 use novamind_session::identifiers::Group;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -11,10 +11,10 @@ use crate::company::Company;
 use crate::effect::Effect;
 use crate::request::Request;
 use crate::screens::Figure;
-use crate::text::count;
 use novamind_base::notation::dollars;
-use novamind_tools::{Answer, DealResult, ToolId};
 use novamind_session::identifiers::Plan;
+use novamind_tools::{Answer, DealResult, ToolId};
+use novamind_tui::text::count;
 
 /// Tools of this screen.
 const SEND: ToolId = ToolId::SendEnterpriseDeal;

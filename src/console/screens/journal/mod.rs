@@ -14,13 +14,13 @@ use strum::VariantArray;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenState};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::message::News;
 use crate::request::Request;
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Editor, Table};
 use novamind_session::Kin;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Editor, Table};
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]

@@ -19,17 +19,17 @@ use self::news::RivalNews;
 use super::panes::{Pane, Paned, draw_pane};
 use super::{Figure, Look, ScreenId, ScreenState};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::message::News;
 use crate::posts::Posts;
 use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_base::notation::{dollars, grouped};
+use novamind_session::identifiers::Group;
 use novamind_session::{Preview, Rows};
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
-use novamind_session::identifiers::Group;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -18,13 +18,10 @@ use ratatui::layout::Rect;
 
 use crate::action::{Action, Scope};
 use crate::agreement::Agreement;
-use crate::canvas::{Align, Canvas};
 use crate::effect::Effect;
 use crate::message::Instead;
 use crate::request::Request;
-use crate::theme::Role;
 use crate::tour;
-use crate::widgets::Table;
 use class::ClassPage;
 use form::{ROWS, RunForm};
 use home::HomeEntry;
@@ -32,6 +29,9 @@ use lessons::LessonList;
 use novamind_course::CollectedClass;
 use novamind_report::class::Shown;
 use novamind_session::{Access, Configuration, Mode, RunPreview, RunSummary};
+use novamind_tui::canvas::{Align, Canvas};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
 use path_form::{PathForm, PathWanted};
 use runs::Asked;
 

@@ -20,11 +20,11 @@ use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
 use super::{Look, ScreenState};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::company::Company;
 use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_session::Rows;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -7,17 +7,17 @@ use super::model::PlanFacts;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, rows_of};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens;
 use crate::screens::panes::Seat;
-use crate::text::fitting;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_base::notation::{cents, compact, grouped, percent};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Plan;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::fitting;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
 
 /// The plans as columns; a row leads to the tool that sets it.
 pub struct Plans;

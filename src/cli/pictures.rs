@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
 use crate::console::app::Settings;
+use crate::console::context::ScreenId;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
 use crate::console::request::Recorded;
-use crate::console::screens::ScreenId;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::{Goal, find_run_to_read};

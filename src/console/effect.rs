@@ -6,11 +6,11 @@ use std::sync::atomic::AtomicBool;
 use serde_json::Value;
 
 use super::action::Action;
+use super::context::{Figure, ScreenId};
 use super::look_inside::LookQuestion;
 use super::readings::Reading;
 use super::request::{Recorded, Request};
 use super::resimulation::BranchesQuestion;
-use super::screens::{Figure, ScreenId};
 use novamind_glossary::Subject;
 use novamind_session::Goal;
 use novamind_session::identifiers::Group;

@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthStr;
 use super::action::Action;
 use super::app::{App, Busy, Layer, Run, Stage};
 use super::company::Company;
-use super::screens::{Look, ScreenId};
+use super::context::{Look, ScreenId};
 use super::viewer::EntriesShown;
 use novamind_base::notation::{compact, dollars, grouped, short_dollars};
 use novamind_session::{Ended, TimeLeft};
@@ -21,9 +21,6 @@ use novamind_tui::widgets::spark::bar;
 
 /// Smallest window that is drawn.
 pub const LEAST: (u16, u16) = (60, 16);
-
-/// Text of charts and tables before the first week.
-pub const NO_DATA: &str = "no data yet: run a week (n)";
 
 /// What a drawn frame leaves behind.
 pub struct Drawn {
@@ -42,7 +39,7 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
     canvas.marker = app.glyphs.marker();
-    canvas.no_data = NO_DATA;
+    canvas.no_data = super::context::NO_DATA;
     canvas.clear(area, Role::Text);
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let text =

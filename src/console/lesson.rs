@@ -5,7 +5,7 @@ use ratatui::text::Line;
 
 use super::action::Action;
 use super::company::Company;
-use super::screens::{Look, ScreenId};
+use super::context::{Look, ScreenId};
 use novamind_report::lesson::{goal_at, guess_and_outcome};
 use novamind_session::{GoalPage, LessonPage, LessonQuestion, ToolId};
 use novamind_tui::canvas::Canvas;

@@ -9,6 +9,7 @@ mod agreement;
 pub mod app;
 mod attention;
 mod company;
+pub mod context;
 mod dialogs;
 pub mod effect;
 mod fan;

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::company::Company;
-use super::screens::Look;
+use super::context::Look;
 use super::viewer::{EntriesShown, Viewer};
 use novamind_base::notation::{compact, short_dollars};
 use novamind_tui::canvas::Canvas;

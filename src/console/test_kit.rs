@@ -7,11 +7,12 @@ use serde_json::{Value, json};
 
 use super::action::Action;
 use super::company::Company;
+use super::context::Look;
 use super::dialogs::{Dialog, Outcome};
 use super::effect::Effect;
 use super::keys::Keys;
 use super::readings::Reading;
-use super::screens::{Look, Screen};
+use super::screens::Screen;
 use novamind_session::{Configuration, NewRun, Rows, Session, Storage, Via};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Theme;

@@ -9,8 +9,8 @@ use unicode_width::UnicodeWidthStr;
 
 use super::action::{ACTIONS, Action};
 use super::company::Company;
+use super::context::ScreenId;
 use super::keys::Keys;
-use super::screens::ScreenId;
 use novamind_session::NewRun;
 use novamind_tools::{Numbers, ToolId};
 use novamind_tui::canvas::{Canvas, Click, rows_of};

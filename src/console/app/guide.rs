@@ -2,11 +2,12 @@
 
 use super::{App, Layer, Stage};
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::dialogs::explain::Explain;
 use crate::dialogs::glossary::Glossary;
 use crate::effect::Effect;
 use crate::request::Request;
-use crate::screens::{Look, ScreenId, ScreenState};
+use crate::screens::ScreenState;
 use crate::tour::{self, TourFacts};
 use crate::visit::VisitState;
 use novamind_glossary::Subject;

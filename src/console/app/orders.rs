@@ -2,11 +2,11 @@
 
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
 use crate::company::Company;
+use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::dialogs::reader::Reader;
 use crate::effect::Effect;
 use crate::request::Request;
-use crate::screens::ScreenId;
 use crate::worker::{Job, Question};
 use novamind_session::record::DraftOutcome;
 use novamind_session::{Goal, QuerySource};

@@ -3,7 +3,7 @@
 
 use super::{App, Order, Run, Stage};
 use crate::company::Company;
-use crate::screens::ScreenId;
+use crate::context::ScreenId;
 use crate::worker::Job;
 use novamind_session::{HiddenValues, REFUSED_LOOK, Refusal};
 use std::sync::Arc;

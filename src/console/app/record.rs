@@ -7,8 +7,8 @@ use crossterm::event::{Event, KeyEventKind, MouseEventKind};
 
 use super::{App, Layer, Order, Run, Stage};
 use crate::attention::Edit;
+use crate::context::ScreenId;
 use crate::request::Request;
-use crate::screens::ScreenId;
 use crate::worker::Job;
 use novamind_session::record::{
     Activity, DialogOutcome, Draft, DraftOutcome, Help, PresenceEvent, Select, View,
@@ -223,7 +223,7 @@ impl App {
     /// The object that is open on the screen.
     fn look_at_screen(&self) -> Option<(&'static str, String)> {
         let run = self.run()?;
-        let look = crate::screens::Look { company: &run.company, keys: &self.keys, page: self.page };
+        let look = crate::context::Look { company: &run.company, keys: &self.keys, page: self.page };
         run.screens.get(run.here).open_object(&look)
     }
 

@@ -5,9 +5,9 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::request::{LessonRequest, Request};
-use crate::screens::Look;
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -7,8 +7,8 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome, term_picture};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
-use crate::screens::{Figure, Look, ScreenId};
 use novamind_glossary::{Explanation, Subject};
 use novamind_session::Numbers;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};

@@ -7,8 +7,8 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome, term_picture};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
 use novamind_glossary::{Subject, Term, terms};
 use novamind_session::Numbers;
 use novamind_tui::canvas::{Canvas, centered, rows_of};

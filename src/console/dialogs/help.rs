@@ -4,8 +4,8 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{ACTIONS, Action, Scope};
+use crate::context::{Look, PaneKeys, ScreenId};
 use crate::keys::Keys;
-use crate::screens::{Look, PaneKeys, ScreenId};
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::editor::EDITING;

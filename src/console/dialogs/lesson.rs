@@ -5,10 +5,10 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::lesson::{Where, draw_lines, lines_of, step_to_try};
 use crate::request::{LessonRequest, Request};
-use crate::screens::Look;
 use novamind_report::lesson::typed_guess;
 use novamind_session::{LessonPage, LessonQuestion};
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};

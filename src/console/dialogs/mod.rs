@@ -29,9 +29,9 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
+use super::context::Look;
 use super::effect::Effect;
 use super::message::News;
-use super::screens::Look;
 use novamind_report::Story;
 use novamind_session::{Debrief, Refusal};
 use novamind_tui::canvas::Canvas;

@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;

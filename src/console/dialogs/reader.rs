@@ -5,7 +5,7 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::screens::Look;
+use crate::context::Look;
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

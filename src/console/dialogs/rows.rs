@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::message::News;
-use crate::screens::Look;
 use crate::screens::sql::values;
 use novamind_base::notation::grouped;
 use novamind_session::{Refusal, Rows};

@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::request::Request;
-use crate::screens::Look;
 use novamind_session::Mode;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::text::wrapped;

@@ -8,9 +8,9 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use crate::message::News;
-use crate::screens::{Figure, Look};
 use novamind_report::why::{CauseLine, equation, heading, lines};
 use novamind_session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
 use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};

@@ -5,8 +5,9 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Figure, Look, PaneKeys, Screen, ScreenState};
+use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
+use crate::context::{Figure, Look, PaneKeys};
 use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::{Field, Table};

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use super::Viewer;
 use crate::action::Action;
-use crate::screens::Look;
+use crate::context::Look;
 use novamind_session::{Record, RecordView};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;

@@ -8,11 +8,11 @@ use unicode_width::UnicodeWidthStr;
 
 use super::answer::{AnswerDraft, Entered};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
 use crate::keys::Keys;
 use crate::request::{Request, VisitRequest};
-use crate::screens::Look;
 use novamind_study::{DueQuestion, Form};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::chord::{Chord, written};

@@ -11,11 +11,11 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::message::News;
 use crate::request::Request;
 use crate::resimulation::{BranchesFound, BranchesQuestion};
-use crate::screens::Look;
 use decisions::Decisions;
 use novamind_session::{FORMS, Refusal};
 use novamind_tui::canvas::{Canvas, centered};

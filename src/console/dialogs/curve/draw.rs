@@ -4,8 +4,8 @@ use ratatui::layout::Rect;
 
 use super::{CurvePage, ExploredCurve};
 use crate::action::Action;
+use crate::context::Look;
 use crate::dialogs::Dialog;
-use crate::screens::Look;
 use novamind_base::notation::{dollars, price_to_cents};
 use novamind_report::curve::{
     basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality,

@@ -12,9 +12,9 @@ use serde_json::{Map, Value, json};
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::message::News;
-use crate::screens::Look;
 use novamind_session::identifiers::{ByPlan, Group, Plan};
 use novamind_session::{CurveExplorer, CurveOutcome, PlanPoint, Refusal};
 use novamind_tools::ToolId;

@@ -9,7 +9,7 @@ use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Unit;

@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{dollars, short_dollars};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::arrow;

@@ -9,7 +9,7 @@ use super::steps::show_rows;
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_session::Rows;
 use novamind_session::identifiers::Group;

@@ -3,7 +3,7 @@
 use super::hidden::TrueValue;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use crate::company::Company;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::market::model::{level_of, name_of};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
 use novamind_session::identifiers::Group;

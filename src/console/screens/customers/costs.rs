@@ -7,7 +7,7 @@ use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::lead_costs::{AdSpell, PairCost};
 use novamind_session::identifiers::{Channel, Group};

@@ -10,7 +10,7 @@ use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};

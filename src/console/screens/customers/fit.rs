@@ -7,7 +7,7 @@ use super::steps::{moved, show_rows};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent, price_to_cents};
 use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
 use novamind_session::identifiers::Plan;

@@ -9,7 +9,7 @@ use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
 use crate::screens::panes::{Pane, Seat, draw_pane};
-use crate::screens::Look;
+use crate::context::Look;
 use novamind_tui::canvas::Canvas;
 
 /// Where the person is in an open group.

@@ -6,7 +6,7 @@ use super::Customers;
 use crate::action::Action;
 use crate::company::Company;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;

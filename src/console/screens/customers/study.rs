@@ -9,7 +9,7 @@ use crate::effect::Effect;
 use crate::screens::market::model::level_of;
 use crate::screens::market::report;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::percent;
 use novamind_tui::canvas::Canvas;
 

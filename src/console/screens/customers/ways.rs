@@ -7,7 +7,7 @@ use super::steps::moved;
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Look, ScreenId};
+use crate::context::{Look, ScreenId};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};

@@ -9,7 +9,7 @@ use super::{Customers, CustomersPane};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, grouped};
 use novamind_session::{WeekFigure, WeekQuantity};
 use novamind_tui::canvas::Canvas;

@@ -8,7 +8,7 @@ use super::{Inbox, InboxPane, InboxView, post};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{count, wrapped};

@@ -11,7 +11,7 @@ use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, rows_of};

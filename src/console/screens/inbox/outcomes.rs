@@ -7,7 +7,7 @@ use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::readings::Reading;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_session::{Rows, number_at, text_at};
 use novamind_tui::canvas::Canvas;

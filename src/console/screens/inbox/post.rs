@@ -10,7 +10,7 @@ use super::{Inbox, list_prices};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::request::Request;
-use crate::screens::Figure;
+use crate::context::Figure;
 use novamind_base::notation::dollars;
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, ToolId};

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use super::Inbox;
 use super::offer::in_words;
 use super::post::{Planned, monthly};
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Seat};
 use novamind_base::notation::{cents, dollars};
 use novamind_tui::canvas::{Align, Canvas, rows_of};

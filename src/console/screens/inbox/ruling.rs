@@ -8,7 +8,7 @@ use super::{Inbox, InboxPane};
 use super::estimate::market_of;
 use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Seat, draw_pane};
 use novamind_base::notation::{cents, json_number};
 use novamind_rules::{AskingThread, Batch, Problem, RuledThread};

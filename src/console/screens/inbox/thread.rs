@@ -8,7 +8,7 @@ use super::{Inbox, InboxPane, post, preview};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::cents;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::{count, wrapped};

@@ -7,7 +7,7 @@ use crate::action::{Action, Scope};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::short_dollars;
 use novamind_report::first_change_in_words;
 use novamind_report::whatif::kin_line;

@@ -12,7 +12,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenState};
+use crate::context::{Figure, Look};
+use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::message::News;

@@ -7,7 +7,7 @@ use crate::action::{Action, Scope};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
 use novamind_tui::canvas::{Canvas, Click, rows_of};

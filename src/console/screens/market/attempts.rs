@@ -8,7 +8,7 @@ use crate::action::{Action, Scope};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::dollars;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;

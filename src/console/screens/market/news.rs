@@ -10,7 +10,7 @@ use crate::company::Company;
 use crate::effect::Effect;
 use crate::posts::{PostKind, Post};
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};

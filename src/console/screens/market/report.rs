@@ -9,7 +9,7 @@ use crate::action::{Action, Scope};
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, dollars, grouped, percent};
 use novamind_report::fit::{Fit, TruthRange};
 use novamind_session::identifiers::Group;

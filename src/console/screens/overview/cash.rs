@@ -8,7 +8,7 @@ use super::figures::{self, METRICS};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
+use crate::context::{Figure, Look, ScreenId};
 use crate::fan;
 use novamind_base::notation::{dollars, short_dollars};
 use novamind_tui::canvas::Canvas;

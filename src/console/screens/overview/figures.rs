@@ -1,7 +1,7 @@
 //! The figures of the week: how each is read, written and judged, and the rows behind it.
 
 use crate::company::Company;
-use crate::screens::Figure;
+use crate::context::Figure;
 use novamind_base::notation::{dollars, grouped, percent};
 use novamind_session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, WeekQuantity, entries_of_weeks};
 use novamind_tui::text::arrow;

@@ -9,7 +9,7 @@ use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::customers::costs;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
+use crate::context::{Figure, Look, ScreenId};
 use novamind_report::needs::{Need, Place, Problem};
 use novamind_session::{WeekFigure, WeekQuantity, entries_of_weeks};
 use novamind_tui::canvas::Canvas;

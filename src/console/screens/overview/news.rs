@@ -10,7 +10,7 @@ use crate::effect::Effect;
 use crate::posts::PostKind as Author;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::screens::product::model::Project;
-use crate::screens::{Figure, Look, ScreenId};
+use crate::context::{Figure, Look, ScreenId};
 use novamind_base::notation::grouped;
 use novamind_session::Rows;
 use novamind_session::text_at;

@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
+use crate::context::{Figure, Look, ScreenId};
 use novamind_report::fit::Beside;
 use novamind_session::DeliveredQuality;
 use novamind_session::identifiers::Plan;

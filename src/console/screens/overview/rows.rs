@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use crate::action::Action;
-use crate::screens::ScreenId;
+use crate::context::ScreenId;
 use crate::screens::panes::Seat;
 use novamind_tui::canvas::{Align, Canvas, Click, fit};
 use novamind_tui::text::wrapped;

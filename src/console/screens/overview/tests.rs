@@ -1,6 +1,7 @@
 use super::*;
 use crate::effect::Effect;
-use crate::screens::{Screen, ScreenId};
+use crate::context::ScreenId;
+use crate::screens::Screen;
 use crate::test_kit::{act, courted, drawn, on_screen, played, shown};
 use novamind_report::needs::{Place, Problem};
 use novamind_session::{Cell as Value, Session};

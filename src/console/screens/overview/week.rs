@@ -7,7 +7,7 @@ use super::figures::{self, METRICS};
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
+use crate::context::{Figure, Look, ScreenId};
 use novamind_session::week_of;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;

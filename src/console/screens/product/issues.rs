@@ -9,7 +9,7 @@ use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
 use novamind_base::notation::grouped;
 use novamind_session::identifiers::Group;

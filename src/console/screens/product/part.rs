@@ -7,7 +7,7 @@ use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 

@@ -6,7 +6,7 @@ use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};

@@ -7,7 +7,7 @@ use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
 use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, dollars, short_dollars};
 use novamind_report::research::{mean_days, mean_gain};

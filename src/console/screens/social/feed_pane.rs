@@ -7,7 +7,7 @@ use super::{Social, wall};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::count;
 use novamind_tui::theme::Role;

@@ -16,7 +16,8 @@ use strum::VariantArray;
 
 use self::feed::{Filter, PostKind, Post};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenId, ScreenState};
+use crate::context::{Figure, Look, ScreenId};
+use super::ScreenState;
 use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;

@@ -6,7 +6,7 @@ use super::Social;
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;

@@ -26,7 +26,8 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenState};
+use crate::context::Look;
+use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
 use crate::message::News;

@@ -9,7 +9,7 @@ use super::saving::Saving;
 use super::takeout::TakeOut;
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Pane, Seat};
 use novamind_session::library::NamedQuery;
 use novamind_tui::canvas::Canvas;

@@ -9,7 +9,7 @@ use super::summary::{NOT_A_TABLE, count};
 use super::{Sql, SqlPane};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Pane, Seat};
 use novamind_session::library::Head;
 use novamind_tui::canvas::Canvas;

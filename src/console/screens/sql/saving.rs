@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::action::Action;
 use novamind_session::Library;
 use novamind_session::library::{Head, file_name};

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use super::values;
 use crate::action::Action;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use novamind_base::notation::grouped;
 use novamind_session::Rows;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};

@@ -12,7 +12,7 @@ use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tools::{Numbers, Spec, ToolId, When, describe};
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;

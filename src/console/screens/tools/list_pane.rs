@@ -7,7 +7,7 @@ use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tools::{Module, Spec};
 use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;

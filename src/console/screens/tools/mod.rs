@@ -20,7 +20,8 @@ use serde_json::Value;
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenId, ScreenState};
+use crate::context::{Look, ScreenId};
+use super::ScreenState;
 use crate::action::Action;
 use crate::company::Company;
 use crate::effect::Effect;

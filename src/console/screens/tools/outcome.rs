@@ -9,7 +9,7 @@ use super::margins::margins;
 use super::reference::reference;
 use super::sheet::Block;
 use crate::action::Action;
-use crate::screens::Look;
+use crate::context::Look;
 use novamind_base::notation::{dollars, grouped};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::outlook_lines;

@@ -6,7 +6,7 @@ use super::view::View;
 use super::{Xray, heat};
 use crate::action::Action;
 use crate::look_inside::{LookCurve, LookFound};
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::Seat;
 use ratatui::layout::Rect;
 use novamind_base::notation::capital;

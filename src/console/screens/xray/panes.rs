@@ -10,7 +10,7 @@ use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::look_inside::LookQuestion;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::capital;
 use novamind_session::LeadFactor;
 use novamind_tui::canvas::{Canvas, rows_of};

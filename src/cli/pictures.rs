@@ -9,12 +9,12 @@ use crate::console::app::Settings;
 use crate::console::context::ScreenId;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
-use crate::console::request::Recorded;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::{Goal, find_run_to_read};
 use crate::tui::glyphs::Glyphs;
 use crate::tui::photograph::{self, Paper};
+use crate::worker::request::Recorded;
 
 /// Options of `pictures`.
 #[derive(Debug, Args)]

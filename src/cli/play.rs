@@ -11,9 +11,6 @@ use super::{Context, Failure};
 use crate::console::app::Settings;
 use crate::console::effect::Effect;
 use crate::console::keys::Keys;
-use crate::console::preferences::Preferences;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::{
@@ -22,6 +19,8 @@ use crate::session::{
 };
 use crate::tui::glyphs::Glyphs;
 use crate::tui::theme::Theme;
+use crate::worker::preferences::Preferences;
+use crate::worker::request::{Recorded, Request};
 use novamind_course::Handout;
 use novamind_study::Study;
 

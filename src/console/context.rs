@@ -1,9 +1,9 @@
 //! What screens, dialogs and effects share: which screen, what a view reads, and figures that can be explained.
 
 use super::action::{Action, Scope};
-use super::company::Company;
 use super::keys::Keys;
 use novamind_session::WeekQuantity;
+use novamind_worker::company::Company;
 
 /// Text of charts and tables before the first week.
 pub const NO_DATA: &str = "no data yet: run a week (n)";

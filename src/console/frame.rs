@@ -6,7 +6,6 @@ use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
 use super::app::{App, Busy, Layer, Run, Stage};
-use super::company::Company;
 use super::context::{Look, ScreenId};
 use super::viewer::EntriesShown;
 use novamind_base::notation::{compact, dollars, grouped, short_dollars};
@@ -18,6 +17,7 @@ use novamind_tui::glyphs::Glyphs;
 use novamind_tui::text::{arrow, wrapped};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
+use novamind_worker::company::Company;
 
 /// Smallest window that is drawn.
 pub const LEAST: (u16, u16) = (60, 16);
@@ -432,7 +432,7 @@ fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
 mod tests {
     use super::*;
     use crate::app::DaysRun;
-    use crate::message::DayTold;
+    use novamind_worker::message::DayTold;
 
     #[test]
     fn a_week_that_runs_tells_its_days() {

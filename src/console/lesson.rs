@@ -4,7 +4,6 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::action::Action;
-use super::company::Company;
 use super::context::{Look, ScreenId};
 use novamind_report::lesson::{goal_at, guess_and_outcome};
 use novamind_session::{GoalPage, LessonPage, LessonQuestion, ToolId};
@@ -12,6 +11,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
+use novamind_worker::company::Company;
 
 /// Columns of the task beside the screen.
 pub const COLUMNS: u16 = 38;

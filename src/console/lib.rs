@@ -8,7 +8,6 @@ mod action;
 mod agreement;
 pub mod app;
 mod attention;
-mod company;
 pub mod context;
 mod dialogs;
 pub mod effect;
@@ -18,15 +17,8 @@ mod frame;
 pub mod headless;
 pub mod keys;
 mod lesson;
-mod look_inside;
 pub mod manual;
-pub mod message;
-mod posts;
-pub mod preferences;
 mod projector;
-mod readings;
-pub mod request;
-mod resimulation;
 pub mod screens;
 pub mod speed;
 #[cfg(test)]
@@ -35,7 +27,6 @@ pub mod themes;
 mod tour;
 mod viewer;
 mod visit;
-pub mod worker;
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -43,9 +34,9 @@ use std::time::Duration;
 
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
-use message::Message;
 use novamind_tui::terminal::{TerminalScreen, set_panic_note};
-use worker::Workers;
+use novamind_worker::Workers;
+use novamind_worker::message::Message;
 
 /// How often a frame is drawn while only time passes.
 const BETWEEN_SECONDS: Duration = Duration::from_millis(500);

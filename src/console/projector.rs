@@ -2,7 +2,6 @@
 
 use ratatui::layout::Rect;
 
-use super::company::Company;
 use super::context::Look;
 use super::viewer::{EntriesShown, Viewer};
 use novamind_base::notation::{compact, short_dollars};
@@ -11,6 +10,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::zero_if_near;
 use novamind_tui::widgets::large::{LETTER, PointSize, draw_large};
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// Letters of the longest figure: `-$12.3M`.
 const LONGEST: u16 = 7;

@@ -10,7 +10,7 @@ use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::app::Settings;
 use super::headless::{Headless, event};
-use super::message::Message;
+use novamind_worker::message::Message;
 
 /// Window that is drawn: columns, rows.
 const WINDOW: (u16, u16) = (200, 60);

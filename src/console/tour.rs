@@ -8,7 +8,6 @@ use serde_json::Value;
 use unicode_width::UnicodeWidthStr;
 
 use super::action::{ACTIONS, Action};
-use super::company::Company;
 use super::context::ScreenId;
 use super::keys::Keys;
 use novamind_session::NewRun;
@@ -16,6 +15,7 @@ use novamind_tools::{Numbers, ToolId};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// How a step shows that it was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -231,12 +231,12 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::company::Company;
     use crate::test_kit::{company, painted, played};
     use novamind_report::fit::Beside;
     use novamind_report::needs::Place;
     use novamind_session::identifiers::Group;
     use novamind_session::{Configuration, Session, Via};
+    use novamind_worker::company::Company;
 
     fn facts(company: &Company) -> TourFacts<'_> {
         TourFacts {

@@ -12,12 +12,12 @@ use super::note_look;
 use crate::console::app::Settings;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
-use crate::console::request::Recorded;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::Goal;
 use crate::tui::asciicast::Asciicast;
 use crate::tui::glyphs::Glyphs;
+use crate::worker::request::Recorded;
 
 /// How long the frame after an action stays, and the one after a week, at speed 1.
 const AFTER_ACTION: Duration = Duration::from_millis(700);

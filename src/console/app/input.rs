@@ -19,13 +19,13 @@ use crate::dialogs::why::WhyBox;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
 use crate::keys::Meaning;
-use crate::preferences::Preferences;
-use crate::request::Request;
-use crate::resimulation::WhyAsked;
-use crate::worker::Job;
 use novamind_tui::canvas::Click;
 use novamind_tui::chord::{Chord, written};
 use novamind_tui::text::number;
+use novamind_worker::Job;
+use novamind_worker::preferences::Preferences;
+use novamind_worker::request::Request;
+use novamind_worker::resimulation::WhyAsked;
 
 /// What stops a script that runs.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];

@@ -4,11 +4,11 @@ use super::{App, Busy, Order, Stage};
 use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::effect::Effect;
-use crate::request::Request;
 use crate::screens::menu::Menu;
-use crate::worker::Job;
 use novamind_session::Access;
 use novamind_session::record::LeavingCause;
+use novamind_worker::Job;
+use novamind_worker::request::Request;
 
 /// What follows once the run is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

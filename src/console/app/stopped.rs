@@ -8,11 +8,11 @@ use super::{App, Closing, Order, Stage};
 use crate::action::{Action, Scope};
 use crate::dialogs::pause::PauseReason;
 use crate::keys::Keys;
-use crate::worker::Job;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::chord::Chord;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
+use novamind_worker::Job;
 
 /// What lies over everything while the clock is stopped.
 pub struct Cover {

@@ -7,10 +7,10 @@ use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::{LessonRequest, Request};
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
+use novamind_worker::request::{LessonRequest, Request};
 
 /// The question.
 pub struct TryAgain {

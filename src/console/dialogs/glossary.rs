@@ -174,8 +174,8 @@ impl Glossary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::company::Company;
     use crate::test_kit::{company, dialog_picture, in_dialog, played};
+    use novamind_worker::company::Company;
 
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {

@@ -31,10 +31,10 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::Look;
 use super::effect::Effect;
-use super::message::News;
 use novamind_report::Story;
 use novamind_session::{Debrief, Refusal};
 use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -145,7 +145,12 @@ pub trait Dialog {
 
 /// Draws a dialog over an empty screen of a size; what is seen as text.
 #[cfg(test)]
-fn picture(dialog: &dyn Dialog, company: &super::company::Company, width: u16, height: u16) -> String {
+fn picture(
+    dialog: &dyn Dialog,
+    company: &novamind_worker::company::Company,
+    width: u16,
+    height: u16,
+) -> String {
     use super::keys::Keys;
     use novamind_tui::theme::Theme;
     let area = Rect::new(0, 0, width, height);

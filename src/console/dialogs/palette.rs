@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::company::Company;
 use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
 use crate::keys::Keys;
@@ -18,6 +17,7 @@ use novamind_tui::fuzzy::{self, Found};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// Tools that stand first before anything is typed.
 const RECENT: usize = 5;

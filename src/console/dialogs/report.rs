@@ -7,7 +7,6 @@ use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::company::Company;
 use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::figures::{self, METRICS};
@@ -21,6 +20,7 @@ use novamind_tools::Forecast;
 use novamind_tui::canvas::{Canvas, Click, centered, fit};
 use novamind_tui::text::{arrow, flowed, wrapped};
 use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -429,9 +429,9 @@ fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::company::Company;
     use crate::dialogs::picture;
     use crate::test_kit;
+    use novamind_worker::company::Company;
 
     #[test]
     fn the_report_fits_small_windows_and_uses_large_ones() {

@@ -7,7 +7,6 @@ use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::context::Look;
 use crate::effect::Effect;
-use crate::message::News;
 use crate::screens::sql::values;
 use novamind_base::notation::grouped;
 use novamind_session::{Refusal, Rows};
@@ -15,6 +14,7 @@ use novamind_tui::canvas::{Canvas, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
+use novamind_worker::message::News;
 
 /// Most lines of the query that are shown above its rows.
 const QUERY_LINES: usize = 6;

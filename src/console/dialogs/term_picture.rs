@@ -3,7 +3,6 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use crate::company::Company;
 use novamind_base::notation::{compact, dollars};
 pub use novamind_report::term_picture::has_picture;
 use novamind_report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, TermPicture, term_picture};
@@ -12,6 +11,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use novamind_tui::widgets::scale::Unit;
+use novamind_worker::company::Company;
 
 /// Lowest picture that can be read.
 pub const LEAST_ROWS: u16 = 7;

@@ -10,10 +10,10 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::{Figure, Look, PaneKeys, ScreenId};
 use super::effect::Effect;
-use super::message::News;
-use super::readings::Reading;
 use novamind_session::Rows;
 use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
+use novamind_worker::readings::Reading;
 
 /// The module of each screen.
 macro_rules! screens {

@@ -12,12 +12,12 @@ use crate::context::Look;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
 use crate::keys::Keys;
-use crate::request::{Request, VisitRequest};
 use novamind_study::{DueQuestion, Form};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::chord::{Chord, written};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
+use novamind_worker::request::{Request, VisitRequest};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 92;

@@ -11,10 +11,8 @@ use self::review::Review;
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::attention::BETWEEN_CELLS;
-use crate::company::Company;
 use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::Request;
 use novamind_base::notation::{grouped, parse_number};
 use novamind_session::Forecasts;
 use novamind_tools::{Forecast, ToolId};
@@ -23,6 +21,8 @@ use novamind_tui::text::number;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::field::ONLY_NUMBERS;
 use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::company::Company;
+use novamind_worker::request::Request;
 
 /// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,6 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
-use crate::company::Company;
 use novamind_report::research::late_lines;
 use novamind_report::review::{alike_lines, money_lines};
 use novamind_tools::ToolId;
@@ -12,6 +11,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::{number, wrapped};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Scroll;
+use novamind_worker::company::Company;
 
 /// How far the review is scrolled.
 #[derive(Default)]

@@ -327,7 +327,7 @@ mod tests {
     /// The bars of a company as cells, in a theme and with a marker.
     fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
         use crate::test_kit::played;
-        let books = Books::of(&crate::company::Company::of(&played(6)));
+        let books = Books::of(&novamind_worker::company::Company::of(&played(6)));
         let theme = novamind_tui::theme::Theme::bundled(theme);
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 60, 20);
@@ -340,7 +340,7 @@ mod tests {
 
     #[test]
     fn the_net_of_a_week_stands_below_it_with_its_sign() {
-        let books = Books::of(&crate::company::Company::of(&crate::test_kit::played(6)));
+        let books = Books::of(&novamind_worker::company::Company::of(&crate::test_kit::played(6)));
         let picture: String =
             painted("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
         for (week, amounts) in books.last_weeks(6) {

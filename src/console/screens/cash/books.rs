@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::model::{Amounts, Books, CATEGORIES, Subject, days_of, money, side};
 use super::{Cash, Selected, ledger_rows};
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -14,6 +13,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The table of a week.
 pub struct BooksPane;

@@ -5,7 +5,6 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::{Subject, cash_around, days_of};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -15,6 +14,7 @@ use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_worker::company::Company;
 
 /// Width of the figures beside the bars of the weeks.
 const SIDE: u16 = 8;

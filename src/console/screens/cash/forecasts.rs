@@ -5,7 +5,6 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -15,6 +14,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
+use novamind_worker::company::Company;
 
 /// Forecasts of one horizon, as a curve and as a list.
 pub struct ForecastsPane;

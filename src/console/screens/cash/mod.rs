@@ -19,11 +19,11 @@ use super::panes::{Pane, Paned, draw_pane};
 use crate::context::{Figure, Look};
 use super::ScreenState;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use novamind_session::WeekQuantity;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

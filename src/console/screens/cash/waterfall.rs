@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::model::{CashStep, cash_around, money, waterfall};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -14,6 +13,7 @@ use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The steps of a week.
 pub struct WaterfallPane;

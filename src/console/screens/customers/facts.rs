@@ -6,7 +6,6 @@ use super::Customers;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use super::steps::show_rows;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
 use crate::screens::panes::{Border, Pane, Seat};
@@ -17,6 +16,7 @@ use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// What is known of a group.
 pub struct FactsPane;

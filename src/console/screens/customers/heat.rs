@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::model::{MarketRows, ad_budget};
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -17,6 +16,7 @@ use novamind_tui::canvas::{Align, Canvas, Click};
 use novamind_tui::text::count;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The map.
 pub struct ChannelsPane;

@@ -1,6 +1,6 @@
 //! True values of groups in the table, where they are shown.
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_session::TrueGroup;
 use novamind_session::identifiers::Group;

@@ -28,13 +28,13 @@ use super::panes::{Pane, Paned, draw_pane};
 use crate::context::Look;
 use super::ScreenState;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::readings::Reading;
 use novamind_session::Rows;
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -4,7 +4,6 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::company::Company;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
 use novamind_session::identifiers::{Group, Plan};
@@ -12,6 +11,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::Band;
 use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_worker::company::Company;
 
 /// The quality of every plan, and the band of the floor.
 pub struct QualityByWeekPane;

@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::{Inbox, InboxPane};
 use crate::action::{Action, Scope};
 use crate::effect::Effect;
-use crate::readings::Reading;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
@@ -14,6 +13,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::readings::Reading;
 
 /// What the screen asks the database for while they are shown.
 pub const READINGS: [Reading; 5] = [

@@ -6,7 +6,6 @@ use serde_json::Value;
 
 use super::{Inbox, InboxPane};
 use super::estimate::market_of;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::context::Look;
 use crate::screens::panes::{Border, Seat, draw_pane};
@@ -18,6 +17,7 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
 
 /// What is typed at first: whoever asks for a plan at its list price or more is accepted. Plans without a price are left out.
 fn first_rules(company: &Company) -> String {

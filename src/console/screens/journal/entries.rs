@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_base::notation::{compact, dollars, grouped, short_dollars, signed_dollars};
 use novamind_report::deals::deals_in_words;
 use novamind_report::parameters::{entry_in_words, since_in_words};

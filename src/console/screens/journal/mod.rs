@@ -16,12 +16,12 @@ use crate::context::{Figure, Look};
 use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::request::Request;
 use novamind_session::Kin;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Editor, Table};
+use novamind_worker::message::News;
+use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]

@@ -4,7 +4,6 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -12,6 +11,7 @@ use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// Forecasts of a horizon whose day has come, the newest first.
 pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {

@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::Market;
 use super::model::{Attempt, name_of};
 use crate::action::{Action, Scope};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -13,6 +12,7 @@ use novamind_base::notation::dollars;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The attempts, and what the next one costs.
 pub struct AttemptsPane;

@@ -7,7 +7,6 @@ use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
 use crate::action::{Action, Scope};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
@@ -17,6 +16,7 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// Marks of how many news of rivals a column holds, beside the fullest one.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];

@@ -19,8 +19,6 @@ use ratatui::layout::Rect;
 use crate::action::{Action, Scope};
 use crate::agreement::Agreement;
 use crate::effect::Effect;
-use crate::message::Instead;
-use crate::request::Request;
 use crate::tour;
 use class::ClassPage;
 use form::{ROWS, RunForm};
@@ -32,6 +30,8 @@ use novamind_session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use novamind_tui::canvas::{Align, Canvas};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
+use novamind_worker::message::Instead;
+use novamind_worker::request::Request;
 use path_form::{PathForm, PathWanted};
 use runs::Asked;
 

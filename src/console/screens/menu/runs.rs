@@ -7,9 +7,6 @@ use super::{Menu, Previews};
 use crate::action::Action;
 use crate::agreement::{Agreement, READ_FIRST};
 use crate::effect::Effect;
-use crate::message::Instead;
-use crate::request::Recorded;
-use crate::request::Request;
 use novamind_base::notation::{dollars, grouped};
 use novamind_session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
 use novamind_tui::canvas::{Canvas, centered, rows_of};
@@ -17,6 +14,9 @@ use novamind_tui::text::{count, wrapped};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::zero_if_near;
 use novamind_tui::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
+use novamind_worker::message::Instead;
+use novamind_worker::request::Recorded;
+use novamind_worker::request::Request;
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]

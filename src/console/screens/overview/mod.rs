@@ -21,11 +21,11 @@ use super::product::model::{Day, projects, service};
 use crate::context::Look;
 use super::ScreenState;
 use crate::action::Action;
-use crate::company::Company;
-use crate::readings::Reading;
 use novamind_session::Rows;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

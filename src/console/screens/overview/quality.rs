@@ -5,7 +5,6 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look, ScreenId};
@@ -18,6 +17,7 @@ use novamind_tui::text::number;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_room;
 use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// Columns of the floor and of the group's own bonus.
 const FLOOR: usize = 4;

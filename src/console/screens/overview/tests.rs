@@ -181,8 +181,8 @@ fn posts_are_compared_with_the_weeks_there_were() {
         [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
     {
         let company = Company::of(&played(weeks));
-        let by_people = |post: &&std::sync::Arc<crate::posts::Post>| {
-            post.kind != crate::posts::PostKind::Press
+        let by_people = |post: &&std::sync::Arc<novamind_worker::posts::Post>| {
+            post.kind != novamind_worker::posts::PostKind::Press
         };
         let of = |week: u32| {
             company.posts.iter().filter(by_people).filter(|post| post.day.div_ceil(7) == week).count()

@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::figures::{METRICS, Metric};
-use crate::company::Company;
 use crate::screens::product::model::Day;
 use novamind_base::notation::{compact, percent};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// Least height of a small chart with its border.
 const LEAST: u16 = 8;

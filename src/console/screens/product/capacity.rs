@@ -5,7 +5,6 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::{Day, Rung, last_week};
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::context::Figure;
 use crate::screens::panes::Seat;
@@ -18,6 +17,7 @@ use novamind_tui::text::fitting;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// The tier that served last, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {

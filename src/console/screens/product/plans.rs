@@ -7,7 +7,6 @@ use super::model::PlanFacts;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::action::Action;
-use crate::company::Company;
 use crate::context::Figure;
 use crate::effect::Effect;
 use crate::screens::panes::Seat;
@@ -18,6 +17,7 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::fitting;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The plans as columns; a row leads to the tool that sets it.
 pub struct Plans;

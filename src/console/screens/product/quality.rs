@@ -4,7 +4,6 @@ use ratatui::layout::Rect;
 
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::context::Figure;
 use crate::screens::panes::Seat;
@@ -13,6 +12,7 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::number;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The components of quality, one group in a row.
 pub struct Quality;

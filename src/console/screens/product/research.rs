@@ -5,7 +5,6 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::Project;
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::context::Figure;
 use crate::screens::panes::Seat;
@@ -16,6 +15,7 @@ use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
 use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -5,7 +5,6 @@ use ratatui::layout::Rect;
 use super::model::Day;
 use super::part::ProductPart;
 use super::{Product, ProductPane};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::context::Figure;
 use crate::screens::panes::Seat;
@@ -17,6 +16,7 @@ use novamind_tui::text::fitting;
 use novamind_tui::text::number;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
+use novamind_worker::company::Company;
 
 /// The measures of the service.
 pub struct Service;

@@ -19,11 +19,7 @@ use super::panes::{Pane, Paned, draw_pane};
 use crate::context::{Figure, Look, ScreenId};
 use super::ScreenState;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::posts::Posts;
-use crate::readings::Reading;
 use novamind_base::notation::grouped;
 use novamind_report::post_leads::leads_around;
 use novamind_session::Rows;
@@ -31,6 +27,10 @@ use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, fit};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::posts::Posts;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

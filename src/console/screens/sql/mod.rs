@@ -30,7 +30,6 @@ use crate::context::Look;
 use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
-use crate::message::News;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
 use history::History;
@@ -39,6 +38,7 @@ use over::Over;
 use tabs::Tabs;
 use novamind_session::Library;
 use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -9,7 +9,6 @@ use super::earlier;
 use super::sheet::{CellPlace, Sheet};
 use crate::action::Action;
 use crate::attention::BETWEEN_CELLS;
-use crate::company::Company;
 use crate::effect::Effect;
 use novamind_base::notation::{dollars, parse_number};
 use novamind_report::count;
@@ -19,6 +18,7 @@ use novamind_tools::{ArgumentKind, Key, Kind, Spec};
 use novamind_tui::chord::Chord;
 use novamind_tui::widgets::field::ONLY_NUMBERS;
 use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::company::Company;
 
 /// A form of one tool.
 #[derive(Debug, Clone)]

@@ -23,10 +23,7 @@ use super::panes::{Pane, Paned, draw_pane};
 use crate::context::{Look, ScreenId};
 use super::ScreenState;
 use crate::action::Action;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::readings::Reading;
 use form::{Form, spaced};
 use outcome::Leads;
 use novamind_base::notation::plain_numbers;
@@ -37,6 +34,9 @@ use novamind_session::{JournalEntry, Rows};
 use novamind_tools::{Answer, CATALOGUE, Spec, ToolId};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::readings::Reading;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::research::{mean_days, mean_gain};
 use novamind_session::ResearchMeans;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_base::notation::{json_number, parse_number};
 use novamind_session::identifiers::{Channel, Plan};
 use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};

@@ -5,11 +5,11 @@ use crate::action::Scope;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
-use crate::request::Request;
 use novamind_session::identifiers::Plan;
 use novamind_session::{Refusal, Via};
 use novamind_tools::ToolId;
 use novamind_tui::chord::Chord;
+use novamind_worker::request::Request;
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
 fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {

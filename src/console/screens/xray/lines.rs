@@ -5,7 +5,6 @@ use unicode_width::UnicodeWidthStr;
 use super::view::View;
 use super::{Xray, heat};
 use crate::action::Action;
-use crate::look_inside::{LookCurve, LookFound};
 use crate::context::Look;
 use crate::screens::panes::Seat;
 use ratatui::layout::Rect;
@@ -16,6 +15,7 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark;
+use novamind_worker::look_inside::{LookCurve, LookFound};
 
 /// A row: pieces of text one after the other.
 pub type Row = Vec<(String, Role)>;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use novamind::course::{Class, ClassCollection, ClassSources, Handout, ToHandOut};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Configuration, Lesson, Session, Via};
+use novamind::session::{Access, Lesson, Session, Via};
 use novamind::tui::theme::Theme;
 use serde_json::json;
 

@@ -1,6 +1,5 @@
 //! Where the focus is: how it is seen, which keys it has, and what it keeps.
 
-use novamind::session::Configuration;
 use novamind::tui::glyphs::Glyphs;
 use novamind::tui::theme::Theme;
 

@@ -1,6 +1,5 @@
 //! What colours say: words stand in the role of what they mean, in every theme.
 
-use novamind::session::Configuration;
 use novamind::tui::theme::{Role, Theme};
 
 use super::company::led;

@@ -7,8 +7,6 @@
 //! |---|---|---|
 //! | 6 | [`cli`] | one file per subcommand; maps failures to exit codes |
 //! | 5 | [`console`], [`plain`], `server`, [`lab`] | the terminal application; the same game line by line; the same game for programs over HTTP and the Model Context Protocol; policies, metrics, comparison with reference figures and of runs with each other, the check of lessons, speed |
-//! | 4 | [`worker`] | the threads that own a session for the console: requests, jobs, news |
-//! | 4 | [`tui`] | parts of terminal applications that know nothing of companies and runs |
 //! | 4 | [`report`], [`rules`] | rules that answer companies; a week and a whole run told: what changed, split by the ledger, behaviour measures, the report as Markdown and as a page, the logbook of a session and the tables for research |
 //! | 3 | [`session`] | one run: open, act, query, advance, record, resume from snapshots, replay, play back, branch, rescue, hand over, ask why and what if, look inside, lessons and classes. The only door to a world |
 //! | 3 | [`glossary`] | what every term, tool, argument, table and column means, for people |

@@ -63,6 +63,10 @@ pub use novamind_study as study;
 #[doc(inline)]
 pub use novamind_tools as tools;
 #[doc(inline)]
+pub use novamind_tui as tui;
+#[doc(inline)]
 pub use novamind_voice as voice;
+#[doc(inline)]
+pub use novamind_worker as worker;
 #[doc(inline)]
 pub use novamind_world as world;

@@ -51,6 +51,16 @@ fn in_powers(value: f64) -> String {
     }
 }
 
+/// A count with its noun: `1 week`, `3 weeks`.
+pub fn count(number: u32, noun: &str) -> String {
+    let plural = match noun.strip_suffix("ny") {
+        _ if number == 1 => noun.to_owned(),
+        Some(stem) => format!("{stem}nies"),
+        None => format!("{noun}s"),
+    };
+    format!("{} {plural}", grouped(f64::from(number), 0))
+}
+
 /// Money without cents: `$1,234,568`, `-$1,234`.
 pub fn dollars(value: f64) -> String {
     signed(value, 0)
@@ -202,6 +212,24 @@ pub fn acts(letter: char) -> bool {
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{feff}')
         || ('\u{202a}'..='\u{202e}').contains(&letter)
         || ('\u{2066}'..='\u{2069}').contains(&letter)
+}
+
+/// Text that means itself in HTML and in its attributes; what XML forbids is left out.
+pub fn escaped_html(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            '\n' | '\t' => safe.push(' '),
+            letter if acts(letter) => {}
+            letter => safe.push(letter),
+        }
+    }
+    safe
 }
 
 /// Text as a terminal may get it: letters that [act](acts) are written out; line ends and tabs stay.

@@ -13,13 +13,13 @@ use super::run::progress_bar;
 use super::runs::{as_csv, tidy_up_on_signals};
 use super::{Context, Failure, print};
 use crate::console::effect::Effect;
-use crate::console::request::Request;
 use crate::lab::answers_to_companies;
 use crate::report::class::{
     ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
 };
 use crate::report::count;
 use crate::session::{find_run_to_read, write_whole};
+use crate::worker::request::Request;
 use novamind_course::{Class, ClassCollection, ClassSources, CollectedClass, ToHandOut};
 
 /// Options of `class`.

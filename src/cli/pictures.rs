@@ -6,15 +6,15 @@ use clap::{Args, ValueEnum};
 
 use super::{Context, Failure, print};
 use crate::console::app::Settings;
-use crate::console::glyphs::Glyphs;
+use crate::console::context::ScreenId;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
-use crate::console::photograph::{self, Paper};
-use crate::console::request::Recorded;
-use crate::console::screens::ScreenId;
-use crate::console::theme::Theme;
+use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::{Goal, find_run_to_read};
+use crate::tui::glyphs::Glyphs;
+use crate::tui::photograph::{self, Paper};
+use crate::worker::request::Recorded;
 
 /// Options of `pictures`.
 #[derive(Debug, Args)]
@@ -72,7 +72,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     context.look(&folder, "pictures", &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")))?;
     let id = folder.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let settings = Settings {
-        theme: Theme::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        theme: themes::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
         keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
         glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
         configuration: context.configuration.clone(),

@@ -10,17 +10,17 @@ use super::new_run::NewRunOptions;
 use super::{Context, Failure};
 use crate::console::app::Settings;
 use crate::console::effect::Effect;
-use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
-use crate::console::preferences::Preferences;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
-use crate::console::theme::Theme;
+use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::{
     Access, Configuration, ConsentGiven, ConsentMeans, Goal, LessonEntry, Library, Mode, NewRun, RunError,
     Session, find_run, steady,
 };
+use crate::tui::glyphs::Glyphs;
+use crate::tui::theme::Theme;
+use crate::worker::preferences::Preferences;
+use crate::worker::request::{Recorded, Request};
 use novamind_course::Handout;
 use novamind_study::Study;
 
@@ -214,10 +214,10 @@ fn theme(
     let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
     let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
     // A theme that has gone since is no reason not to play.
-    if let Some(theme) = remembered.and_then(|name| Theme::find(name, configuration).ok()) {
+    if let Some(theme) = remembered.and_then(|name| themes::find(name, configuration).ok()) {
         return Ok(theme);
     }
-    Theme::find(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
+    themes::find(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
 }
 
 /// Opens the console with something to begin with.

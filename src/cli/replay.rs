@@ -10,9 +10,9 @@ use clap::Args;
 use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
-use crate::console::request::Recorded;
-use crate::console::request::Request;
 use crate::session::{Goal, Session, find_run_to_read, record_look, verify_sealed};
+use crate::worker::request::Recorded;
+use crate::worker::request::Request;
 
 /// Options of `replay`.
 #[derive(Debug, Args)]

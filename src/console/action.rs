@@ -1,5 +1,8 @@
 //! Everything a person can do with a key: one table, from which palette, footer, help and the key file are read.
 
+use novamind_tui::canvas::Command;
+use novamind_tui::widgets::ListAction;
+
 /// Where a key means something. A focused place has several scopes, the innermost first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scope {
@@ -160,6 +163,42 @@ impl Scope {
     /// Whether plain characters are typed here.
     pub fn is_text(self) -> bool {
         matches!(self, Scope::Field | Scope::Editor)
+    }
+}
+
+impl Action {
+    /// Returns the action of a command, or `None` if no action has its number.
+    pub fn of(command: Command) -> Option<Action> {
+        ACTIONS.get(usize::from(command.0)).map(|entry| entry.action)
+    }
+}
+
+impl From<Action> for Command {
+    fn from(action: Action) -> Command {
+        Command(action as u16)
+    }
+}
+
+impl From<Action> for Option<ListAction> {
+    fn from(action: Action) -> Option<ListAction> {
+        Some(match action {
+            Action::Up => ListAction::Up,
+            Action::Down => ListAction::Down,
+            Action::Left => ListAction::Left,
+            Action::Right => ListAction::Right,
+            Action::PageUp => ListAction::PageUp,
+            Action::PageDown => ListAction::PageDown,
+            Action::First => ListAction::First,
+            Action::Last => ListAction::Last,
+            Action::ScrollUp => ListAction::ScrollUp,
+            Action::ScrollDown => ListAction::ScrollDown,
+            Action::Sort => ListAction::Sort,
+            Action::Filter => ListAction::Filter,
+            Action::Commit | Action::CommitDown => ListAction::Commit,
+            Action::Discard => ListAction::Discard,
+            Action::Close => ListAction::Close,
+            _ => return None,
+        })
     }
 }
 

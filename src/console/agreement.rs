@@ -7,11 +7,11 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
-use super::canvas::{Canvas, rows_of};
-use super::theme::Role;
-use super::widgets::Scroll;
 use novamind_report::prose::{Face, laid_out};
 use novamind_session::{ConsentGiven, ConsentMeans, steady};
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Scroll;
 
 /// Widest lines that read well.
 const WIDEST: u16 = 100;

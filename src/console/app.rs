@@ -7,6 +7,7 @@ mod busy;
 mod curve;
 mod guide;
 mod input;
+mod layers;
 mod leaving;
 mod lesson;
 mod limits;
@@ -30,31 +31,34 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::attention::{Edit, Layers, PresenceWatch, Stopwatch, Typing};
-use super::canvas::Click;
-use super::company::Company;
+use super::attention::{Edit, PresenceWatch, Stopwatch, Typing};
+use super::context::{Look, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::filing::FilingDialog;
 use super::effect::Effect;
-use super::glyphs::Glyphs;
-use super::keys::{Chord, Keys};
-use super::message::{DayTold, Message};
-use super::readings::Reading;
+use super::keys::Keys;
 use super::screens::menu::Menu;
-use super::screens::{Look, Screen, ScreenId, Screens};
-use super::theme::Theme;
+use super::screens::{Screen, Screens};
 use super::tour::Tour;
 use super::viewer::Viewer;
 use super::visit::{VisitPage, VisitState};
-use super::worker::{Job, Question};
-use crate::request::Request;
 use novamind_report::Story;
 use novamind_report::opponents::PlayOpponents;
 use novamind_session::{Configuration, Library, TimeLeft};
 use novamind_study::CodeCheck;
+use novamind_tui::canvas::Click;
+use novamind_tui::chord::Chord;
+use novamind_tui::glyphs::Glyphs;
+use novamind_tui::theme::Theme;
+use novamind_worker::company::Company;
+use novamind_worker::message::{DayTold, Message};
+use novamind_worker::readings::Reading;
+use novamind_worker::request::Request;
+use novamind_worker::{Job, Question};
 
-pub use super::attention::Layer;
 pub use busy::Busy;
+pub use layers::Layer;
+use layers::Layers;
 use leaving::Closing;
 pub use settings::Settings;
 pub use stopped::Cover;
@@ -273,7 +277,7 @@ impl App {
             keys: settings.keys,
             glyphs: settings.glyphs,
             mouse: true,
-            themes: Theme::all(&settings.configuration),
+            themes: crate::themes::all(&settings.configuration),
             configuration: settings.configuration,
             again: settings.again,
             stage: Stage::Menu(menu),

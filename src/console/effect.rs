@@ -6,16 +6,16 @@ use std::sync::atomic::AtomicBool;
 use serde_json::Value;
 
 use super::action::Action;
-use super::look_inside::LookQuestion;
-use super::readings::Reading;
-use super::request::{Recorded, Request};
-use super::resimulation::BranchesQuestion;
-use super::screens::{Figure, ScreenId};
+use super::context::{Figure, ScreenId};
 use novamind_glossary::Subject;
 use novamind_session::Goal;
 use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
+use novamind_worker::look_inside::LookQuestion;
+use novamind_worker::readings::Reading;
+use novamind_worker::request::{Recorded, Request};
+use novamind_worker::resimulation::BranchesQuestion;
 
 impl Effect {
     /// Whether it would change the run.

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
-use super::message::{Message, News};
-use super::worker::answer_on_thread;
 use novamind_session::{Configuration, Library, Refusal, library};
+use novamind_worker::answer_on_thread;
+use novamind_worker::message::{Message, News};
 
 /// Writes files on a thread of its own and reports where they are.
 pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {

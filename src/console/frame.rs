@@ -6,18 +6,18 @@ use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
 use super::app::{App, Busy, Layer, Run, Stage};
-use super::ascii;
-use super::canvas::{Align, Canvas, Click, rows_of};
-use super::company::Company;
-use super::glyphs::Glyphs;
-use super::keys::written;
-use super::screens::{Look, ScreenId};
-use super::text::{arrow, short_dollars, wrapped};
-use super::theme::Role;
+use super::context::{Look, ScreenId};
 use super::viewer::EntriesShown;
-use super::widgets::spark::bar;
-use novamind_base::notation::{compact, dollars, grouped};
+use novamind_base::notation::{compact, dollars, grouped, short_dollars};
 use novamind_session::{Ended, TimeLeft};
+use novamind_tui::ascii;
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::chord::written;
+use novamind_tui::glyphs::Glyphs;
+use novamind_tui::text::{arrow, wrapped};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::bar;
+use novamind_worker::company::Company;
 
 /// Smallest window that is drawn.
 pub const LEAST: (u16, u16) = (60, 16);
@@ -39,6 +39,7 @@ pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
     canvas.marker = app.glyphs.marker();
+    canvas.no_data = super::context::NO_DATA;
     canvas.clear(area, Role::Text);
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let text =
@@ -89,7 +90,7 @@ fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
         canvas.text(Rect { x: row.x + 1, width: keys, ..row }, &chords, Role::Key);
         let title = Rect { x: row.x + keys + 3, width: row.width.saturating_sub(keys + 3), ..row };
         canvas.text(title, action.entry().title, Role::Text);
-        canvas.click(row, Click::Do(action));
+        canvas.click(row, Click::Do(action.into()));
     }
     canvas.pane_keys(own, "esc cancel");
 }
@@ -288,7 +289,7 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
         }
         let place = Rect { x, width, ..row };
         canvas.text(place, &text, if screen == run.here { Role::TabHere } else { Role::Tab });
-        canvas.click(place, Click::Do(screen.action()));
+        canvas.click(place, Click::Do(screen.action().into()));
         x += width;
     }
     if run.zoomed {
@@ -358,7 +359,7 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.text(Rect { x, width: key.width() as u16, ..row }, &key, Role::Key);
         let after = Rect { x: x + key.width() as u16 + 1, width: title.width() as u16, ..row };
         canvas.text(after, title, Role::Dim);
-        canvas.click(Rect { x, width, ..row }, Click::Do(action));
+        canvas.click(Rect { x, width, ..row }, Click::Do(action.into()));
         x += width + 3;
     }
     if let Some((text, role)) = right {
@@ -431,7 +432,7 @@ fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
 mod tests {
     use super::*;
     use crate::app::DaysRun;
-    use crate::message::DayTold;
+    use novamind_worker::message::DayTold;
 
     #[test]
     fn a_week_that_runs_tells_its_days() {

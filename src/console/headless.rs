@@ -13,13 +13,13 @@ use super::app::{App, Order, Settings};
 use super::effect::Effect;
 use super::files;
 use super::frame;
-use super::keys::Chord;
-use super::message::{Message, News, VisitNews};
-use super::request::{Recorded, Request, VisitRequest};
-use super::worker::{Job, Workers};
 use novamind_session::record::LeavingCause;
 use novamind_session::{Access, Goal, PlaybackPosition};
 use novamind_study::Study;
+use novamind_tui::chord::Chord;
+use novamind_worker::message::{Message, News, VisitNews};
+use novamind_worker::request::{Recorded, Request, VisitRequest};
+use novamind_worker::{Job, Workers};
 
 /// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);

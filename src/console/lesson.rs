@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::action::Action;
-use super::canvas::Canvas;
-use super::company::Company;
-use super::screens::{Look, ScreenId};
-use super::text::wrapped;
-use super::theme::Role;
-use super::widgets::spark::bar;
+use super::context::{Look, ScreenId};
 use novamind_report::lesson::{goal_at, guess_and_outcome};
 use novamind_session::{GoalPage, LessonPage, LessonQuestion, ToolId};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::bar;
+use novamind_worker::company::Company;
 
 /// Columns of the task beside the screen.
 pub const COLUMNS: u16 = 38;

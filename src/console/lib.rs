@@ -7,42 +7,26 @@
 mod action;
 mod agreement;
 pub mod app;
-mod ascii;
-pub mod asciicast;
 mod attention;
-mod canvas;
-mod company;
+pub mod context;
 mod dialogs;
 pub mod effect;
+mod fan;
 mod files;
 mod frame;
-mod fuzzy;
-pub mod glyphs;
 pub mod headless;
 pub mod keys;
 mod lesson;
-mod look_inside;
 pub mod manual;
-pub mod message;
-pub mod photograph;
-mod posts;
-pub mod preferences;
 mod projector;
-mod readings;
-pub mod request;
-mod resimulation;
 pub mod screens;
 pub mod speed;
-mod terminal;
 #[cfg(test)]
 mod test_kit;
-mod text;
-pub mod theme;
+pub mod themes;
 mod tour;
 mod viewer;
 mod visit;
-mod widgets;
-pub mod worker;
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -50,9 +34,9 @@ use std::time::Duration;
 
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
-use message::Message;
-use terminal::TerminalScreen;
-use worker::Workers;
+use novamind_tui::terminal::{TerminalScreen, set_panic_note};
+use novamind_worker::Workers;
+use novamind_worker::message::Message;
 
 /// How often a frame is drawn while only time passes.
 const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
@@ -81,9 +65,9 @@ pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option
     if let Some(effect) = start {
         app.start_with(effect);
     }
-    let screen = TerminalScreen::take(again)?;
+    let screen = TerminalScreen::take()?;
     listen(sender.clone());
-    let mut console = Console { app, workers, screen, messages, sender };
+    let mut console = Console { app, workers, screen, messages, sender, again };
     let end = console.run();
     let Console { screen, workers, .. } = console;
     drop(screen);
@@ -97,6 +81,8 @@ struct Console {
     screen: TerminalScreen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
+    /// Command that resumes the newest run.
+    again: String,
 }
 
 impl Console {
@@ -105,7 +91,11 @@ impl Console {
             if let Some(end) = self.carry_out()? {
                 return Ok(end);
             }
-            self.screen.draw(&mut self.app)?;
+            self.screen.draw(|buffer| {
+                let drawn = frame::draw(&self.app, buffer);
+                (self.app.clicks, self.app.page, self.app.window) = (drawn.clicks, drawn.page, drawn.window);
+                drawn.cursor
+            })?;
             let patience = if self.app.is_waiting() { BETWEEN_SECONDS } else { FOREVER };
             match self
                 .messages
@@ -170,7 +160,9 @@ impl Console {
             Stage::Run(run) => run.company.folder.as_ref().map(|folder| folder.display().to_string()),
             Stage::Menu(_) | Stage::Visit(_) => None,
         };
-        terminal::remember_run(folder);
+        set_panic_note(folder.map(|folder| {
+            format!("novamind: everything confirmed is safe in {folder}; `{}` continues", self.again)
+        }));
         Ok(None)
     }
 }

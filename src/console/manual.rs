@@ -1,7 +1,8 @@
 //! Every key of the console as text, made from the table of actions: for the terminal and for the documents.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
-use super::keys::{Keys, written};
+use super::keys::Keys;
+use novamind_tui::chord::written;
 
 /// Actions of each place that has any, with their keys: the place, then title, keys and explanation of each action.
 fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
@@ -64,7 +65,7 @@ mod tests {
 
     #[test]
     fn documents_have_the_keys_that_the_program_has() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/interfaces/keys.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/interfaces/keys.md");
         let page = std::fs::read_to_string(path).expect("the page of keys");
         let shipped = format!("{}\n", markdown(&Keys::shipped()).trim_end());
         if page.ends_with(&shipped) {

@@ -10,7 +10,7 @@ use ratatui::{Terminal, TerminalOptions, Viewport};
 
 use super::app::Settings;
 use super::headless::{Headless, event};
-use super::message::Message;
+use novamind_worker::message::Message;
 
 /// Window that is drawn: columns, rows.
 const WINDOW: (u16, u16) = (200, 60);
@@ -128,15 +128,15 @@ impl Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::glyphs::Glyphs;
     use crate::keys::Keys;
-    use crate::theme::Theme;
     use novamind_session::{Configuration, NewRun, Session, Storage};
+    use novamind_tui::glyphs::Glyphs;
+    use novamind_tui::theme::Theme;
 
     fn settings(runs: &std::path::Path) -> Settings {
         let configuration = Configuration::shipped();
         Settings {
-            theme: Theme::find("dark", &configuration).expect("a theme"),
+            theme: Theme::bundled("dark").expect("a theme"),
             keys: Keys::shipped(),
             glyphs: Glyphs::Braille,
             configuration,

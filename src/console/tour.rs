@@ -8,14 +8,14 @@ use serde_json::Value;
 use unicode_width::UnicodeWidthStr;
 
 use super::action::{ACTIONS, Action};
-use super::canvas::{Canvas, Click, rows_of};
-use super::company::Company;
+use super::context::ScreenId;
 use super::keys::Keys;
-use super::screens::ScreenId;
-use super::text::wrapped;
-use super::theme::Role;
 use novamind_session::NewRun;
 use novamind_tools::{Numbers, ToolId};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// How a step shows that it was done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -194,7 +194,7 @@ impl Tour {
             right -= width;
             let button = Rect { x: right, width, height: 1, ..area };
             canvas.text(button, &words, Role::Key);
-            canvas.click(button, Click::Do(action));
+            canvas.click(button, Click::Do(action.into()));
         }
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
         for (row, (line, press)) in rows_of(below).zip(self.lines(keys, numbers, area.width)) {
@@ -231,12 +231,12 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::company::Company;
     use crate::test_kit::{company, painted, played};
     use novamind_report::fit::Beside;
     use novamind_report::needs::Place;
     use novamind_session::identifiers::Group;
     use novamind_session::{Configuration, Session, Via};
+    use novamind_worker::company::Company;
 
     fn facts(company: &Company) -> TourFacts<'_> {
         TourFacts {

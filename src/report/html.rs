@@ -2,14 +2,14 @@
 
 use super::page::{Bar, Block, Fact, Page, Table};
 use super::svg;
-use novamind_base::notation::acts;
+use novamind_base::notation::escaped_html;
 
 /// The style of the page.
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
 /// The page as HTML.
 pub fn write(page: &Page) -> String {
-    let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escaped(tag))).collect();
+    let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escaped_html(tag))).collect();
     let mut body = String::new();
     let folded = page.blocks.iter().filter(|block| matches!(block, Block::Folded { .. })).count();
     let mut shape = Shape { charts: 0, unfolded: folded <= MOST_UNFOLDED };
@@ -20,7 +20,7 @@ pub fn write(page: &Page) -> String {
                 body.push_str("</section>\n");
             }
             open = true;
-            body.push_str(&format!("<section>\n<h2>{}</h2>\n", escaped(text)));
+            body.push_str(&format!("<section>\n<h2>{}</h2>\n", escaped_html(text)));
         } else {
             body.push_str(&written(block, &mut shape));
         }
@@ -34,9 +34,9 @@ pub fn write(page: &Page) -> String {
          <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n\
          <body>\n<main>\n<header>\n<p class=\"brand\">{title}</p>\n<h1>{headline}</h1>\n<ul class=\"tags\">{tags}</ul>\n\
          </header>\n{body}<footer><p>{foot}</p></footer>\n</main>\n</body>\n</html>\n",
-        title = escaped(&page.title),
-        headline = escaped(&page.headline),
-        foot = escaped(&page.foot),
+        title = escaped_html(&page.title),
+        headline = escaped_html(&page.headline),
+        foot = escaped_html(&page.foot),
     )
 }
 
@@ -53,10 +53,10 @@ struct Shape {
 
 fn written(block: &Block, shape: &mut Shape) -> String {
     match block {
-        Block::Heading(text) => format!("<h2>{}</h2>\n", escaped(text)),
-        Block::Text(text) => format!("<p>{}</p>\n", escaped(text)),
-        Block::Note(text) => format!("<p class=\"note\">{}</p>\n", escaped(text)),
-        Block::Warning(text) => format!("<p class=\"warning\">{}</p>\n", escaped(text)),
+        Block::Heading(text) => format!("<h2>{}</h2>\n", escaped_html(text)),
+        Block::Text(text) => format!("<p>{}</p>\n", escaped_html(text)),
+        Block::Note(text) => format!("<p class=\"note\">{}</p>\n", escaped_html(text)),
+        Block::Warning(text) => format!("<p class=\"warning\">{}</p>\n", escaped_html(text)),
         Block::Facts(facts) => {
             let class = if facts.len().is_multiple_of(3) { "facts thirds" } else { "facts" };
             format!("<dl class=\"{class}\">\n{}</dl>\n", facts.iter().map(fact).collect::<String>())
@@ -69,37 +69,37 @@ fn written(block: &Block, shape: &mut Shape) -> String {
             shape.charts += 1;
             format!(
                 "<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n",
-                escaped(&chart.title),
+                escaped_html(&chart.title),
                 svg::draw(chart, shape.charts)
             )
         }
         Block::Folded { title, note, lines, points } => {
-            let lines: String = lines.iter().map(|line| format!("<p>{}</p>\n", escaped(line))).collect();
+            let lines: String = lines.iter().map(|line| format!("<p>{}</p>\n", escaped_html(line))).collect();
             let points = if points.is_empty() { String::new() } else { list(points) };
             let open = if shape.unfolded { " open=\"open\"" } else { "" };
             format!(
                 "<details{open}>\n<summary><span>{}</span> <span class=\"amount\">{}</span></summary>\n{lines}{points}</details>\n",
-                escaped(title),
-                escaped(note)
+                escaped_html(title),
+                escaped_html(note)
             )
         }
     }
 }
 
 fn list(lines: &[String]) -> String {
-    let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escaped(line))).collect();
+    let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escaped_html(line))).collect();
     format!("<ul>\n{items}</ul>\n")
 }
 
 fn fact(fact: &Fact) -> String {
     let note = match fact.note.is_empty() {
         true => String::new(),
-        false => format!("<dd class=\"note\">{}</dd>", escaped(&fact.note)),
+        false => format!("<dd class=\"note\">{}</dd>", escaped_html(&fact.note)),
     };
     format!(
         "<div><dt>{}</dt><dd class=\"value\">{}</dd>{note}</div>\n",
-        escaped(&fact.name),
-        escaped(&fact.value)
+        escaped_html(&fact.name),
+        escaped_html(&fact.value)
     )
 }
 
@@ -108,13 +108,13 @@ fn table(table: &Table) -> String {
     let head: String = table
         .columns
         .iter()
-        .map(|(name, number)| format!("<th scope=\"col\"{}>{}</th>", class(*number), escaped(name)))
+        .map(|(name, number)| format!("<th scope=\"col\"{}>{}</th>", class(*number), escaped_html(name)))
         .collect();
     let row = |row: &Vec<String>| {
         let cells: String = row
             .iter()
             .zip(&table.columns)
-            .map(|(cell, (_, number))| format!("<td{}>{}</td>", class(*number), escaped(cell)))
+            .map(|(cell, (_, number))| format!("<td{}>{}</td>", class(*number), escaped_html(cell)))
             .collect();
         format!("<tr>{cells}</tr>\n")
     };
@@ -129,28 +129,10 @@ fn bar(bar: &Bar) -> String {
     format!(
         "<li{class}><span class=\"name\">{}</span><span class=\"amount\">{}</span>\
          <span class=\"track\"><span style=\"width:{:.1}%\"></span></span></li>\n",
-        escaped(&bar.name),
-        escaped(&bar.shown),
+        escaped_html(&bar.name),
+        escaped_html(&bar.shown),
         bar.share.clamp(0.0, 1.0) * 100.0
     )
-}
-
-/// Text that means itself in HTML and in its attributes; what XML forbids is left out.
-pub fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            '\n' | '\t' => safe.push(' '),
-            letter if acts(letter) => {}
-            letter => safe.push(letter),
-        }
-    }
-    safe
 }
 
 #[cfg(test)]
@@ -205,7 +187,7 @@ mod tests {
         let markdown = as_markdown(&story);
         assert!(markdown.contains("otherwise we go back \\| \\<b\\>B\\</b\\>"), "{markdown}");
         assert!(markdown.contains("\\*three\\* plans \\& fair"), "{markdown}");
-        assert_eq!(escaped("<a b=\"c\">'&\u{7}\n"), "&lt;a b=&quot;c&quot;&gt;&#39;&amp; ");
+        assert_eq!(escaped_html("<a b=\"c\">'&\u{7}\n"), "&lt;a b=&quot;c&quot;&gt;&#39;&amp; ");
     }
 
     #[test]

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::html::escaped;
 use super::page::{Band, Chart, Curve, Part, Plot};
 use super::plot::AxisScale;
 use super::words::{dollar_tick, money, tick, whole};
+use novamind_base::notation::escaped_html;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 66.0;
@@ -133,8 +133,8 @@ pub fn draw(chart: &Chart, number: usize) -> String {
     format!(
         "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-labelledby=\"t{number} d{number}\">\n\
          <title id=\"t{number}\">{}</title>\n<desc id=\"d{number}\">{}</desc>\n{inside}</svg>\n",
-        escaped(&chart.title),
-        escaped(&chart.summary)
+        escaped_html(&chart.title),
+        escaped_html(&chart.summary)
     )
 }
 
@@ -152,8 +152,8 @@ pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
             "<g transform=\"translate(0 {below})\" role=\"img\" aria-labelledby=\"t{at} d{at}\">\n\
              <title id=\"t{at}\">{name}</title>\n<desc id=\"d{at}\">{}</desc>\n\
              <text class=\"name\" x=\"{LEFT}\" y=\"16\">{name}</text>\n<g transform=\"translate(0 {HEAD})\">\n{inside}</g>\n</g>",
-            escaped(&part.chart.summary),
-            name = escaped(&part.chart.title)
+            escaped_html(&part.chart.summary),
+            name = escaped_html(&part.chart.title)
         );
         below += height + HEAD + 10.0;
     }
@@ -161,7 +161,7 @@ pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {below}\" width=\"{WIDTH}\" height=\"{below}\" \
          font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\">\n<title>{}</title>\n<style>\n{STYLE}</style>\n\
          <rect class=\"paper\" width=\"{WIDTH}\" height=\"{below}\"/>\n{all}</svg>\n",
-        escaped(title)
+        escaped_html(title)
     )
 }
 
@@ -244,7 +244,7 @@ fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
             "<text class=\"label end\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             LEFT - 8.0,
             y + 4.0,
-            escaped(&label(value))
+            escaped_html(&label(value))
         );
     }
     let below = sheet.top + INSIDE + 16.0;
@@ -261,7 +261,7 @@ fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
         svg,
         "<text class=\"label middle\" x=\"{middle:.1}\" y=\"{:.1}\">{}</text>",
         below + 18.0,
-        escaped(chart.across)
+        escaped_html(chart.across)
     );
 }
 
@@ -279,7 +279,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, at: usize, sheet: &Sheet) {
         "<polyline class=\"line s{}\" points=\"{}\"><title>{}</title></polyline>",
         at + 1,
         points.join(" "),
-        escaped(&curve.name)
+        escaped_html(&curve.name)
     );
 }
 
@@ -292,7 +292,7 @@ fn draw_band(svg: &mut String, band: &Band, sheet: &Sheet) {
         svg,
         "<polygon class=\"band\" points=\"{}\"><title>{}</title></polygon>",
         points.join(" "),
-        escaped(&band.name)
+        escaped_html(&band.name)
     );
 }
 
@@ -320,9 +320,9 @@ fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, shee
                 number + 1,
                 sheet.across(*place) - width / 2.0,
                 (bottom - top).max(0.0),
-                escaped(chart.across),
+                escaped_html(chart.across),
                 place,
-                escaped(&part.name),
+                escaped_html(&part.name),
                 write(value)
             );
         }
@@ -376,7 +376,7 @@ fn legend(keys: &[(Sign, String)]) -> (String, f64) {
             "<text class=\"label\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             x + 33.0,
             y + 4.0,
-            escaped(name)
+            escaped_html(name)
         );
         x += width;
     }

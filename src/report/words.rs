@@ -1,5 +1,6 @@
 //! How reports write figures and name what they are.
 
+pub use novamind_base::notation::count;
 use novamind_base::notation::{compact, grouped, signed_dollars};
 use novamind_session::{BranchOrigin, Category, FirstChange, Observation};
 
@@ -79,16 +80,6 @@ pub fn range(least: f64, most: f64, decimals: usize) -> String {
 /// A difference of shares in percentage points: `9.3 pt`. Shares are never compared in percent of each other.
 pub fn points(difference: f64, decimals: usize) -> String {
     format!("{} pt", grouped(100.0 * difference, decimals))
-}
-
-/// A count with its noun: `1 week`, `3 weeks`.
-pub fn count(number: u32, noun: &str) -> String {
-    let plural = match noun.strip_suffix("ny") {
-        _ if number == 1 => noun.to_owned(),
-        Some(stem) => format!("{stem}nies"),
-        None => format!("{noun}s"),
-    };
-    format!("{} {plural}", whole(f64::from(number)))
 }
 
 /// A value on an axis, without zeros that say nothing: `1.5M`, `200k`, `0`.

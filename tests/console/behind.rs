@@ -1,6 +1,6 @@
 //! A database that cannot be written: the screen says so as long as it lasts, and asks again when it is over.
 
-use novamind::console::message::{Message, News};
+use novamind::worker::message::{Message, News};
 
 use super::harness::Console;
 

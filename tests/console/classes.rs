@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::console::theme::Theme;
 use novamind::course::{Class, ClassCollection, ClassSources, Handout, ToHandOut};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Configuration, Lesson, Session, Via};
+use novamind::session::{Access, Lesson, Session, Via};
+use novamind::tui::theme::Theme;
 use serde_json::json;
 
 use super::harness::Console;
@@ -123,7 +123,7 @@ fn a_class_is_a_screen_of_the_start_menu() {
         let letters: Vec<String> = ["dark", "light"]
             .into_iter()
             .map(|theme| {
-                console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+                console.app.theme = Theme::bundled(theme).expect("a theme");
                 console.screen()
             })
             .collect();

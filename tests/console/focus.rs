@@ -1,8 +1,7 @@
 //! Where the focus is: how it is seen, which keys it has, and what it keeps.
 
-use novamind::console::glyphs::Glyphs;
-use novamind::console::theme::Theme;
-use novamind::session::Configuration;
+use novamind::tui::glyphs::Glyphs;
+use novamind::tui::theme::Theme;
 
 use super::harness::Console;
 
@@ -11,7 +10,7 @@ fn the_focus_is_seen_without_colour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     for theme in ["dark", "light", "high-contrast", "mono"] {
-        console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+        console.app.theme = Theme::bundled(theme).expect("a theme");
         for screen in ["1", "2", "3", "4", "5", "6", "7", "8", "0"] {
             console.press(screen);
             let letters = console.screen();

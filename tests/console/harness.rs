@@ -5,11 +5,11 @@ use std::path::Path;
 
 use crossterm::event::Event;
 use novamind::console::app::Settings;
-use novamind::console::glyphs::Glyphs;
 use novamind::console::headless::Headless;
 use novamind::console::keys::Keys;
-use novamind::console::theme::Theme;
+use novamind::console::themes;
 use novamind::session::Configuration;
+use novamind::tui::glyphs::Glyphs;
 use ratatui::buffer::Buffer;
 
 /// A console that is played by a test.
@@ -45,7 +45,7 @@ impl Console {
     /// What a console is started with.
     pub fn settings(configuration: Configuration, runs: &Path) -> Settings {
         Settings {
-            theme: Theme::find("dark", &configuration).expect("a theme"),
+            theme: themes::find("dark", &configuration).expect("a theme"),
             keys: Keys::shipped(),
             glyphs: Glyphs::Braille,
             configuration,

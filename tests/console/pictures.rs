@@ -2,8 +2,8 @@
 //! week 45. The pictures in `snapshots/` are those of a usual window; small and large windows are checked for cut words and empty
 //! halves. `cargo insta review` shows what a change does to them.
 
-use novamind::console::theme::Theme;
-use novamind::session::{Configuration, Goal, Mode};
+use novamind::session::{Goal, Mode};
+use novamind::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 
 use super::company::led;
@@ -76,7 +76,7 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
         console.size = size;
         let mut letters: Option<String> = None;
         for theme in THEMES {
-            console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+            console.app.theme = Theme::bundled(theme).expect("a theme");
             let buffer = console.draw();
             let own = letters_of(&buffer);
             if let Some(before) = &letters {

@@ -243,7 +243,7 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
         std::thread::yield_now();
     }
     // A hangup.
-    console.app.update(novamind::console::message::Message::Signal(1));
+    console.app.update(novamind::worker::message::Message::Signal(1));
     console.settle().expect("it leaves");
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));

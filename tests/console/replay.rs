@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::console::request::Recorded;
 use novamind::session::{Goal, Mode, Session, Via, list_runs, verify};
+use novamind::worker::request::Recorded;
 use serde_json::json;
 
 use super::harness::Console;

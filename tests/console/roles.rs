@@ -1,7 +1,6 @@
 //! What colours say: words stand in the role of what they mean, in every theme.
 
-use novamind::console::theme::{Role, Theme};
-use novamind::session::Configuration;
+use novamind::tui::theme::{Role, Theme};
 
 use super::company::led;
 use super::harness::Console;
@@ -32,7 +31,7 @@ fn words_stand_in_the_role_of_what_they_mean() {
     led("crisis.toml", 42, 210, runs.path());
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     for theme in ["dark", "light", "high-contrast"] {
-        console.app.theme = Theme::find(theme, &Configuration::shipped()).expect("a theme");
+        console.app.theme = Theme::bundled(theme).expect("a theme");
         console.press("7");
         assert_role(&mut console, "7 Market", Role::TabHere);
         assert_role(&mut console, "2 Cash", Role::Tab);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use novamind::console::glyphs::Glyphs;
+use novamind::tui::glyphs::Glyphs;
 
 use super::harness::Console;
 

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::console::glyphs::Glyphs;
-use novamind::console::request::{Recorded, Request};
 use novamind::session::{Access, Activity, ConsentMeans, Goal, Mode, Record, Trajectory, lines_afterwards};
 use novamind::study::{CodeDigest, Study, VisitEvent, visits};
+use novamind::tui::glyphs::Glyphs;
+use novamind::worker::request::{Recorded, Request};
 
 use super::harness::Console;
 

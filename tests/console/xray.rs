@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crossterm::event::Event;
-use novamind::console::request::Recorded;
 use novamind::session::{Access, Goal, Mode, Record, Session, lines_afterwards, verify};
+use novamind::worker::request::Recorded;
 use novamind::world::identifiers::Group;
 
 use super::harness::Console;

@@ -5,8 +5,8 @@ use std::ops::{Deref, DerefMut};
 use std::time::Duration;
 
 use crossterm::event::Event;
-use novamind::console::message::Message;
 use novamind::session::ScriptedClock;
+use novamind::worker::message::Message;
 
 use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};
 use crate::harness::Console;

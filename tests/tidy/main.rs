@@ -201,7 +201,7 @@ fn only_the_command_line_prints() {
     let quiet = sources().into_iter().filter(|file| {
         !matches!(file.house().as_str(), "cli" | "plain" | "main")
             && !file.path.ends_with("build.rs")
-            && !file.path.ends_with("console/terminal.rs")
+            && !file.path.ends_with("tui/terminal.rs")
     });
     let complaints: Vec<String> = quiet.flat_map(|file| file.complaints(complaint)).collect();
     assert_none(&complaints);

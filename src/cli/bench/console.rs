@@ -1,12 +1,12 @@
 //! The rows of the speed table that the console adds.
 
 use crate::console::app::Settings;
-use crate::console::glyphs::Glyphs;
 use crate::console::keys::Keys;
 use crate::console::speed;
-use crate::console::theme::Theme;
+use crate::console::themes;
 use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, keep_a_large_company};
 use crate::lab::play_opponents;
+use crate::tui::glyphs::Glyphs;
 
 /// Weeks whose keys are measured for each repetition: some hundred keys.
 const WEEKS: usize = 6;
@@ -40,7 +40,7 @@ pub const CASES: &[Case] = &[
 fn settings(bench: &Bench) -> Result<Settings, BenchError> {
     let configuration = bench.configuration.clone();
     Ok(Settings {
-        theme: Theme::find("dark", &configuration).map_err(BenchError::new)?,
+        theme: themes::find("dark", &configuration).map_err(BenchError::new)?,
         keys: Keys::of_user(&configuration).map_err(BenchError::new)?,
         glyphs: Glyphs::Braille,
         configuration,

@@ -10,14 +10,14 @@ use super::super::pictures::size;
 use super::super::{Context, Failure, print};
 use super::note_look;
 use crate::console::app::Settings;
-use crate::console::asciicast::Asciicast;
-use crate::console::glyphs::Glyphs;
 use crate::console::headless::Headless;
 use crate::console::keys::Keys;
-use crate::console::request::Recorded;
-use crate::console::theme::Theme;
+use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::session::Goal;
+use crate::tui::asciicast::Asciicast;
+use crate::tui::glyphs::Glyphs;
+use crate::worker::request::Recorded;
 
 /// How long the frame after an action stays, and the one after a week, at speed 1.
 const AFTER_ACTION: Duration = Duration::from_millis(700);
@@ -56,7 +56,7 @@ pub fn record(
     };
     note_look(&recorded, &format!("cast {first}"), context)?;
     let settings = Settings {
-        theme: Theme::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        theme: themes::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
         keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
         glyphs: Glyphs::Braille,
         configuration: context.configuration.clone(),

@@ -5,9 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use super::{App, Order};
 use crate::dialogs::branches::BranchesPage;
-use crate::resimulation::{BranchesAsked, BranchesQuestion};
-use crate::worker::Job;
 use novamind_session::week_of;
+use novamind_worker::Job;
+use novamind_worker::resimulation::{BranchesAsked, BranchesQuestion};
 
 /// Weeks before the end of a run that is over at which a what-if begins.
 const WEEKS_BEFORE_END: u32 = 12;

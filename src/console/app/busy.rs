@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::DaysRun;
-use crate::request::SCRIPT_RUNS;
+use novamind_worker::request::SCRIPT_RUNS;
 
 /// Work that the person may have to wait for.
 #[derive(Debug, Clone)]

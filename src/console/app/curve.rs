@@ -2,8 +2,8 @@
 
 use super::{App, Order};
 use crate::dialogs::curve::CurvePage;
-use crate::worker::Job;
 use novamind_session::identifiers::Group;
+use novamind_worker::Job;
 
 impl App {
     /// The curve of a group beside the plans; of the first known one if none is named.

@@ -2,15 +2,16 @@
 
 use super::{App, Layer, Stage};
 use crate::action::Action;
+use crate::context::{Look, ScreenId};
 use crate::dialogs::explain::Explain;
 use crate::dialogs::glossary::Glossary;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::{Look, ScreenId, ScreenState};
+use crate::screens::ScreenState;
 use crate::tour::{self, TourFacts};
 use crate::visit::VisitState;
 use novamind_glossary::Subject;
 use novamind_session::Access;
+use novamind_worker::request::Request;
 
 impl App {
     /// Explains the figure that is selected, or the screen if none is.

@@ -9,7 +9,7 @@ use ratatui::layout::Position;
 use super::{App, Closing, Layer, Order, Stage};
 use crate::action::{Action, Scope};
 use crate::attention::Edit;
-use crate::canvas::Click;
+use crate::context::{Figure, Look, ScreenId};
 use crate::dialogs::help::Help;
 use crate::dialogs::palette::Palette;
 use crate::dialogs::reader::Reader;
@@ -18,13 +18,14 @@ use crate::dialogs::rows::RowsBehind;
 use crate::dialogs::why::WhyBox;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
-use crate::keys::{Chord, Meaning, written};
-use crate::preferences::Preferences;
-use crate::request::Request;
-use crate::resimulation::WhyAsked;
-use crate::screens::{Figure, Look, ScreenId};
-use crate::text::number;
-use crate::worker::Job;
+use crate::keys::Meaning;
+use novamind_tui::canvas::Click;
+use novamind_tui::chord::{Chord, written};
+use novamind_tui::text::number;
+use novamind_worker::Job;
+use novamind_worker::preferences::Preferences;
+use novamind_worker::request::Request;
+use novamind_worker::resimulation::WhyAsked;
 
 /// What stops a script that runs.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
@@ -171,7 +172,11 @@ impl App {
         let hit = self.clicks.iter().rev().find(|(area, _)| area.contains(at)).map(|(_, click)| *click);
         self.note = None;
         match hit {
-            Some(Click::Do(action)) => self.act(action),
+            Some(Click::Do(command)) => {
+                if let Some(action) = Action::of(command) {
+                    self.act(action);
+                }
+            }
             Some(Click::Row(_, row)) if !self.layers.is_empty() => {
                 self.in_dialog(|dialog, look| dialog.click(row, look));
             }

@@ -1,14 +1,14 @@
 //! Leaving a run: what is open counts as left, the run is saved and closed, and then comes the menu or the shell.
 
 use super::{App, Busy, Order, Stage};
+use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::ScreenId;
 use crate::screens::menu::Menu;
-use crate::worker::Job;
 use novamind_session::Access;
 use novamind_session::record::LeavingCause;
+use novamind_worker::Job;
+use novamind_worker::request::Request;
 
 /// What follows once the run is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

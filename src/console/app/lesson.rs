@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use super::{App, Layer, Run, Stage};
 use crate::action::Action;
-use crate::company::Company;
+use crate::context::ScreenId;
 use crate::dialogs::again::TryAgain;
 use crate::dialogs::confirm::Confirm;
 use crate::dialogs::debrief::DebriefPage;
 use crate::dialogs::lesson::LessonDialog;
 use crate::effect::Effect;
 use crate::lesson::{WIDE, why_closed};
-use crate::request::{LessonRequest, Request};
-use crate::screens::ScreenId;
 use novamind_report::count;
 use novamind_session::{Debrief, LessonPage, Refusal};
+use novamind_worker::company::Company;
+use novamind_worker::request::{LessonRequest, Request};
 
 /// The rationale of a week for which the lesson asks for none.
 const NO_RATIONALE: &str = "the lesson asks for none";

@@ -2,9 +2,9 @@
 
 use super::App;
 use crate::effect::Effect;
-use crate::request::Request;
 use novamind_session::record::{DraftOutcome, Limit, LimitEvent, LimitScope};
 use novamind_session::{DraftsKept, SessionRules, TIME_LIMIT, TimeLeft};
+use novamind_worker::request::Request;
 
 /// What was told of time limits.
 #[derive(Default)]

@@ -6,16 +6,12 @@ use std::sync::Arc;
 use super::lesson::LessonView;
 use super::{App, Layer, Order, Run, Stage};
 use crate::action::Action;
-use crate::company::Company;
+use crate::context::{Look, ScreenId};
 use crate::dialogs::filing::FilingDialog;
 use crate::dialogs::final_page::FinalPage;
 use crate::dialogs::report::Report;
 use crate::effect::Effect;
-use crate::look_inside::DaysRan;
-use crate::message::{Instead, News};
-use crate::request::Request;
-use crate::screens::{Look, ScreenId, Screens};
-use crate::text::number;
+use crate::screens::Screens;
 use crate::tour::Tour;
 use crate::viewer::Viewer;
 use novamind_base::notation::{dollars, signed_dollars};
@@ -23,6 +19,11 @@ use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
 use novamind_session::{Change, Interrupt, Refusal, Week};
+use novamind_tui::text::number;
+use novamind_worker::company::Company;
+use novamind_worker::look_inside::DaysRan;
+use novamind_worker::message::{Instead, News};
+use novamind_worker::request::Request;
 
 impl App {
     pub(super) fn news(&mut self, news: News) {

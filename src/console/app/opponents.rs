@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::{App, Order};
 use crate::dialogs::opponents::OpponentsPage;
-use crate::worker::Job;
+use novamind_worker::Job;
 
 impl App {
     /// The strong policies beside the run that is over.

@@ -1,15 +1,15 @@
 //! From effects to orders.
 
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
-use crate::company::Company;
+use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::dialogs::reader::Reader;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::ScreenId;
-use crate::worker::{Job, Question};
 use novamind_session::record::DraftOutcome;
 use novamind_session::{Goal, QuerySource};
+use novamind_worker::company::Company;
+use novamind_worker::request::Request;
+use novamind_worker::{Job, Question};
 
 /// Days of a week, of which starts of lessons are made.
 const DAYS_PER_WEEK: u32 = 7;
@@ -113,7 +113,7 @@ impl App {
                 self.load();
             }
             Effect::Copy(text) => {
-                self.say(format!("copied: {}", crate::canvas::fit(&text, 60)));
+                self.say(format!("copied: {}", novamind_tui::canvas::fit(&text, 60)));
                 self.orders.push(Order::Copy(text));
             }
             Effect::ShowText(title, text) => {

@@ -2,10 +2,10 @@
 //! that is recorded.
 
 use super::{App, Order, Run, Stage};
-use crate::company::Company;
-use crate::screens::ScreenId;
-use crate::worker::Job;
+use crate::context::ScreenId;
 use novamind_session::{HiddenValues, REFUSED_LOOK, Refusal};
+use novamind_worker::Job;
+use novamind_worker::company::Company;
 use std::sync::Arc;
 
 /// Whether they are shown, and which were asked for.

@@ -7,14 +7,14 @@ use crossterm::event::{Event, KeyEventKind, MouseEventKind};
 
 use super::{App, Layer, Order, Run, Stage};
 use crate::attention::Edit;
-use crate::request::Request;
-use crate::screens::ScreenId;
-use crate::worker::Job;
+use crate::context::ScreenId;
 use novamind_session::record::{
     Activity, DialogOutcome, Draft, DraftOutcome, Help, PresenceEvent, Select, View,
 };
 use novamind_session::{DraftsKept, Interface};
 use novamind_tools::ToolId;
+use novamind_worker::Job;
+use novamind_worker::request::Request;
 
 /// Texts of the dialog before a week.
 const OF_FILING: [&str; 2] = ["rationale", "forecasts"];
@@ -223,7 +223,7 @@ impl App {
     /// The object that is open on the screen.
     fn look_at_screen(&self) -> Option<(&'static str, String)> {
         let run = self.run()?;
-        let look = crate::screens::Look { company: &run.company, keys: &self.keys, page: self.page };
+        let look = crate::context::Look { company: &run.company, keys: &self.keys, page: self.page };
         run.screens.get(run.here).open_object(&look)
     }
 
@@ -271,7 +271,7 @@ impl App {
         self.keep_texts_in_time(now);
     }
 
-    /// After how long [`crate::message::Message::Time`] is due; none while nothing depends on it.
+    /// After how long [`novamind_worker::message::Message::Time`] is due; none while nothing depends on it.
     pub fn wakes_after(&self) -> Option<Duration> {
         if !self.is_played() || self.stopwatch.is_halted() {
             return None;

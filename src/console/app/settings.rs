@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::glyphs::Glyphs;
 use crate::keys::Keys;
-use crate::theme::Theme;
 use novamind_report::opponents::PlayOpponents;
 use novamind_session::Configuration;
+use novamind_tui::glyphs::Glyphs;
+use novamind_tui::theme::Theme;
 
 /// How the console looks and where it keeps things.
 pub struct Settings {

@@ -6,12 +6,13 @@ use unicode_width::UnicodeWidthStr;
 
 use super::{App, Closing, Order, Stage};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::dialogs::pause::PauseReason;
-use crate::keys::{Chord, Keys};
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::worker::Job;
+use crate::keys::Keys;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::chord::Chord;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_worker::Job;
 
 /// What lies over everything while the clock is stopped.
 pub struct Cover {

@@ -2,7 +2,7 @@
 
 use super::{App, Run, Stage};
 use crate::action::Action;
-use crate::screens::{Look, ScreenId};
+use crate::context::{Look, ScreenId};
 
 /// Most places that are remembered.
 const LONGEST: usize = 8;

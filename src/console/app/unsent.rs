@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::{App, Layer, Order, Stage};
 use crate::dialogs::restore::Restore;
-use crate::worker::Job;
 use novamind_session::UnsentTexts;
 use novamind_session::record::{Draft, DraftOutcome};
+use novamind_worker::Job;
 
 /// Texts that change are kept this often.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);

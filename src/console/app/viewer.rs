@@ -7,10 +7,10 @@ use crate::action::{Action, Scope};
 use crate::dialogs::reader::Reader;
 use crate::dialogs::seek::Seek;
 use crate::dialogs::take_over::TakeOver;
-use crate::message::Arrival;
 use crate::viewer::{Viewer, told};
-use crate::worker::Job;
 use novamind_session::Goal;
+use novamind_worker::Job;
+use novamind_worker::message::Arrival;
 
 /// What only the person who plays can do.
 const OF_PLAYERS: [Action; 17] = [

@@ -1,13 +1,13 @@
 //! A participant's way through a study: the pages around the runs, and what cannot be reached meanwhile.
 
 use super::{App, Closing, Layer, Order, Stage};
-use crate::message::VisitNews;
-use crate::request::{Request, VisitRequest};
 use crate::screens::menu::Menu;
 use crate::visit::questions::QuestionPage;
 use crate::visit::{VisitPage, VisitState};
-use crate::worker::Job;
 use novamind_study::{NextStep, Study};
+use novamind_worker::Job;
+use novamind_worker::message::VisitNews;
+use novamind_worker::request::{Request, VisitRequest};
 
 /// Said where something is not for participants.
 const KEPT: &str = "in a study only your own session is open";

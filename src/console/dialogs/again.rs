@@ -5,12 +5,12 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::{LessonRequest, Request};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::request::{LessonRequest, Request};
 
 /// The question.
 pub struct TryAgain {

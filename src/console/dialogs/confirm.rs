@@ -5,11 +5,11 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, Click, centered};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// A question.
 pub struct Confirm {
@@ -86,7 +86,7 @@ impl Dialog for Confirm {
         for (at, action) in self.answers().into_iter().enumerate() {
             let place = Rect { x: row.x + at as u16 * 14, width: 12.min(row.width), ..row };
             canvas.text(place.intersection(row), &look.hint(action), Role::Key);
-            canvas.click(place, Click::Do(action));
+            canvas.click(place, Click::Do(action.into()));
         }
     }
 }

@@ -7,17 +7,17 @@ use ratatui::layout::Rect;
 use super::lesson::begin_part;
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Align, Canvas, centered};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::lesson::{draw_lines, step_to_try};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::{Axis, Line, Scroll, Side, Unit, chart};
 use novamind_report::count;
 use novamind_report::debrief::{headline, in_words};
 use novamind_report::{debrief_as_html, debrief_as_markdown};
 use novamind_session::{Debrief, FigureUnit, Refusal};
+use novamind_tui::canvas::{Align, Canvas, centered};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Axis, Line, Scroll, Side, Unit, chart};
 
 /// Widest page that reads well.
 const WIDEST: u16 = 160;

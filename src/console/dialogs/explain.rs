@@ -7,14 +7,14 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome, term_picture};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
-use crate::screens::{Figure, Look, ScreenId};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_glossary::{Explanation, Subject};
 use novamind_session::Numbers;
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
 
 /// Something that can be chosen below the text.
 #[derive(Debug, Clone, Copy)]

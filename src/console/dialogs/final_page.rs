@@ -9,20 +9,20 @@ use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered, fit};
-use crate::company::Company;
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::Recorded;
-use crate::request::Request;
-use crate::screens::Look;
-use crate::text::{fitting, wrapped};
-use crate::theme::Role;
-use crate::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_base::notation::{dollars, grouped, percent};
 use novamind_report::measures::{ChannelSkill, ENOUGH_LEADS, Measures};
 use novamind_report::ranking::{Standing, Whose, published_targeted_shares, standing};
 use novamind_report::{Story, card_as_svg, card_as_text};
 use novamind_session::{Ended, ForecastScore, Goal, ResultsShown};
+use novamind_tui::canvas::{Canvas, centered, fit};
+use novamind_tui::text::{fitting, wrapped};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
+use novamind_worker::request::Recorded;
+use novamind_worker::request::Request;
 
 /// Widest that reads well.
 const WIDEST: u16 = 124;

@@ -7,14 +7,14 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome, term_picture};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered, rows_of};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
 use novamind_glossary::{Subject, Term, terms};
 use novamind_session::Numbers;
+use novamind_tui::canvas::{Canvas, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
 
 /// The list of terms.
 pub struct Glossary {
@@ -174,8 +174,8 @@ impl Glossary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::company::Company;
     use crate::test_kit::{company, dialog_picture, in_dialog, played};
+    use novamind_worker::company::Company;
 
     #[test]
     fn terms_are_found_by_any_of_their_words_and_opened() {

@@ -4,12 +4,12 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::canvas::{Canvas, centered};
+use crate::context::{Look, PaneKeys, ScreenId};
 use crate::keys::Keys;
-use crate::screens::{Look, PaneKeys, ScreenId};
-use crate::theme::Role;
-use crate::widgets::editor::EDITING;
-use crate::widgets::{Cell, Column, Table};
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::editor::EDITING;
+use novamind_tui::widgets::{Cell, Column, Table};
 
 /// The keys of a place.
 pub struct Help {

@@ -5,16 +5,16 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::context::Look;
 use crate::effect::Effect;
 use crate::lesson::{Where, draw_lines, lines_of, step_to_try};
-use crate::request::{LessonRequest, Request};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::{Field, Scroll};
 use novamind_report::lesson::typed_guess;
 use novamind_session::{LessonPage, LessonQuestion};
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Field, Scroll};
+use novamind_worker::request::{LessonRequest, Request};
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;

@@ -29,12 +29,12 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::canvas::Canvas;
+use super::context::Look;
 use super::effect::Effect;
-use super::message::News;
-use super::screens::Look;
 use novamind_report::Story;
 use novamind_session::{Debrief, Refusal};
+use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -145,12 +145,17 @@ pub trait Dialog {
 
 /// Draws a dialog over an empty screen of a size; what is seen as text.
 #[cfg(test)]
-fn picture(dialog: &dyn Dialog, company: &super::company::Company, width: u16, height: u16) -> String {
+fn picture(
+    dialog: &dyn Dialog,
+    company: &novamind_worker::company::Company,
+    width: u16,
+    height: u16,
+) -> String {
     use super::keys::Keys;
-    use super::theme::Theme;
+    use novamind_tui::theme::Theme;
     let area = Rect::new(0, 0, width, height);
     let mut buffer = ratatui::buffer::Buffer::empty(area);
-    let theme = Theme::find("mono", &novamind_session::Configuration::shipped()).expect("a theme");
+    let theme = Theme::bundled("mono").expect("a theme");
     let keys = Keys::shipped();
     dialog.draw(&mut Canvas::new(&mut buffer, &theme), area, &Look { company, keys: &keys, page: 5 });
     let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();

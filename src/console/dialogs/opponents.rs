@@ -8,16 +8,16 @@ use ratatui::text::Line as TextLine;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered};
-use crate::company::Company;
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::screens::Look;
-use crate::text::{fitting, wrapped};
-use crate::theme::Role;
 use novamind_base::notation::dollars;
 use novamind_report::opponents::{Opponent, Opponents};
 use novamind_session::{Ended, Refusal};
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::text::{fitting, wrapped};
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
 
 /// Widest that reads well, and its rows.
 const SIZE: (u16, u16) = (96, 16);

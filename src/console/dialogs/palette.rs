@@ -5,19 +5,19 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::canvas::{Align, Canvas, Click, centered, rows_of};
-use crate::company::Company;
+use crate::context::{Look, ScreenId};
 use crate::effect::Effect;
-use crate::fuzzy::{self, Found};
 use crate::keys::Keys;
 use crate::lesson::why_closed;
-use crate::screens::{Look, ScreenId};
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::table::first_row;
 use novamind_glossary::Subject;
 use novamind_session::{JournalEntry, Library};
 use novamind_tools::{CATALOGUE, Kind, ToolId};
+use novamind_tui::canvas::{Align, Canvas, Click, centered, rows_of};
+use novamind_tui::fuzzy::{self, Found};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// Tools that stand first before anything is typed.
 const RECENT: usize = 5;

@@ -5,10 +5,10 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use crate::context::Look;
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Text with a title.
 pub struct Reader {

@@ -7,20 +7,20 @@ use unicode_width::UnicodeWidthStr;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, fit};
-use crate::company::Company;
+use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::figures::{self, METRICS};
 use crate::screens::overview::needs::screen_of;
-use crate::screens::{Figure, Look, ScreenId};
-use crate::text::{arrow, flowed, short_dollars, wrapped};
-use crate::theme::Role;
-use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_base::notation::{dollars, grouped, short_dollars, signed_dollars};
 use novamind_report::WeekReport;
 use novamind_report::needs::Need;
 use novamind_report::week::Move;
 use novamind_session::{ScoredForecast, Verdict, WeekFigure};
 use novamind_tools::Forecast;
+use novamind_tui::canvas::{Canvas, Click, centered, fit};
+use novamind_tui::text::{arrow, flowed, wrapped};
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// Widest that reads well.
 const WIDEST: u16 = 116;
@@ -107,7 +107,7 @@ impl Dialog for Report {
         let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
         let inside = canvas.pane(own, &title, "", true);
         canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
-        canvas.click(own, Click::Do(Action::Cancel));
+        canvas.click(own, Click::Do(Action::Cancel.into()));
         for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
         {
             let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
@@ -429,9 +429,9 @@ fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::company::Company;
     use crate::dialogs::picture;
     use crate::test_kit;
+    use novamind_worker::company::Company;
 
     #[test]
     fn the_report_fits_small_windows_and_uses_large_ones() {

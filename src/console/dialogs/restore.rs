@@ -5,11 +5,11 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered, fit};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, centered, fit};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Widest that reads well.
 const WIDEST: u16 = 76;

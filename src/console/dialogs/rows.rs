@@ -5,16 +5,16 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered, rows_of};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::screens::Look;
 use crate::screens::sql::values;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Table;
 use novamind_base::notation::grouped;
 use novamind_session::{Refusal, Rows};
+use novamind_tui::canvas::{Canvas, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
+use novamind_worker::message::News;
 
 /// Most lines of the query that are shown above its rows.
 const QUERY_LINES: usize = 6;

@@ -5,12 +5,12 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::theme::Role;
-use crate::widgets::Field;
 use novamind_session::Goal;
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
 
 /// Asks for the number of a week.
 pub struct Seek {

@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
 use novamind_session::Mode;
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::request::Request;
 
 /// Modes that are offered; a branch is never a baseline.
 const MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];

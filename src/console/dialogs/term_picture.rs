@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::company::Company;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
-use crate::widgets::scale::Unit;
 use novamind_base::notation::{compact, dollars};
 pub use novamind_report::term_picture::has_picture;
 use novamind_report::term_picture::{Across, SeenFigures, TermDrawing, TermLines, TermPicture, term_picture};
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
+use novamind_tui::widgets::scale::Unit;
+use novamind_worker::company::Company;
 
 /// Lowest picture that can be read.
 pub const LEAST_ROWS: u16 = 7;

@@ -8,15 +8,15 @@ use ratatui::text::Line;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, centered, fit, rows_of};
+use crate::context::{Figure, Look};
 use crate::effect::Effect;
-use crate::message::News;
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::spark::bar;
 use novamind_report::why::{CauseLine, equation, heading, lines};
 use novamind_session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
+use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::bar;
+use novamind_worker::message::News;
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn another_week_is_asked_about_and_none_without_a_week_before_it() {
-        let company = crate::company::Company::of(&crate::test_kit::played(4));
+        let company = novamind_worker::company::Company::of(&crate::test_kit::played(4));
         let stop = Arc::new(AtomicBool::new(false));
         let mut dialog = WhyBox::new(asked(), cancellations(), 3, stop.clone());
         assert!(dialog_picture(&dialog, &company, 80, 24).contains("other week"));

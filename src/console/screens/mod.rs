@@ -8,32 +8,17 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::canvas::Canvas;
-use super::company::Company;
+use super::context::{Figure, Look, PaneKeys, ScreenId};
 use super::effect::Effect;
-use super::keys::Keys;
-use super::message::News;
-use super::readings::Reading;
-use novamind_session::{Rows, WeekQuantity};
+use novamind_session::Rows;
+use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
+use novamind_worker::readings::Reading;
 
-/// The list of screens, in the order of their keys: a screen, and the room it lives in.
+/// The module of each screen.
 macro_rules! screens {
     ($($(#[$doc:meta])* $Screen:ident in $room:ident,)*) => {
         $(pub mod $room;)*
-
-        /// Which screen.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum ScreenId { $($(#[$doc])* $Screen,)* }
-
-        impl ScreenId {
-            /// All screens in the order of their keys.
-            pub const ALL: [ScreenId; [$(ScreenId::$Screen),*].len()] = [$(ScreenId::$Screen),*];
-
-            /// The action that shows it.
-            pub fn action(self) -> Action {
-                match self { $(ScreenId::$Screen => Action::$Screen,)* }
-            }
-        }
 
         /// Every screen of a run.
         #[derive(Default)]
@@ -76,75 +61,6 @@ screens! {
     Journal in journal,
     /// Hidden state, where it may be shown.
     Xray in xray,
-}
-
-impl ScreenId {
-    /// Name for the trajectory.
-    pub fn id(self) -> &'static str {
-        self.action().entry().name
-    }
-
-    /// Whether it stands among the screens of a run: the X-ray only where hidden state may be shown.
-    pub fn is_shown_in(self, company: &Company) -> bool {
-        self != ScreenId::Xray || company.may_look_inside
-    }
-}
-
-/// What a screen may look at.
-#[derive(Clone, Copy)]
-pub struct Look<'a> {
-    /// The company.
-    pub company: &'a Company,
-    /// Keys, for hints.
-    pub keys: &'a Keys,
-    /// Rows that the focused list showed last, for paging.
-    pub page: u16,
-}
-
-impl Look<'_> {
-    /// A key with what it does, for borders: `ctrl-s apply`.
-    pub fn hint(&self, action: Action) -> String {
-        match self.keys.label(action) {
-            Some(key) => format!("{key} {}", action.entry().title),
-            None => action.entry().title.to_owned(),
-        }
-    }
-
-    /// Several of them.
-    pub fn hints(&self, actions: &[Action]) -> String {
-        actions.iter().map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
-    }
-}
-
-/// A figure on a screen that can be explained, and followed to the rows that make it up.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Figure {
-    /// What it is here: `cancellations of S1`.
-    pub title: String,
-    /// What explains it: an entry of the glossary (`churn`), a tool or its argument (`set_prices`, `set_prices.A`), or a
-    /// column of a table (`ledger.amount`).
-    pub term: &'static str,
-    /// The question whose answer are the rows behind it, where rows make it up.
-    pub sql: Option<String>,
-    /// The figure of a week that it is, whose change can be explained.
-    pub why: Option<(WeekQuantity, u32)>,
-}
-
-impl Figure {
-    /// The same as a figure of a week whose change can be explained, if it is one.
-    pub fn of_week(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
-        Figure { why: quantity.map(|quantity| (quantity, week)), ..self }
-    }
-}
-
-/// The keys of one pane, for the help.
-pub struct PaneKeys {
-    /// What the pane is called.
-    pub title: String,
-    /// Its scopes, the innermost first, without the global one.
-    pub scopes: Vec<Scope>,
-    /// What one does in it most.
-    pub hints: Vec<Action>,
 }
 
 /// What a screen keeps: it is told what happened, and what the database answered.

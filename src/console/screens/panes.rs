@@ -5,11 +5,12 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Figure, Look, PaneKeys, Screen, ScreenState};
+use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click};
+use crate::context::{Figure, Look, PaneKeys};
 use crate::effect::Effect;
-use crate::widgets::{Field, Table};
+use novamind_tui::canvas::{Canvas, Click};
+use novamind_tui::widgets::{Field, Table};
 
 /// What stands in the border of a pane.
 #[derive(Default)]

@@ -1,11 +1,11 @@
 //! What a person did besides acting, in few words.
 
 use super::told::time;
-use crate::theme::Role;
 use novamind_session::Activity;
 use novamind_session::record::{
     ClockEvent, DialogOutcome, DraftOutcome, LeavingCause, LimitEvent, LimitScope, Presence, PresenceEvent,
 };
+use novamind_tui::theme::Role;
 
 /// An activity in a line.
 pub(super) fn brief(activity: &Activity) -> (String, Role) {

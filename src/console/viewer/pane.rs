@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Viewer;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use crate::context::Look;
 use novamind_session::{Record, RecordView};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Columns a screen needs beside the decisions.
 const OF_SCREEN: u16 = 80;
@@ -83,6 +83,6 @@ impl Viewer {
         let [back, on, whole] = [Action::LineBack, Action::LineForward, Action::DecisionsWhole]
             .map(|action| look.keys.label(action).unwrap_or_default());
         canvas.pane_keys(area, &format!("{back} {on} single actions · {whole} in full"));
-        canvas.click(area, Click::Do(Action::DecisionsWhole));
+        canvas.click(area, Click::Do(Action::DecisionsWhole.into()));
     }
 }

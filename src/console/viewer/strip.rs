@@ -5,8 +5,8 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Viewer;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click};
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, Click};
+use novamind_tui::theme::Role;
 
 /// Least columns of the bar.
 const LEAST_BAR: u16 = 8;
@@ -55,7 +55,7 @@ impl Viewer {
                     .buffer
                     .set_style(own, ratatui::style::Style::new().fg(colour).add_modifier(style.add_modifier));
             }
-            action.iter().for_each(|action| canvas.click(own, Click::Do(*action)));
+            action.iter().for_each(|action| canvas.click(own, Click::Do((*action).into())));
             left = Rect { x: left.x + width, width: left.width - width, ..left };
         }
         if left.width > LEAST_BAR + 2 {

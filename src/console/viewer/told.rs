@@ -2,15 +2,14 @@
 
 use super::activities;
 use crate::screens::journal::entries::in_words;
-use crate::text::short_dollars;
-use crate::theme::Role;
-use novamind_base::notation::{dollars, grouped};
+use novamind_base::notation::{dollars, grouped, short_dollars};
 use novamind_report::count;
 use novamind_report::deals::deals_in_words;
 use novamind_session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
 use novamind_session::{
     Chapter, CompanyNames, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively,
 };
+use novamind_tui::theme::Role;
 
 /// Longest JSON that is written in one line, in bytes.
 const ONE_LINE: usize = 90;

@@ -6,10 +6,10 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::Value;
 
 use crate::action::Action;
-use crate::request::GivenAnswer;
-use crate::widgets::{Editor, Field};
 use novamind_session::steady;
 use novamind_study::{DueQuestion, Form};
+use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::request::GivenAnswer;
 
 /// What was entered so far.
 #[derive(Debug, Clone)]

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::{PageKind, VisitPage, WITHDRAW};
 use crate::action::Action;
-use crate::canvas::{Canvas, centered, rows_of};
 use crate::keys::Keys;
-use crate::text::wrapped;
-use crate::theme::Role;
 use novamind_study::DECLINED;
+use novamind_tui::canvas::{Canvas, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Widest page that reads well.
 const WIDEST: u16 = 84;

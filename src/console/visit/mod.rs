@@ -11,9 +11,9 @@ use crossterm::event::{KeyCode, KeyEvent};
 use super::action::{Action, Scope};
 use super::agreement::{Agreement, READ_FIRST};
 use super::effect::Effect;
-use super::request::{Request, VisitRequest};
-use super::widgets::Field;
 use novamind_study::{DueQuestion, NextStep, Study};
+use novamind_tui::widgets::Field;
+use novamind_worker::request::{Request, VisitRequest};
 
 /// What the console knows of the visit, on pages and in runs.
 pub struct VisitState {

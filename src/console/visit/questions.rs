@@ -8,15 +8,16 @@ use unicode_width::UnicodeWidthStr;
 
 use super::answer::{AnswerDraft, Entered};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, rows_of};
+use crate::context::Look;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
-use crate::keys::{Chord, Keys, written};
-use crate::request::{Request, VisitRequest};
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
+use crate::keys::Keys;
 use novamind_study::{DueQuestion, Form};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::chord::{Chord, written};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::request::{Request, VisitRequest};
 
 /// Widest lines that read well.
 const WIDEST: u16 = 92;

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Card, CardFigure};
-use crate::html::escaped;
 use crate::words::dollar_tick;
+use novamind_base::notation::escaped_html;
 
 /// Size in which pictures are shared.
 const SIZE: (f64, f64) = (1200.0, 630.0);
@@ -28,8 +28,8 @@ pub fn draw(card: &Card) -> String {
          role=\"img\" aria-labelledby=\"t d\" font-family=\"'Segoe UI','Helvetica Neue',Arial,sans-serif\">\n\
          <title id=\"t\">{}</title>\n<desc id=\"d\">{}</desc>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"{PAPER}\"/>\n",
-        escaped(&card.headline),
-        escaped(&described(card))
+        escaped_html(&card.headline),
+        escaped_html(&described(card))
     );
     text(&mut svg, (EDGE, 62.0), 24.0, LINE, true, "NovaMind");
     if let Some(voice) = card.voice {
@@ -58,7 +58,7 @@ fn text(svg: &mut String, (x, y): (f64, f64), size: f64, colour: &str, bold: boo
     let _ = writeln!(
         svg,
         "<text x=\"{x:.0}\" y=\"{y:.0}\" font-size=\"{size:.0}\" fill=\"{colour}\"{weight}>{}</text>",
-        escaped(words)
+        escaped_html(words)
     );
 }
 

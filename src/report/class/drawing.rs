@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::curves::StudentPoints;
-use crate::html::escaped;
 use crate::svg::Scale;
 use crate::words::tick;
+use novamind_base::notation::escaped_html;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 340.0;
@@ -37,7 +37,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
     let (x, y) = (Scale::of(across, 8.0, both || !drawing.is_line), Scale::of(up, 5.0, true));
     let column = |value: f64| LEFT + x.share(value) * (WIDTH - LEFT - RIGHT);
     let row = |value: f64| TOP + (1.0 - y.share(value)) * (HEIGHT - TOP - BOTTOM);
-    let title = escaped(&drawing.title);
+    let title = escaped_html(&drawing.title);
     let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\">\n");
     for value in y.ticks() {
         let at = row(value);
@@ -48,7 +48,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             WIDTH - RIGHT,
             LEFT - 8.0,
             at + 4.0,
-            escaped(&tick(value))
+            escaped_html(&tick(value))
         );
     }
     let below = HEIGHT - BOTTOM + 16.0;
@@ -57,7 +57,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             svg,
             "<text class=\"label middle\" x=\"{:.1}\" y=\"{below:.1}\">{}</text>",
             column(value),
-            escaped(&tick(value))
+            escaped_html(&tick(value))
         );
     }
     let _ = writeln!(
@@ -65,7 +65,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
         "<text class=\"label middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
         LEFT + (WIDTH - LEFT - RIGHT) / 2.0,
         below + 18.0,
-        escaped(&drawing.across)
+        escaped_html(&drawing.across)
     );
     if both {
         let (from, to) = (x.from.max(y.from), x.to.min(y.to));
@@ -89,7 +89,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             },
         };
         let finite = || own.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-        let name = escaped(&name);
+        let name = escaped_html(&name);
         if drawing.is_line {
             let points: Vec<String> =
                 finite().map(|(x, y)| format!("{:.1},{:.1}", column(*x), row(*y))).collect();

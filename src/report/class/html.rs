@@ -9,8 +9,9 @@ use super::guesses::{asked, pitfalls};
 use super::ranking::{RankedStudent, ranked};
 use super::words::finding_in_words;
 use super::{ClassView, RunVerdict};
-use crate::html::{STYLE, escaped};
+use crate::html::STYLE;
 use crate::words::{count, money};
+use novamind_base::notation::escaped_html;
 use novamind_base::notation::percent;
 
 /// What the page has besides the style of every report.
@@ -21,7 +22,7 @@ pub fn as_html(view: &ClassView<'_>) -> String {
     let ranking = ranked(view);
     let lit = view.shown.lit.as_deref().or(ranking.first().map(|first| first.label));
     let finished = view.collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count();
-    let title = escaped(&view.title());
+    let title = escaped_html(&view.title());
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
@@ -31,12 +32,12 @@ pub fn as_html(view: &ClassView<'_>) -> String {
         lighting(ranking.len()),
         count(view.class.students.len() as u32, "student"),
         count(finished as u32, "run"),
-        escaped(&view.measure())
+        escaped_html(&view.measure())
     );
     // The buttons stand before everything that they light, which style can only say of what follows.
     for (at, student) in ranking.iter().enumerate() {
         let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
-        let name = escaped(&student.name);
+        let name = escaped_html(&student.name);
         let _ = writeln!(
             page,
             "<input class=\"pick\" type=\"radio\" name=\"lit\" id=\"r{at}\" aria-label=\"{name}\"{checked}/>"
@@ -44,7 +45,9 @@ pub fn as_html(view: &ClassView<'_>) -> String {
     }
     let names = ranking.iter().enumerate();
     let names: String = names
-        .map(|(at, own)| format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escaped(&own.name)))
+        .map(|(at, own)| {
+            format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escaped_html(&own.name))
+        })
         .collect();
     let _ = write!(page, "<div class=\"names\">\n{names}</div>\n");
     for part in 1..=view.parts() {
@@ -58,7 +61,7 @@ pub fn as_html(view: &ClassView<'_>) -> String {
             .collection
             .findings
             .iter()
-            .map(|own| format!("<li>{}</li>\n", escaped(&finding_in_words(own))));
+            .map(|own| format!("<li>{}</li>\n", escaped_html(&finding_in_words(own))));
         let _ = write!(
             page,
             "<section>\n<h2>Not counted, or not there</h2>\n<ul>\n{}</ul>\n</section>\n",
@@ -92,7 +95,7 @@ fn marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(Strin
 fn figure(caption: &str, drawing: &Drawing<'_>, ranking: &[RankedStudent<'_>]) -> String {
     format!(
         "<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n",
-        escaped(caption),
+        escaped_html(caption),
         draw(drawing, &marks(ranking))
     )
 }
@@ -103,7 +106,7 @@ fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> S
     let title = format!("Cash by day of {}", count(ranking.len() as u32, "student"));
     let curves =
         Drawing { title, across: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
-    let mut text = format!("<section>\n<h2>{}</h2>\n", escaped(heading));
+    let mut text = format!("<section>\n<h2>{}</h2>\n", escaped_html(heading));
     text += &figure("Cash, dollars; the dashed curve is the good play", &curves, ranking);
     if let Some(scatter) = scatter(view, ranking, part) {
         let caption = format!("{} at the end against {}", scatter.figure, scatter.decision);
@@ -130,11 +133,11 @@ fn table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
             "<tr class=\"t{at}\"><td class=\"number\">{}</td><td>{}</td><td class=\"number\">{score}</td><td class=\"number\">{}\
              </td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
             at + 1,
-            escaped(&student.name),
+            escaped_html(&student.name),
             student.tries(),
             student.hints(),
             student.goals(),
-            escaped(&student.pitfalls())
+            escaped_html(&student.pitfalls())
         );
     }
     text + "</tbody>\n</table></div>\n</section>\n"
@@ -151,7 +154,7 @@ fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
             text += &figure(asked.question, &drawing, ranking);
             continue;
         }
-        text += &format!("<h3>{}</h3>\n", escaped(asked.question));
+        text += &format!("<h3>{}</h3>\n", escaped_html(asked.question));
         let bar = |(number, choice): (u32, &String)| {
             let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
             let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
@@ -168,7 +171,7 @@ fn pitfalls_met(view: &ClassView<'_>) -> String {
     let rows = met.iter().enumerate().map(|(at, own)| (own.name.to_owned(), own.students, at == 0));
     format!(
         "<section>\n<h2>Pitfalls</h2>\n<p>{}</p>\n{}</section>\n",
-        escaped(&most.say),
+        escaped_html(&most.say),
         bars(rows, view.class.students.len())
     )
 }
@@ -180,7 +183,7 @@ fn bars(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String
             "<li{}><span class=\"name\">{}</span><span class=\"amount\">{count}</span><span class=\"track\"><span \
              style=\"width:{:.1}%\"></span></span></li>\n",
             if own { " class=\"own\"" } else { "" },
-            escaped(&name),
+            escaped_html(&name),
             100.0 * count as f64 / all.max(1) as f64
         )
     };

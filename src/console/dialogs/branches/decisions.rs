@@ -4,11 +4,11 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, fit, rows_of};
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::table::first_row;
 use novamind_session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
+use novamind_tui::canvas::{Canvas, Click, fit, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::table::first_row;
 
 /// Said where a parameter that the run sets is to be edited.
 const PARAMETER_IS_SET_ANEW: &str = "leave it out, and decide otherwise with set KEY VALUE";

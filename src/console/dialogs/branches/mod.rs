@@ -11,15 +11,15 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, centered};
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::request::Request;
-use crate::resimulation::{BranchesFound, BranchesQuestion};
-use crate::screens::Look;
-use crate::theme::Role;
 use decisions::Decisions;
 use novamind_session::{FORMS, Refusal};
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::theme::Role;
+use novamind_worker::message::News;
+use novamind_worker::request::Request;
+use novamind_worker::resimulation::{BranchesFound, BranchesQuestion};
 use outcome::Figures;
 
 /// Futures that are drawn.

@@ -3,15 +3,15 @@
 use ratatui::layout::Rect;
 
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, fit, rows_of};
-use crate::theme::Role;
-use crate::widgets::chart::chart;
-use crate::widgets::{Axis, Line, Side, Unit};
 use novamind_report::whatif::{
     bankrupt, branch_line, cell, cell_in_two, decisions, difference_line, futures_cell, futures_cell_in_two,
     futures_heading, heading, week_of_milestone,
 };
 use novamind_session::{BranchComparison, BranchFigure, DecisionEdit, FigureUnit, Futures};
+use novamind_tui::canvas::{Canvas, Click, fit, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::chart;
+use novamind_tui::widgets::{Axis, Line, Side, Unit};
 
 /// Rows of a chart that is worth drawing.
 const LEAST_CHART: u16 = 6;

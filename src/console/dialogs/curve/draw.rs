@@ -4,19 +4,19 @@ use ratatui::layout::Rect;
 
 use super::{CurvePage, ExploredCurve};
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, centered, rows_of};
+use crate::context::Look;
 use crate::dialogs::Dialog;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
-use crate::widgets::scale::Unit;
 use novamind_base::notation::{dollars, price_to_cents};
 use novamind_report::curve::{
     basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality,
 };
 use novamind_session::identifiers::Plan;
 use novamind_session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
+use novamind_tui::widgets::scale::Unit;
 
 /// Widest that reads well.
 const WIDEST: u16 = 140;

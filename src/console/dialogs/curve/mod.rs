@@ -12,13 +12,13 @@ use serde_json::{Map, Value, json};
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::screens::Look;
 use novamind_session::identifiers::{ByPlan, Group, Plan};
 use novamind_session::{CurveExplorer, CurveOutcome, PlanPoint, Refusal};
 use novamind_tools::ToolId;
+use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
 
 /// Qualities are dragged by this much, with page keys by ten times as much.
 const QUALITY_STEP: f64 = 0.01;

@@ -1,9 +1,9 @@
 //! The explorer is dragged with keys, says what would come of it, and changes nothing.
 
 use super::*;
-use crate::company::Company;
 use crate::keys::Keys;
 use crate::test_kit::{dialog_picture, in_dialog, played};
+use novamind_worker::company::Company;
 
 fn explored(group: &str) -> (CurvePage, Company) {
     let mut session = played(1);

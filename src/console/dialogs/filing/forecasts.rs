@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 
 use super::{FilingDialog, HORIZONS};
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, rows_of};
-use crate::company::Company;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::fan::draw_fan;
+use crate::context::Look;
+use crate::fan::draw_fan;
 use novamind_base::notation::{dollars, percent};
 use novamind_session::Bands;
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 impl FilingDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

@@ -11,18 +11,18 @@ use self::review::Review;
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::attention::BETWEEN_CELLS;
-use crate::canvas::{Canvas, centered, rows_of};
-use crate::company::Company;
+use crate::context::Look;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::Look;
-use crate::text::number;
-use crate::theme::Role;
-use crate::widgets::field::ONLY_NUMBERS;
-use crate::widgets::{Editor, Field};
 use novamind_base::notation::{grouped, parse_number};
 use novamind_session::Forecasts;
 use novamind_tools::{Forecast, ToolId};
+use novamind_tui::canvas::{Canvas, centered, rows_of};
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::field::ONLY_NUMBERS;
+use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::company::Company;
+use novamind_worker::request::Request;
 
 /// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -347,7 +347,7 @@ impl Dialog for FilingDialog {
                 self.problem = (!self.cell().number_key(key)).then(|| ONLY_NUMBERS.to_owned());
             }
             FilingStep::Forecasts => {
-                let starts = crate::keys::Chord::of(key).begins_number();
+                let starts = novamind_tui::chord::Chord::of(key).begins_number();
                 if starts {
                     self.before = self.cell().clone();
                     *self.cell() = Field::default();

@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
-use crate::text::{number, wrapped};
-use crate::theme::Role;
-use crate::widgets::Scroll;
 use novamind_report::research::late_lines;
 use novamind_report::review::{alike_lines, money_lines};
 use novamind_tools::ToolId;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::{number, wrapped};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Scroll;
+use novamind_worker::company::Company;
 
 /// How far the review is scrolled.
 #[derive(Default)]

@@ -7,14 +7,13 @@ use ratatui::symbols::Marker;
 use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, fit};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::Unit;
-use crate::widgets::chart::NO_DATA;
-use crate::widgets::scale::ticks;
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::{Align, Canvas, Click, fit};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Unit;
+use novamind_tui::widgets::scale::ticks;
 
 /// Narrowest column of a week, with the gap.
 const NARROWEST: u16 = 3;
@@ -79,7 +78,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane:
     let room = area.width - SIDE;
     let weeks = books.last_weeks((room / NARROWEST) as usize);
     if weeks.is_empty() {
-        canvas.text(area, NO_DATA, Role::Dim);
+        canvas.text(area, canvas.no_data, Role::Dim);
         return;
     }
     let width = (room / weeks.len() as u16).clamp(NARROWEST, WIDEST);
@@ -328,8 +327,8 @@ mod tests {
     /// The bars of a company as cells, in a theme and with a marker.
     fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
         use crate::test_kit::played;
-        let books = Books::of(&crate::company::Company::of(&played(6)));
-        let theme = crate::theme::Theme::find(theme, &novamind_session::Configuration::shipped());
+        let books = Books::of(&novamind_worker::company::Company::of(&played(6)));
+        let theme = novamind_tui::theme::Theme::bundled(theme);
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 60, 20);
         let mut buffer = ratatui::buffer::Buffer::empty(area);
@@ -341,7 +340,7 @@ mod tests {
 
     #[test]
     fn the_net_of_a_week_stands_below_it_with_its_sign() {
-        let books = Books::of(&crate::company::Company::of(&crate::test_kit::played(6)));
+        let books = Books::of(&novamind_worker::company::Company::of(&crate::test_kit::played(6)));
         let picture: String =
             painted("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
         for (week, amounts) in books.last_weeks(6) {

@@ -5,15 +5,15 @@ use ratatui::layout::Rect;
 use super::model::{Amounts, Books, CATEGORIES, Subject, days_of, money, side};
 use super::{Cash, Selected, ledger_rows};
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{arrow, short_dollars};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
-use novamind_base::notation::{compact, dollars, percent};
+use crate::context::{Figure, Look};
+use novamind_base::notation::{compact, dollars, percent, short_dollars};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::arrow;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The table of a week.
 pub struct BooksPane;

@@ -5,16 +5,16 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::{Subject, cash_around, days_of};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::canvas::{Align, Canvas};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{arrow, short_dollars};
-use crate::theme::Role;
-use crate::widgets::chart::{note_room, summary, zero_if_near};
-use crate::widgets::{Axis, Line, Plot, Side, Unit};
-use novamind_base::notation::dollars;
+use crate::context::{Figure, Look};
+use novamind_base::notation::{dollars, short_dollars};
+use novamind_tui::canvas::{Align, Canvas};
+use novamind_tui::text::arrow;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
+use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_worker::company::Company;
 
 /// Width of the figures beside the bars of the weeks.
 const SIDE: u16 = 8;

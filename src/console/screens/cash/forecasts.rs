@@ -5,17 +5,16 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Cash;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::short_dollars;
-use crate::theme::Role;
-use crate::widgets::chart::note_room;
-use crate::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
-use novamind_base::notation::percent;
+use crate::context::{Figure, Look};
+use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ScoredForecast, Verdict, filed_forecasts};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::note_room;
+use novamind_tui::widgets::{Axis, Band, Cell, Column, Line, Plot, Side, Table, Unit};
+use novamind_worker::company::Company;
 
 /// Forecasts of one horizon, as a curve and as a list.
 pub struct ForecastsPane;

@@ -16,13 +16,14 @@ use self::books::table_of;
 use self::forecasts::Outlook;
 use self::model::{Books, CashStep, Subject, statement, waterfall};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenState};
+use crate::context::{Figure, Look};
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::widgets::Table;
 use novamind_session::WeekQuantity;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

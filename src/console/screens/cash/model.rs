@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_report::category_name;
 use novamind_session::{Booked, Category, WeekFigure, entries_of_weeks, week_of};

@@ -5,16 +5,15 @@ use ratatui::layout::Rect;
 use super::model::{CashStep, cash_around, money, waterfall};
 use super::{Cash, Selected, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{arrow, short_dollars};
-use crate::theme::Role;
-use crate::widgets::chart::NO_DATA;
-use crate::widgets::table::first_row;
-use novamind_base::notation::dollars;
+use crate::context::{Figure, Look};
+use novamind_base::notation::{dollars, short_dollars};
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::arrow;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The steps of a week.
 pub struct WaterfallPane;
@@ -84,7 +83,7 @@ fn selected(cash: &Cash, company: &Company) -> Option<Selected> {
 /// Draws steps, one in a row. The bars begin at the lowest level on the way, or changes would be too small to see.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
-        canvas.text(area, NO_DATA, Role::Dim);
+        canvas.text(area, canvas.no_data, Role::Dim);
         return;
     }
     let names = 12.min(area.width);

@@ -7,17 +7,17 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::show_rows;
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::chart::note_room;
-use crate::widgets::table::first_row;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_session::Rows;
-use novamind_session::{number_at, text_at};
 use novamind_session::identifiers::Group;
+use novamind_session::{number_at, text_at};
+use novamind_tui::canvas::{Align, Canvas, Click};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::note_room;
+use novamind_tui::widgets::table::first_row;
 
 /// Width of the names of cohorts with their sizes, and of a cell.
 const NAMES: u16 = 14;

@@ -2,14 +2,14 @@
 
 use super::hidden::TrueValue;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
-use crate::company::Company;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::market::model::{level_of, name_of};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, spark};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
-use novamind_session::{WeekFigure, WeekQuantity, truth_behind};
 use novamind_session::identifiers::Group;
+use novamind_session::{WeekFigure, WeekQuantity, truth_behind};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, spark};
+use novamind_worker::company::Company;
 
 /// What a column is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

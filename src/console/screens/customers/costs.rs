@@ -4,17 +4,17 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::lead_costs::{AdSpell, PairCost};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::{Channel, Group};
+use novamind_tools::ToolId;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The pairs of channel and group that are paid for.
 pub struct CostsPane;

@@ -6,17 +6,17 @@ use super::Customers;
 use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
 use super::steps::show_rows;
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::spark::bar;
-use crate::widgets::table::first_row;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, compact, dollars, grouped, percent};
 use novamind_session::identifiers::{Group, Plan};
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::bar;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// What is known of a group.
 pub struct FactsPane;

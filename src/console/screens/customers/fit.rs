@@ -5,17 +5,17 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{number, wrapped};
-use crate::theme::Role;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent, price_to_cents};
 use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
-use novamind_tools::ToolId;
-use novamind_session::{WeekFigure, WeekQuantity};
 use novamind_session::identifiers::Plan;
+use novamind_session::{WeekFigure, WeekQuantity};
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::{number, wrapped};
+use novamind_tui::theme::Role;
 
 /// Words left of the lines of each part.
 const NAMES: usize = 8;

@@ -5,12 +5,12 @@ use ratatui::layout::Rect;
 use super::opened::Opened;
 use super::{Customers, columns};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::count;
-use crate::widgets::Table;
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::count;
+use novamind_tui::widgets::Table;
 
 /// The table of the groups.
 pub struct CustomerGroupsPane;

@@ -5,18 +5,18 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::model::{MarketRows, ad_budget};
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::count;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{dollars, grouped};
 use novamind_report::measures::ENOUGH_LEADS;
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Channel;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Align, Canvas, Click};
+use novamind_tui::text::count;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The map.
 pub struct ChannelsPane;

@@ -1,11 +1,11 @@
 //! True values of groups in the table, where they are shown.
 
-use crate::company::Company;
-use crate::theme::Role;
-use crate::widgets::Cell;
+use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_session::TrueGroup;
 use novamind_session::identifiers::Group;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Cell;
 
 /// A true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -25,15 +25,16 @@ use self::columns::{columns, row_of};
 use self::model::MarketRows;
 use self::opened::Opened;
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenState};
+use crate::context::Look;
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_session::Rows;
 use novamind_session::identifiers::Group;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::company::Company;
-use crate::readings::Reading;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 use novamind_session::Rows;
 use novamind_session::{number_at, text_at};
 use novamind_tools::ToolId;

@@ -8,9 +8,9 @@ use super::fit::FitPane;
 use super::quality::QualityByWeekPane;
 use super::ways::CHOICES;
 use super::{Customers, CustomersPane};
-use crate::canvas::Canvas;
 use crate::screens::panes::{Pane, Seat, draw_pane};
-use crate::screens::Look;
+use crate::context::Look;
+use novamind_tui::canvas::Canvas;
 
 /// Where the person is in an open group.
 #[derive(Debug)]

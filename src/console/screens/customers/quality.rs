@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::chart::Band;
-use crate::widgets::{Axis, Line, Plot, Side, Unit};
+use crate::context::{Figure, Look};
 use novamind_session::identifiers::{Group, Plan};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::Band;
+use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_worker::company::Company;
 
 /// The quality of every plan, and the band of the floor.
 pub struct QualityByWeekPane;

@@ -2,7 +2,7 @@
 
 use crate::action::Action;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 
 /// A place in a list after an action.
 pub fn moved(at: usize, last: usize, action: Action) -> usize {

@@ -5,13 +5,13 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::{moved, show_rows};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::market::model::level_of;
 use crate::screens::market::report;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_base::notation::percent;
+use novamind_tui::canvas::Canvas;
 
 /// Its estimates.
 pub struct StudyPane;

@@ -84,7 +84,7 @@ fn a_group_opens_and_leads_to_its_tools() {
     act(&mut screen, Action::Up, &company);
     let effects = act(&mut screen, Action::Open, &company);
     assert!(
-        matches!(effects[..], [Effect::ShowGroup(crate::screens::ScreenId::Market, group)]
+        matches!(effects[..], [Effect::ShowGroup(crate::context::ScreenId::Market, group)]
         if group.id() == "S2"),
         "{effects:?}"
     );

@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use super::Customers;
 use super::steps::moved;
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Look, ScreenId};
-use crate::theme::Role;
-use crate::widgets::table::first_row;
-use novamind_tools::ToolId;
+use crate::context::{Look, ScreenId};
 use novamind_session::identifiers::Group;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
 
 /// Tools of a group, and what they do for it.
 const TOOLS: [(ToolId, &str); 6] = [

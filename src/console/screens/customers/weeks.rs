@@ -7,16 +7,16 @@ use super::model::{self, CustomerFacts, Flow};
 use super::steps::{moved, show_rows};
 use super::{Customers, CustomersPane};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::screens::{Figure, Look};
-use crate::text::{arrow, count};
-use crate::theme::Role;
-use crate::widgets::chart::{note_room, summary, zero_if_near};
-use crate::widgets::{Axis, Line, Plot, Side, Unit};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, grouped};
 use novamind_session::{WeekFigure, WeekQuantity};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::{arrow, count};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
+use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
 
 /// Flows that can be selected: leads, new, cancelled.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [

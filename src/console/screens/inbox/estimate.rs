@@ -1,7 +1,7 @@
 //! What the seats of a company would cost in compute: an estimate from what the player can see.
 
 use super::model::Thread;
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_rules::{Market, SeatUsage};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::{Group, Plan};

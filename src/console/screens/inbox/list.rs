@@ -6,14 +6,14 @@ use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, InboxView, post};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{count, wrapped};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::{count, wrapped};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
 
 /// Columns of a name in a narrow list: the number beside it tells companies apart.
 const NAME: u16 = 14;

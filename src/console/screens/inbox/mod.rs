@@ -24,20 +24,21 @@ use self::offer::{TermChoice, Offer, TERMS};
 use self::outcomes::Outcomes;
 use self::ruling::Ruling;
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenId, ScreenState};
+use crate::context::{Look, ScreenId};
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::readings::Reading;
-use crate::widgets::Table;
-use crate::widgets::field::{Field, ONLY_NUMBERS};
 use novamind_base::notation::parse_number;
 use novamind_rules::{AskingThread, SeatUsage};
 use novamind_session::Rows;
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Group;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, Click};
+use novamind_tui::widgets::Table;
+use novamind_tui::widgets::field::{Field, ONLY_NUMBERS};
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::readings::Reading;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::readings::Reading;
+use novamind_worker::readings::Reading;
 use novamind_rules::{AskingThread, offer_of, plan_in};
 use novamind_session::{CompanyNames, Rows};
 use novamind_session::{number_at, text_at};

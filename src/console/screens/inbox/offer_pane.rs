@@ -9,16 +9,16 @@ use super::offer::{TermChoice, Offer, TERMS};
 use super::post::{self, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::field::ONLY_NUMBERS;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{cents, dollars, grouped, percent};
 use novamind_session::identifiers::Plan;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::field::ONLY_NUMBERS;
 
 /// Width in which a line of the offer has all its columns.
 pub const WORTH: u16 = 59;

@@ -4,16 +4,16 @@ use ratatui::layout::Rect;
 
 use super::{Inbox, InboxPane};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::readings::Reading;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_session::{Rows, number_at, text_at};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::readings::Reading;
 
 /// What the screen asks the database for while they are shown.
 pub const READINGS: [Reading; 5] = [
@@ -217,7 +217,7 @@ impl Pane<Inbox> for OutcomesPane {
             Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.number),
         };
         let lines = wrapped(&text, seat.area.width as usize);
-        for (row, line) in crate::canvas::rows_of(seat.area).zip(lines) {
+        for (row, line) in novamind_tui::canvas::rows_of(seat.area).zip(lines) {
             canvas.text(row, &line, Role::Dim);
         }
     }

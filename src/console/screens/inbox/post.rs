@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 use super::model::{State, Thread};
 use super::offer::in_words;
 use super::{Inbox, list_prices};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::screens::Figure;
-use crate::text::count;
+use crate::context::Figure;
 use novamind_base::notation::dollars;
-use novamind_tools::{Answer, DealResult, ToolId};
 use novamind_session::identifiers::Plan;
+use novamind_tools::{Answer, DealResult, ToolId};
+use novamind_tui::text::count;
+use novamind_worker::company::Company;
+use novamind_worker::request::Request;
 
 /// Tools of this screen.
 const SEND: ToolId = ToolId::SendEnterpriseDeal;

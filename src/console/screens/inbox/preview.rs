@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use super::Inbox;
 use super::offer::in_words;
 use super::post::{Planned, monthly};
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Seat};
-use crate::theme::Role;
 use novamind_base::notation::{cents, dollars};
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::theme::Role;
 
 /// Columns of a company with its name, and of one without.
 const NAMED: u16 = 28;

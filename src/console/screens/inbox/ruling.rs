@@ -6,18 +6,18 @@ use serde_json::Value;
 
 use super::{Inbox, InboxPane};
 use super::estimate::market_of;
-use crate::canvas::{Canvas, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Seat, draw_pane};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
 use novamind_base::notation::{cents, json_number};
 use novamind_rules::{AskingThread, Batch, Problem, RuledThread};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Plan;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
 
 /// What is typed at first: whoever asks for a plan at its list price or more is accepted. Plans without a price are left out.
 fn first_rules(company: &Company) -> String {

@@ -3,13 +3,14 @@ use serde_json::{Value, json};
 use super::model::Turn;
 use super::outcomes::OutcomesPane;
 use super::*;
-use crate::keys::{Chord, Keys};
+use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, courted, drawn, shown, sweep};
-use crate::request::Request;
+use novamind_session::identifiers::Plan;
 use novamind_session::{Cell as Datum, Via, WaitingThread, number_at};
 use novamind_tools::{Answer, DealResult, DealResults, ToolId};
-use novamind_session::identifiers::Plan;
+use novamind_tui::chord::Chord;
+use novamind_worker::request::Request;
 
 /// A company with waiting threads: every third is a subscriber with a price of its own.
 fn crowded_by(threads: u32) -> (Company, Rows, Rows) {

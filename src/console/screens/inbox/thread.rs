@@ -6,13 +6,13 @@ use super::model::{State, Thread, Turn};
 use super::offer::in_words;
 use super::{Inbox, InboxPane, post, preview};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::screens::{Figure, Look};
-use crate::text::{count, wrapped};
-use crate::theme::Role;
+use crate::context::{Figure, Look};
 use novamind_base::notation::cents;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::{count, wrapped};
+use novamind_tui::theme::Role;
 
 /// The thread, or the preview of a rule.
 pub struct ThreadPane;

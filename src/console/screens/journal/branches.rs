@@ -4,17 +4,18 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::{short_dollars, wrapped};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
-use novamind_report::whatif::kin_line;
+use crate::context::{Figure, Look};
+use novamind_base::notation::short_dollars;
 use novamind_report::first_change_in_words;
+use novamind_report::whatif::kin_line;
 use novamind_session::Kin;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The tree.
 pub struct BranchesPane;

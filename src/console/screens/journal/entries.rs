@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use crate::company::Company;
-use crate::text::{number, short_dollars};
-use crate::theme::Role;
-use novamind_base::notation::{compact, dollars, grouped, signed_dollars};
-use novamind_report::parameters::{entry_in_words, since_in_words};
+use novamind_worker::company::Company;
+use novamind_base::notation::{compact, dollars, grouped, short_dollars, signed_dollars};
 use novamind_report::deals::deals_in_words;
+use novamind_report::parameters::{entry_in_words, since_in_words};
 use novamind_session::{CompanyNames, JournalEntry, Reversal, ScoredForecast, WeekFigures, naively, undone_calls};
 use novamind_tools::{Forecast, Kind, Spec};
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]

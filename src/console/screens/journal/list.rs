@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Journal;
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::widgets::Table;
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
 
 /// The entries.
 pub struct EntriesPane;

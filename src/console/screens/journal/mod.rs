@@ -12,15 +12,16 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenState};
+use crate::context::{Figure, Look};
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::request::Request;
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Editor, Table};
 use novamind_session::Kin;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Editor, Table};
+use novamind_worker::message::News;
+use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]

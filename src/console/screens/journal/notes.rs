@@ -5,10 +5,10 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Pane, Seat};
+use novamind_tui::canvas::Canvas;
 
 /// The editor of the notes.
 pub struct NotesPane;

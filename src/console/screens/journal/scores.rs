@@ -4,15 +4,14 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::short_dollars;
-use crate::theme::Role;
-use novamind_base::notation::percent;
+use crate::context::{Figure, Look};
+use novamind_base::notation::{percent, short_dollars};
 use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// Forecasts of a horizon whose day has come, the newest first.
 pub fn outcomes(company: &Company, horizon: u32) -> Vec<ScoredForecast> {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::action::Scope;
-use crate::company::Company;
+use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{company, picture, session, sweep};

@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use super::Market;
 use super::model::{Attempt, name_of};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look};
 use novamind_base::notation::dollars;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// The attempts, and what the next one costs.
 pub struct AttemptsPane;

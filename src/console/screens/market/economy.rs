@@ -7,16 +7,16 @@ use super::{Market, hidden};
 use super::model::Published;
 use super::news::RivalNews;
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::{Axis, Line, Side, Unit, chart};
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
 use novamind_session::ToolLimits;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// Marks of how many news of rivals a column holds, beside the fullest one.
 const MARKS: [&str; 4] = ["▁", "▃", "▅", "█"];

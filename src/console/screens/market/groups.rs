@@ -5,15 +5,15 @@ use ratatui::layout::Rect;
 use super::model::{Known, level_of, name_of, study_of, target_of, undiscovered};
 use super::{Market, knowledge_of};
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Field, Table};
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
 use novamind_session::identifiers::Group;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Field, Table};
+use novamind_worker::company::Company;
 
 /// The table of the groups.
 pub struct KnownGroupsPane;

@@ -2,9 +2,9 @@
 
 use ratatui::layout::Rect;
 
-use crate::canvas::{Canvas, rows_of};
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 use novamind_base::notation::grouped;
 use novamind_session::{HiddenValues, NextRivalMove};
 

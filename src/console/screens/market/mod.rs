@@ -17,19 +17,20 @@ use strum::VariantArray;
 use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
 use self::news::RivalNews;
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenId, ScreenState};
+use crate::context::{Figure, Look, ScreenId};
+use super::ScreenState;
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::posts::Posts;
-use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_base::notation::{dollars, grouped};
+use novamind_session::identifiers::Group;
 use novamind_session::{Preview, Rows};
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
-use novamind_session::identifiers::Group;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::posts::Posts;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

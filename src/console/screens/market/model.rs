@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::company::Company;
-use crate::readings::Reading;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 use novamind_session::{Cell, Rows, RunningStudy};
 use novamind_session::{number_at, text_at};
 use novamind_session::identifiers::Group;

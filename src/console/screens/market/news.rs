@@ -6,14 +6,14 @@ use ratatui::layout::Rect;
 
 use super::{Market, hidden};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::posts::{PostKind, Post};
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
+use novamind_worker::posts::{PostKind, Post};
 
 /// A piece of news.
 #[derive(Debug, Clone, PartialEq)]

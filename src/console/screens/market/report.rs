@@ -6,18 +6,18 @@ use unicode_width::UnicodeWidthStr;
 use super::model::{level_of, name_of, study_of, target_of};
 use super::{Market, MarketPane, knowledge_of};
 use crate::action::{Action, Scope};
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
+use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, dollars, grouped, percent};
 use novamind_report::fit::{Fit, TruthRange};
+use novamind_session::identifiers::Group;
 use novamind_session::truth_behind;
 use novamind_tools::{Estimates, Influence};
-use novamind_session::identifiers::Group;
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// A line: words to the left, figures to the right.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::keys::Keys;
-use crate::posts::PostKind;
+use novamind_worker::posts::PostKind;
 use crate::screens::Screen;
 use crate::test_kit::{act, drawn, on_screen, played, shown};
 use novamind_session::{Session, Via};

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Menu;
 use super::runs::{draw_curves, known, state};
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::theme::Role;
-use crate::widgets::spark::spark;
 use novamind_base::notation::{compact, dollars};
 use novamind_session::{Mode, RunPreview, RunSummary};
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark::spark;
 
 /// Columns of the figures: title, width, side. A narrow window has the first of them: the curve in a row tells runs
 /// apart where colours do not.

@@ -3,15 +3,14 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use crate::canvas::{Canvas, Click, rows_of};
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
-use novamind_base::notation::dollars;
-use novamind_base::notation::parse_number;
+use novamind_base::notation::{dollars, parse_number};
 use novamind_session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_worker::request::Request;
 
 /// Fields of a new run.
 pub(super) struct RunForm {

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use super::runs::{draw_preview, facts, state};
 use super::{Menu, Previews};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::text::wrapped;
-use crate::theme::Role;
 use novamind_base::notation::dollars;
 use novamind_session::RunSummary;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Choices of the first page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

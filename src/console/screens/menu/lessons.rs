@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use crate::canvas::{Canvas, Click, rows_of};
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_report::count;
 use novamind_session::{Configuration, Lesson, LessonEntry, Mode, NewRun};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::request::Request;
 
 /// Width from which what one learns stands beside the list.
 const WIDE: u16 = 76;

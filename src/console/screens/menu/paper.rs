@@ -3,14 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::Menu;
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_base::notation::{compact, dollars};
 use novamind_report::comparable::{Obstacle, RunTerms, not_ranked_in_words};
 use novamind_report::ranking::{published, published_terms};
 use novamind_session::{Ended, Mode, RunSummary};
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
 
 /// A line of the table.
 #[derive(Debug, Clone, PartialEq)]

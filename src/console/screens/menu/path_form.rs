@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
-use crate::request::Request;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
 use novamind_report::class::Shown;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_worker::request::Request;
 
 /// Widest text that reads well.
 const WIDEST: u16 = 100;

@@ -6,17 +6,17 @@ use super::home::draw_run;
 use super::{Menu, Previews};
 use crate::action::Action;
 use crate::agreement::{Agreement, READ_FIRST};
-use crate::canvas::{Canvas, centered, rows_of};
 use crate::effect::Effect;
-use crate::message::Instead;
-use crate::request::Recorded;
-use crate::request::Request;
-use crate::text::{count, wrapped};
-use crate::theme::Role;
-use crate::widgets::chart::zero_if_near;
-use crate::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use novamind_base::notation::{dollars, grouped};
 use novamind_session::{Access, Ended, Goal, Mode, NewRun, RunPreview, RunSummary};
+use novamind_tui::canvas::{Canvas, centered, rows_of};
+use novamind_tui::text::{count, wrapped};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::zero_if_near;
+use novamind_tui::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
+use novamind_worker::message::Instead;
+use novamind_worker::request::Recorded;
+use novamind_worker::request::Request;
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,10 +3,10 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::request::Recorded;
-use crate::request::Request;
 use crate::test_kit::painted;
 use novamind_session::{Access, Ended, Goal, Mode};
+use novamind_worker::request::Recorded;
+use novamind_worker::request::Request;
 
 /// An unfinished run.
 pub(crate) fn summary(id: &str) -> RunSummary {

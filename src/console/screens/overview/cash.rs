@@ -6,15 +6,16 @@ use unicode_width::UnicodeWidthStr;
 use super::Overview;
 use super::figures::{self, METRICS};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
-use crate::text::{arrow, short_dollars};
-use crate::theme::Role;
-use crate::widgets::chart::note_room;
-use crate::widgets::{Axis, Line, Side, Unit, chart, fan};
-use novamind_base::notation::dollars;
+use crate::context::{Figure, Look, ScreenId};
+use crate::fan;
+use novamind_base::notation::{dollars, short_dollars};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::arrow;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::note_room;
+use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 
 /// The curve.
 pub struct CashCurvePane;

@@ -1,12 +1,12 @@
 //! The figures of the week: how each is read, written and judged, and the rows behind it.
 
-use crate::company::Company;
-use crate::screens::Figure;
-use crate::text::arrow;
-use crate::theme::Role;
-use crate::widgets::{Cell, Column, spark};
+use crate::context::Figure;
 use novamind_base::notation::{dollars, grouped, percent};
 use novamind_session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, WeekQuantity, entries_of_weeks};
+use novamind_tui::text::arrow;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell, Column, spark};
+use novamind_worker::company::Company;
 
 /// A figure of the week.
 pub struct Metric {

@@ -18,13 +18,14 @@ use self::figures::METRICS;
 use self::news::NewsItem;
 use super::panes::{Pane, Paned, draw_pane};
 use super::product::model::{Day, projects, service};
-use super::{Look, ScreenState};
+use crate::context::Look;
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
-use crate::readings::Reading;
-use crate::widgets::Table;
 use novamind_session::Rows;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
+use novamind_worker::company::Company;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

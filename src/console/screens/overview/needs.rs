@@ -5,15 +5,15 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::customers::costs;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
-use crate::theme::Role;
+use crate::context::{Figure, Look, ScreenId};
 use novamind_report::needs::{Need, Place, Problem};
 use novamind_session::{WeekFigure, WeekQuantity, entries_of_weeks};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
 
 /// What needs the person, the most urgent first.
 pub struct NeedsPane;

@@ -5,17 +5,17 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::rows::{self, LinkedRow, walk};
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::posts::PostKind as Author;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::screens::product::model::Project;
-use crate::screens::{Figure, Look, ScreenId};
-use crate::theme::Role;
+use crate::context::{Figure, Look, ScreenId};
 use novamind_base::notation::grouped;
 use novamind_session::Rows;
 use novamind_session::text_at;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_worker::company::Company;
+use novamind_worker::posts::PostKind as Author;
 
 /// What is new.
 pub struct NewsPane;

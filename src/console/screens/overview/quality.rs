@@ -5,19 +5,19 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
-use crate::text::number;
-use crate::theme::Role;
-use crate::widgets::chart::note_room;
-use crate::widgets::{Cell, Column, Table};
+use crate::context::{Figure, Look, ScreenId};
 use novamind_report::fit::Beside;
 use novamind_session::DeliveredQuality;
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Plan;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::note_room;
+use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_worker::company::Company;
 
 /// Columns of the floor and of the group's own bonus.
 const FLOOR: usize = 4;

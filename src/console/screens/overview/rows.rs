@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, fit};
-use crate::screens::ScreenId;
+use crate::context::ScreenId;
 use crate::screens::panes::Seat;
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Align, Canvas, Click, fit};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Moves a selection among rows.
 pub fn walk(selected: &mut usize, rows: usize, action: Action) {

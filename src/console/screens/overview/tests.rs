@@ -1,6 +1,7 @@
 use super::*;
 use crate::effect::Effect;
-use crate::screens::{Screen, ScreenId};
+use crate::context::ScreenId;
+use crate::screens::Screen;
 use crate::test_kit::{act, courted, drawn, on_screen, played, shown};
 use novamind_report::needs::{Place, Problem};
 use novamind_session::{Cell as Value, Session};
@@ -180,8 +181,8 @@ fn posts_are_compared_with_the_weeks_there_were() {
         [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
     {
         let company = Company::of(&played(weeks));
-        let by_people = |post: &&std::sync::Arc<crate::posts::Post>| {
-            post.kind != crate::posts::PostKind::Press
+        let by_people = |post: &&std::sync::Arc<novamind_worker::posts::Post>| {
+            post.kind != novamind_worker::posts::PostKind::Press
         };
         let of = |week: u32| {
             company.posts.iter().filter(by_people).filter(|post| post.day.div_ceil(7) == week).count()

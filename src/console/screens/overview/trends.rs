@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::figures::{METRICS, Metric};
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::screens::product::model::Day;
-use crate::theme::Role;
-use crate::widgets::chart::{note_room, summary, zero_if_near};
-use crate::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_base::notation::{compact, percent};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
+use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// Least height of a small chart with its border.
 const LEAST: u16 = 8;
@@ -57,7 +57,7 @@ fn draw_one(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title: &str, c
     let values: Vec<f64> = weeks.iter().map(|point| point.1).collect();
     let dollar = matches!(metric.name, "recurring revenue" | "payments" | "running costs");
     let write = move |value: f64| {
-        if dollar { crate::text::short_dollars(value) } else { compact(value) }
+        if dollar { novamind_base::notation::short_dollars(value) } else { compact(value) }
     };
     let unit = if dollar { Unit::Dollars } else { Unit::Number };
     let words = summary(&values, &write, note_room(area, title));

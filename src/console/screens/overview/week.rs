@@ -5,12 +5,12 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::figures::{self, METRICS};
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look, ScreenId};
-use crate::widgets::Table;
+use crate::context::{Figure, Look, ScreenId};
 use novamind_session::week_of;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Table;
 
 /// The figures with their changes.
 pub struct WeekPane;

@@ -5,20 +5,19 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::{Day, Rung, last_week};
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
-use crate::text::fitting;
-use crate::theme::Role;
-use crate::widgets::chart::NO_DATA;
-use crate::widgets::table::first_row;
-use crate::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_base::notation::{compact, dollars, percent};
-use novamind_session::{WeekFigure, WeekQuantity};
 use novamind_report::peak::PeakProjection;
+use novamind_session::{WeekFigure, WeekQuantity};
 use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::fitting;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
+use novamind_worker::company::Company;
 
 /// The tier that served last, and the tier that is set.
 pub fn tiers(company: &Company, days: &[Day]) -> (Option<u32>, u32) {
@@ -147,7 +146,7 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
 fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[Rung], days: &[Day]) {
     let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
     let (Some(first), Some(last)) = (days.first(), days.last()) else {
-        return canvas.text(area, NO_DATA, Role::Dim);
+        return canvas.text(area, canvas.no_data, Role::Dim);
     };
     let step = (f64::from(last.day - first.day) / 24.0).max(1.0);
     let near = rungs.iter().filter(|rung| rung.units > most / 20.0 && rung.units <= most);

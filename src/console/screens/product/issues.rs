@@ -7,17 +7,17 @@ use ratatui::layout::Rect;
 use super::model::Ages;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_base::notation::grouped;
+use novamind_session::identifiers::Group;
 use novamind_session::{WeekFigure, WeekQuantity};
 use novamind_tools::ToolId;
-use novamind_session::identifiers::Group;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// What the bars are made of, the youngest first: the older, the denser.
 const SHADES: [char; 4] = ['░', '▒', '▓', '█'];

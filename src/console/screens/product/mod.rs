@@ -19,13 +19,14 @@ use strum::VariantArray;
 use self::model::{Ages, Day, PlanFacts, Project, ProjectOffer, Rung};
 use self::part::ProductPart;
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenState};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::readings::Reading;
-use crate::theme::Role;
+use crate::context::Look;
+use super::ScreenState;
 use novamind_report::plan_margins::Sales;
-use novamind_session::{Category, Rows};
 use novamind_session::identifiers::Plan;
+use novamind_session::{Category, Rows};
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::theme::Role;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_report::plan_margins::{PlanUse, Sales};
 use novamind_session::{Category, ResearchMeans, Rows, WeekFigures};
 use novamind_session::{number_at, text_at};

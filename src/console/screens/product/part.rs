@@ -4,12 +4,12 @@ use ratatui::layout::Rect;
 
 use super::{Product, ProductPane};
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
+use crate::context::{Figure, Look};
 use novamind_tools::ToolId;
+use novamind_tui::canvas::Canvas;
+use novamind_worker::company::Company;
 
 /// One of the panes.
 pub trait ProductPart: Pane<Product> {

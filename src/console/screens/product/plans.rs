@@ -7,17 +7,17 @@ use super::model::PlanFacts;
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::company::Company;
+use crate::context::Figure;
 use crate::effect::Effect;
-use crate::screens;
 use crate::screens::panes::Seat;
-use crate::text::fitting;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_base::notation::{cents, compact, grouped, percent};
-use novamind_tools::ToolId;
 use novamind_session::identifiers::Plan;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::fitting;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The plans as columns; a row leads to the tool that sets it.
 pub struct Plans;
@@ -61,7 +61,7 @@ impl ProductPart for Plans {
         cell(tool_of(product.place(self.name())), Some(product.plan().to_string()))
     }
 
-    fn selected(&self, product: &Product, _: &Company) -> Option<screens::Figure> {
+    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
         Some(figure_of(product.place(self.name()), product.plan()))
     }
 
@@ -143,7 +143,7 @@ fn tool_of(row: usize) -> ToolId {
 }
 
 /// A figure of a plan, by the rows of the table of plans.
-fn figure_of(row: usize, plan: Plan) -> screens::Figure {
+fn figure_of(row: usize, plan: Plan) -> Figure {
     let subscribers = || {
         Some(format!(
             "SELECT s.customer_id, c.group_id, s.effective_price, s.seat_count, s.start_day\n\
@@ -173,5 +173,5 @@ fn figure_of(row: usize, plan: Plan) -> screens::Figure {
         9 => ("gross margin", "gross-margin", subscribers()),
         _ => ("billed a month", "billed-seats", subscribers()),
     };
-    screens::Figure { title: format!("{name} of plan {plan}"), term, sql, why: None }
+    Figure { title: format!("{name} of plan {plan}"), term, sql, why: None }
 }

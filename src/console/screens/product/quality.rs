@@ -4,15 +4,15 @@ use ratatui::layout::Rect;
 
 use super::part::{ProductPart, cell};
 use super::{Product, ProductPane};
-use crate::canvas::{Canvas, Click, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
-use crate::text::number;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
 use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// The components of quality, one group in a row.
 pub struct Quality;

@@ -5,17 +5,17 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::model::Project;
 use super::part::{ProductPart, tier};
 use super::{Product, ProductPane};
-use crate::canvas::{Align, Canvas, Click, fit, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
-use crate::theme::Role;
-use crate::widgets::spark;
-use crate::widgets::table::first_row;
 use novamind_base::notation::{compact, dollars, short_dollars};
 use novamind_report::research::{mean_days, mean_gain};
 use novamind_tools::ToolId;
+use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark;
+use novamind_tui::widgets::table::first_row;
+use novamind_worker::company::Company;
 
 /// Weekly spend on development and operations.
 #[derive(Debug, Clone, Default, PartialEq)]

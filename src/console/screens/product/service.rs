@@ -5,18 +5,18 @@ use ratatui::layout::Rect;
 use super::model::Day;
 use super::part::ProductPart;
 use super::{Product, ProductPane};
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::screens::Figure;
+use crate::context::Figure;
 use crate::screens::panes::Seat;
-use crate::text::number;
-use crate::text::fitting;
-use crate::theme::Role;
-use crate::widgets::chart::NO_DATA;
-use crate::widgets::spark;
+use crate::context::NO_DATA;
 use novamind_base::notation::{grouped, percent};
 use novamind_session::{WeekFigure, WeekQuantity};
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::text::fitting;
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark;
+use novamind_worker::company::Company;
 
 /// The measures of the service.
 pub struct Service;

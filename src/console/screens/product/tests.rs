@@ -3,7 +3,7 @@ use serde_json::json;
 use super::model::*;
 use super::*;
 use crate::action::Action;
-use crate::company::Company;
+use novamind_worker::company::Company;
 use crate::effect::Effect;
 use crate::screens::Screen;
 use crate::test_kit::{act, drawn, on_screen, played, shown};

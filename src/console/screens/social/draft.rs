@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 
 use super::{POST, Social, SocialPane};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
 
 /// The draft.
 pub struct DraftPane;

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use crate::posts::{PostKind, Post};
+pub use novamind_worker::posts::{PostKind, Post};
 use novamind_session::Rows;
 use novamind_session::{number_at, text_at};
 

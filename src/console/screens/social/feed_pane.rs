@@ -5,13 +5,13 @@ use ratatui::layout::Rect;
 use super::feed::Post;
 use super::{Social, wall};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::count;
-use crate::theme::Role;
-use crate::widgets::Field;
+use crate::context::{Figure, Look};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::count;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
 
 /// Posts as the filter lets them through.
 pub struct FeedPane;

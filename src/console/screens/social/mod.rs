@@ -16,20 +16,21 @@ use strum::VariantArray;
 
 use self::feed::{Filter, PostKind, Post};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Figure, Look, ScreenId, ScreenState};
+use crate::context::{Figure, Look, ScreenId};
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::{Canvas, fit};
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::posts::Posts;
-use crate::readings::Reading;
-use crate::theme::Role;
-use crate::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
 use novamind_base::notation::grouped;
 use novamind_report::post_leads::leads_around;
 use novamind_session::Rows;
 use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, fit};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::posts::Posts;
+use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

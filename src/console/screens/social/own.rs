@@ -4,13 +4,13 @@ use ratatui::layout::Rect;
 
 use super::Social;
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::Table;
+use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
 
 /// The table of our posts.
 pub struct OwnPane;

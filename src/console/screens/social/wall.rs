@@ -3,10 +3,10 @@
 use unicode_width::UnicodeWidthStr;
 
 use super::feed::{PostKind, Post};
-use crate::canvas::{Canvas, Click, rows_of};
 use crate::screens::panes::Seat;
-use crate::text::wrapped;
-use crate::theme::Role;
+use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// A row of the feed: text, meaning, and the place of its post.
 struct FeedRow {

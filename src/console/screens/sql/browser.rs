@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use ratatui::layout::Rect;
 
 use crate::action::Action;
-use crate::canvas::{Align, Canvas, Click, rows_of};
 use crate::screens::panes::Seat;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::table::first_row;
 use novamind_database::{Column, Table, hidden_tables, tables};
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::table::first_row;
 
 /// Marks the tables of the x-ray.
 const XRAY: &str = "x-ray";

@@ -1,6 +1,6 @@
 //! What could be typed next: columns of the tables that a statement names, tables, keywords, functions.
 
-use super::lexer::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
+use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
 use novamind_database::catalogue::{Column, Table};
 use novamind_database::{table, tables};
 

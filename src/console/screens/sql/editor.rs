@@ -6,11 +6,11 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::completion::{Completion, complete};
-use super::lexer::{is_word, statement_at, tokens};
-use crate::canvas::{Align, Canvas, rows_of};
-use crate::theme::Role;
-use crate::widgets::Editor;
-use crate::widgets::table::first_row;
+use novamind_tui::canvas::{Align, Canvas, rows_of};
+use novamind_tui::sql::{is_word, statement_at, tokens};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Editor;
+use novamind_tui::widgets::table::first_row;
 
 /// Letters after which words are offered while typing.
 const LEAST_TYPED: usize = 2;
@@ -334,7 +334,7 @@ mod tests {
 
     #[test]
     fn the_place_of_an_error_is_underlined_until_something_is_typed() {
-        let theme = crate::theme::Theme::find("mono", &novamind_session::Configuration::shipped());
+        let theme = novamind_tui::theme::Theme::bundled("mono");
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 40, 3);
         let underlined = |editor: &QueryEditor| {

@@ -87,7 +87,7 @@ mod tests {
     use crate::screens::sql::summary::count;
     use crate::screens::sql::values;
     use crate::test_kit::session;
-    use crate::widgets::Table;
+    use novamind_tui::widgets::Table;
 
     /// What a filter means, and the rows it shows.
     fn meant(held: &Rows, filter: &str) -> (RowsMeant, usize) {

@@ -3,8 +3,8 @@
 mod browser;
 mod completion;
 mod editor;
+mod hidden;
 mod history;
-mod lexer;
 mod meant;
 mod over;
 mod panes;
@@ -26,18 +26,19 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenState};
+use crate::context::Look;
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::message::News;
-use novamind_session::Library;
 use browser::Browser;
 use editor::{QueryEditor, Statement};
 use history::History;
-use lexer::names_hidden;
+use hidden::names_hidden;
 use over::Over;
 use tabs::Tabs;
+use novamind_session::Library;
+use novamind_tui::canvas::Canvas;
+use novamind_worker::message::News;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

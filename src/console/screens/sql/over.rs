@@ -8,12 +8,12 @@ use super::pivot::{PivotChoice, PivotStep};
 use super::saving::Saving;
 use super::takeout::TakeOut;
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Pane, Seat};
-use crate::widgets::Field;
 use novamind_session::library::NamedQuery;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Field;
 
 /// What lies over the panes.
 pub enum Over {

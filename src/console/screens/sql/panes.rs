@@ -8,12 +8,12 @@ use super::pivot::PivotChoice;
 use super::summary::{NOT_A_TABLE, count};
 use super::{Sql, SqlPane};
 use crate::action::{Action, Scope};
-use crate::canvas::Canvas;
 use crate::effect::Effect;
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::widgets::{Field, Table};
 use novamind_session::library::Head;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::{Field, Table};
 
 const NO_RESULT: &str = "no result yet: run a statement first";
 const REFUSED: &str = "the last statement was refused: it has no rows";

@@ -5,14 +5,14 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
-use super::lexer::tokens;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, centered, rows_of};
-use crate::fuzzy::{self, Found};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::table::first_row;
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::fuzzy::{self, Found};
+use novamind_tui::sql::tokens;
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::table::first_row;
 
 /// Below this width the chosen statement stands under the list instead of beside it.
 const BESIDE: u16 = 110;
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn long_lines_of_a_statement_go_on_below() {
-        let theme = crate::theme::Theme::find("dark", &novamind_session::Configuration::shipped());
+        let theme = novamind_tui::theme::Theme::bundled("dark");
         let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, 9, 9));
         let theme = theme.expect("a theme");
         let canvas = Canvas::new(&mut buffer, &theme);

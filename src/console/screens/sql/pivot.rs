@@ -6,10 +6,10 @@ use super::meant::RowsMeant;
 use super::summary::{Aggregate, Distinct, MOST_ACROSS, PivotShape, pivot};
 use super::values::is_numeric;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, centered, rows_of};
-use crate::screens::Look;
-use crate::theme::Role;
+use crate::context::Look;
 use novamind_session::{Cell, Rows};
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::theme::Role;
 
 /// Lines that can be changed, and the one that runs the pivot.
 const LINES: usize = 4;

@@ -3,17 +3,17 @@
 use ratatui::layout::Rect;
 
 use super::values::{decimals_shown, is_numeric};
-use crate::canvas::{Align, Canvas, Click, rows_of};
 use crate::screens::panes::Seat;
-use crate::text::{arrow, number};
-use crate::theme::Role;
-use crate::widgets::bars::{Bar, SIGNS, Scale};
-use crate::widgets::chart::zero_if_near;
-use crate::widgets::table::first_row;
-use crate::widgets::{Axis, Line, Side, Table, Unit, chart};
 use novamind_base::notation::{compact, grouped};
 use novamind_session::library::{ChartKind, ChartLine};
 use novamind_session::{Cell, Rows};
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::{arrow, number};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::bars::{Bar, SIGNS, Scale};
+use novamind_tui::widgets::chart::zero_if_near;
+use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::{Axis, Line, Side, Table, Unit, chart};
 
 /// Most series at once: more cannot be told apart.
 const MOST: usize = 6;

@@ -9,14 +9,14 @@ use super::meant::RowsMeant;
 use super::plot::PlottedColumns;
 use super::{takeout, values};
 use crate::action::Action;
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::Seat;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Table;
 use novamind_session::library::{ChartLine, Head};
 use novamind_session::{Cell, Library, Refusal, Rows};
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
 
 /// What came of the last statement.
 #[derive(Debug, Default)]

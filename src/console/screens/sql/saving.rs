@@ -2,14 +2,15 @@
 
 use ratatui::layout::Rect;
 
-use crate::canvas::{Canvas, centered};
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::{action::Action, widgets::Field};
+use crate::context::Look;
+use crate::action::Action;
 use novamind_session::Library;
 use novamind_session::library::{Head, file_name};
+use novamind_tui::canvas::{Canvas, centered};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
 
 /// A statement that is being named.
 pub struct Saving {
@@ -93,7 +94,7 @@ impl Saving {
         self.field.draw(canvas, Rect { x: line.x + 1, width: line.width.saturating_sub(2), ..line });
         let (text, role) = self.remark(library);
         let below = Rect { y: inside.y + 2, height: inside.height.saturating_sub(2), ..line };
-        let rows = crate::canvas::rows_of(Rect { height: inside.height.saturating_sub(2), ..below });
+        let rows = novamind_tui::canvas::rows_of(Rect { height: inside.height.saturating_sub(2), ..below });
         for (row, line) in rows.zip(wrapped(&text, inside.width.saturating_sub(2).into())) {
             canvas.text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, &line, role);
         }

@@ -2,12 +2,12 @@
 //! answers them, so they cover every row, and not only those that are held; they hold the filter of the screen; and they are recorded as any
 //! query is.
 
-use super::lexer::{KEYWORDS, tokens};
 use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
 use novamind_session::library::body;
 use novamind_session::{Cell, Rows};
+use novamind_tui::sql::{KEYWORDS, tokens};
 
 /// Columns that a pivot has for values, at most; all others are in one more.
 pub const MOST_ACROSS: usize = 12;

@@ -4,15 +4,15 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::lexer::tokens;
 use super::picker::in_a_line;
 use super::results::Results;
-use crate::canvas::{Canvas, Click};
-use crate::theme::Role;
+use std::time::Duration;
 use novamind_database::table;
 use novamind_session::library::{Head, body};
 use novamind_session::{Refusal, Rows};
-use std::time::Duration;
+use novamind_tui::canvas::{Canvas, Click};
+use novamind_tui::sql::tokens;
+use novamind_tui::theme::Role;
 
 /// Tabs at most.
 const MOST: usize = 9;

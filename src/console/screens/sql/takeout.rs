@@ -4,12 +4,12 @@ use ratatui::layout::Rect;
 
 use super::values;
 use crate::action::Action;
-use crate::canvas::{Canvas, Click, centered, rows_of};
 use crate::effect::Effect;
-use crate::screens::Look;
-use crate::theme::Role;
+use crate::context::Look;
 use novamind_base::notation::grouped;
 use novamind_session::Rows;
+use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
+use novamind_tui::theme::Role;
 
 /// Longest text for the clipboard, in bytes: terminals drop longer ones without a word.
 const CLIPBOARD: usize = 64 << 10;

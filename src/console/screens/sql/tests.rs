@@ -6,7 +6,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::action::Scope;
-use crate::company::Company;
+use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{company, picture, session, sweep};
@@ -299,12 +299,11 @@ fn names_come_from_the_browser() {
 
 #[test]
 fn keywords_are_coloured_where_the_text_is_scrolled_to() {
-    use crate::theme::{Role, Theme};
-    use novamind_session::Configuration;
+    use novamind_tui::theme::{Role, Theme};
     use ratatui::buffer::Buffer;
     let (company, mut screen) = (company(), Sql::default());
     screen.edit(&format!("{}SELECT 'x' -- done", "\n".repeat(40)));
-    let theme = Theme::find("dark", &Configuration::shipped()).expect("a theme");
+    let theme = Theme::bundled("dark").expect("a theme");
     let area = Rect::new(0, 0, 80, 21);
     let mut buffer = Buffer::empty(area);
     let mut canvas = Canvas::new(&mut buffer, &theme);

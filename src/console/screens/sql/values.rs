@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::theme::Role;
-use crate::widgets::{Cell as Shown, Column};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{Cell as Shown, Column};
 use novamind_base::notation::{csv_cell, grouped, printable};
 use novamind_session::{Cell, Rows, rows_as_json};
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_column_of_numbers_stands_right() {
-        use crate::canvas::Align;
+        use novamind_tui::canvas::Align;
         let rows = result(
             &["a", "b", "c"],
             vec![

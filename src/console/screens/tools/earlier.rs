@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::company::Company;
+use novamind_worker::company::Company;
 use crate::screens::journal::entries::in_words;
 use novamind_report::deals::deals_in_words;
 use novamind_session::JournalEntry;

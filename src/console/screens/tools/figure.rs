@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::super::Figure;
+use crate::context::Figure;
 use super::form::Form;
 use novamind_tools::{ArgumentKind, CATALOGUE, Key, Spec, ToolId};
 

@@ -9,16 +9,16 @@ use super::earlier;
 use super::sheet::{CellPlace, Sheet};
 use crate::action::Action;
 use crate::attention::BETWEEN_CELLS;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::keys::Chord;
-use crate::widgets::{Editor, Field};
-use crate::widgets::field::ONLY_NUMBERS;
 use novamind_base::notation::{dollars, parse_number};
 use novamind_report::count;
 use novamind_report::research::outlook_lines;
 use novamind_session::{Preview, Refusal};
 use novamind_tools::{ArgumentKind, Key, Kind, Spec};
+use novamind_tui::chord::Chord;
+use novamind_tui::widgets::field::ONLY_NUMBERS;
+use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::company::Company;
 
 /// A form of one tool.
 #[derive(Debug, Clone)]

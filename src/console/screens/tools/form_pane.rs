@@ -10,14 +10,14 @@ use super::outcome::{Detail, OutcomeLines, outcome_lines};
 use super::sheet::Block;
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::Editor;
+use crate::context::{Figure, Look};
 use novamind_tools::{Numbers, Spec, ToolId, When, describe};
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Editor;
 
 /// The form.
 pub struct FormPane;

@@ -6,10 +6,10 @@ use unicode_width::UnicodeWidthStr;
 use super::form::Form;
 use super::outcome::Leads;
 use super::sheet::{Block, CellPlace, Slot};
-use crate::canvas::{Align, Canvas, Click, rows_of};
-use crate::text::number;
-use crate::theme::Role;
-use crate::widgets::table::first_row;
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::number;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_row;
 
 /// Width of the names of rows.
 const NAME: u16 = 19;

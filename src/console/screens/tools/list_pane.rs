@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
-use crate::canvas::{Align, Canvas, Click, fit, rows_of};
 use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::Field;
-use crate::widgets::table::first_row;
+use crate::context::{Figure, Look};
 use novamind_tools::{Module, Spec};
+use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Field;
+use novamind_tui::widgets::table::first_row;
 
 /// The tools by module.
 pub struct ToolListPane;

@@ -1,7 +1,7 @@
 //! The margins that a draft of prices, model tiers or quotas would leave.
 
 use super::form::Form;
-use crate::company::Company;
+use novamind_worker::company::Company;
 use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::ByPlan;

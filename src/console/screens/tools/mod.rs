@@ -20,22 +20,23 @@ use serde_json::Value;
 use strum::VariantArray;
 
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenId, ScreenState};
+use crate::context::{Look, ScreenId};
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::message::News;
-use crate::readings::Reading;
-use crate::widgets::Field;
+use form::{Form, spaced};
+use outcome::Leads;
 use novamind_base::notation::plain_numbers;
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::projects_with_means;
 use novamind_session::{JournalEntry, Rows};
 use novamind_tools::{Answer, CATALOGUE, Spec, ToolId};
-use form::{Form, spaced};
-use outcome::Leads;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::Field;
+use novamind_worker::company::Company;
+use novamind_worker::message::News;
+use novamind_worker::readings::Reading;
 
 /// Its panes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

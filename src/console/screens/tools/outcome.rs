@@ -9,9 +9,7 @@ use super::margins::margins;
 use super::reference::reference;
 use super::sheet::Block;
 use crate::action::Action;
-use crate::screens::Look;
-use crate::text::{count, number, wrapped};
-use crate::theme::Role;
+use crate::context::Look;
 use novamind_base::notation::{dollars, grouped};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::outlook_lines;
@@ -19,6 +17,8 @@ use novamind_report::review::terms_line;
 use novamind_session::Rows;
 use novamind_session::{number_at, text_at};
 use novamind_tools::{ArgumentKind, Key};
+use novamind_tui::text::{count, number, wrapped};
+use novamind_tui::theme::Role;
 
 /// Leads and spend of the last four weeks by channel and group, as ad_channel_leads counts them.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -3,12 +3,12 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use crate::company::Company;
-use crate::text::number;
+use novamind_worker::company::Company;
 use novamind_base::notation::{cents, dollars, grouped};
 use novamind_report::research::{mean_days, mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
+use novamind_tui::text::number;
 
 /// Lines beside a form, the first one a head; empty where nothing helps.
 pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {

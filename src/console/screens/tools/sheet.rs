@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use crate::company::Company;
-use crate::text::number;
-use crate::widgets::Field;
-use novamind_base::notation::parse_number;
-use novamind_base::notation::json_number;
-use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
+use novamind_worker::company::Company;
+use novamind_base::notation::{json_number, parse_number};
 use novamind_session::identifiers::{Channel, Plan};
+use novamind_tools::{Argument, ArgumentKind, Key, Kind, Range, Spec, ToolId};
+use novamind_tui::text::number;
+use novamind_tui::widgets::Field;
 
 /// The argument that holds a program or a statement.
 const CODE: &str = "code";

@@ -2,13 +2,14 @@ use serde_json::json;
 
 use super::*;
 use crate::action::Scope;
-use crate::keys::{Chord, Keys};
+use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
-use crate::request::Request;
+use novamind_session::identifiers::Plan;
 use novamind_session::{Refusal, Via};
 use novamind_tools::ToolId;
-use novamind_session::identifiers::Plan;
+use novamind_tui::chord::Chord;
+use novamind_worker::request::Request;
 
 /// Types into the form of a tool; words are keys, the rest is typed letter by letter.
 fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
@@ -387,7 +388,7 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
                 let holds = |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
-                    let now = crate::text::number(company.setting(tool, plan));
+                    let now = novamind_tui::text::number(company.setting(tool, plan));
                     assert!(holds(&[&format!(" {plan}  "), &now]), "value of {plan}: {at}");
                 }
                 for plan in &sold {

@@ -2,7 +2,7 @@
 
 use super::{Seen, Xray};
 use crate::effect::Effect;
-use crate::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
 use novamind_session::Refusal;
 
 impl Xray {

@@ -5,9 +5,9 @@ use std::ops::Range;
 use unicode_width::UnicodeWidthStr;
 
 use super::lines::Row;
-use crate::text::wrapped;
-use crate::theme::Role;
 use novamind_report::xray::{HEAT, SpillCell, SpillMap, SpillRow};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
 
 /// Columns of a cell with its number.
 const WIDE: usize = 13;

@@ -5,17 +5,17 @@ use unicode_width::UnicodeWidthStr;
 use super::view::View;
 use super::{Xray, heat};
 use crate::action::Action;
-use crate::canvas::{Canvas, rows_of};
-use crate::look_inside::{LookCurve, LookFound};
-use crate::screens::Look;
+use crate::context::Look;
 use crate::screens::panes::Seat;
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::spark;
+use ratatui::layout::Rect;
 use novamind_base::notation::capital;
 use novamind_report::xray::line_of_factor;
 use novamind_session::{LeadFactor, REFUSED_LOOK};
-use ratatui::layout::Rect;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::spark;
+use novamind_worker::look_inside::{LookCurve, LookFound};
 
 /// A row: pieces of text one after the other.
 pub type Row = Vec<(String, Role)>;

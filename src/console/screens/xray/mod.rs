@@ -20,20 +20,21 @@ use strum::VariantArray;
 use self::typing::{Expected, Typed, TypedLine};
 use self::view::{Choices, View};
 use super::panes::{Pane, Paned, draw_pane};
-use super::{Look, ScreenState};
+use crate::context::Look;
+use super::ScreenState;
 use crate::action::Action;
-use crate::canvas::Canvas;
-use crate::company::Company;
 use crate::effect::Effect;
-use crate::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
-use crate::message::News;
-use crate::request::Request;
-use crate::theme::Role;
-use crate::widgets::scroll::Scroll;
-use crate::widgets::{Cell, Column, Field, Table};
 use novamind_report::xray::AskedWords;
-use novamind_session::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_session::identifiers::Group;
+use novamind_session::{Breakpoint, DrawnPart, LeadFactor};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::scroll::Scroll;
+use novamind_tui::widgets::{Cell, Column, Field, Table};
+use novamind_worker::company::Company;
+use novamind_worker::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
+use novamind_worker::message::News;
+use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]

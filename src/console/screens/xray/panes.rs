@@ -7,15 +7,15 @@ use super::typing::Expected;
 use super::view::{Choices, View};
 use super::{Xray, XrayPane, lines};
 use crate::action::{Action, Scope};
-use crate::canvas::{Canvas, rows_of};
 use crate::effect::Effect;
-use crate::look_inside::LookQuestion;
 use crate::screens::panes::{Border, Pane, Seat};
-use crate::screens::{Figure, Look};
-use crate::theme::Role;
-use crate::widgets::Table;
+use crate::context::{Figure, Look};
 use novamind_base::notation::capital;
 use novamind_session::LeadFactor;
+use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
+use novamind_worker::look_inside::LookQuestion;
 
 /// What can be looked at.
 pub struct ViewsPane;

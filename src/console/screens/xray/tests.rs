@@ -1,13 +1,12 @@
 use super::*;
-use novamind_session::Refusal;
 use crate::app::Settings;
-use crate::glyphs::Glyphs;
 use crate::headless::Headless;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::theme::Theme;
-use novamind_session::{Configuration, Mode, NewRun, Session, Storage, Via};
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
+use novamind_session::{Configuration, Mode, NewRun, Refusal, Session, Storage, Via};
+use novamind_tui::glyphs::Glyphs;
+use novamind_tui::theme::Theme;
 
 fn open(company: Company) -> Company {
     Company { may_look_inside: true, ..company }
@@ -240,7 +239,7 @@ fn requests_that_go_around_the_screen_are_refused() {
 
 fn settings(runs: &std::path::Path) -> Settings {
     Settings {
-        theme: Theme::find("dark", &Configuration::shipped()).expect("a theme"),
+        theme: Theme::bundled("dark").expect("a theme"),
         keys: Keys::shipped(),
         glyphs: Glyphs::Braille,
         configuration: Configuration::shipped(),

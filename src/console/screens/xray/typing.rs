@@ -2,11 +2,11 @@
 //! number, words.
 
 use super::view::{Choices, View};
-use crate::widgets::Field;
 use novamind_base::nearest;
 use novamind_report::xray::AskedWords;
-use novamind_session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_session::identifiers::Group;
+use novamind_session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
+use novamind_tui::widgets::Field;
 
 /// What is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

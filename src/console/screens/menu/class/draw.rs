@@ -3,18 +3,18 @@
 use ratatui::layout::Rect;
 
 use super::{Below, ClassPage};
-use crate::canvas::{Align, Canvas, Click, rows_of};
-use crate::text::wrapped;
-use crate::theme::Role;
-use crate::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
-use crate::widgets::scale::Unit;
-use crate::widgets::table::first_row;
 use novamind_base::notation::{compact, short_dollars};
 use novamind_report::class::{
     AskedClass, ClassView, RankedStudent, StudentPoints, asked, curves, pitfalls, ranked, scatter,
     score_in_words, state_in_words,
 };
 use novamind_report::count;
+use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::text::wrapped;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
+use novamind_tui::widgets::scale::Unit;
+use novamind_tui::widgets::table::first_row;
 
 /// Columns of the ranking, in small and in wide windows.
 const RANKING: (u16, u16) = (29, 52);

@@ -9,14 +9,17 @@ use ratatui::widgets::{Block, BorderType, Widget};
 use unicode_segmentation::UnicodeSegmentation;
 use unicode_width::UnicodeWidthStr;
 
-use super::action::Action;
 use super::theme::{Role, Theme};
+
+/// The number of a command. The application defines the commands and their numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Command(pub u16);
 
 /// What a click on a part of the screen asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
-    /// An action.
-    Do(Action),
+    /// A command.
+    Do(Command),
     /// A pane, by its number on the screen: it takes the focus.
     Pane(usize),
     /// A row of a pane.
@@ -39,6 +42,8 @@ pub struct Canvas<'a> {
     pub zoomed: bool,
     /// What is drawn comes from a database that is behind: every pane says so.
     pub stale: bool,
+    /// Text of a chart without data.
+    pub no_data: &'static str,
     /// What curves are drawn with.
     pub marker: Marker,
     /// Places from which the focused pane was reached; they stand before its title.
@@ -65,6 +70,7 @@ impl<'a> Canvas<'a> {
             page: 10,
             zoomed: false,
             stale: false,
+            no_data: "no data",
             marker: Marker::Braille,
             path: Vec::new(),
         }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use crossterm::event::Event;
 
-use super::company::Company;
-use super::look_inside::{DaysRan, LookFound};
-use super::readings::Reading;
-use super::resimulation::BranchesFound;
+use crate::company::Company;
+use crate::look_inside::{DaysRan, LookFound};
+use crate::readings::Reading;
+use crate::resimulation::BranchesFound;
 use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
@@ -29,7 +29,7 @@ pub enum Message {
     News(News),
     /// A signal asks the program to end, to stop for a while, or to go on.
     Signal(i32),
-    /// Time has passed, as [`super::app::App::wakes_after`] has asked.
+    /// Time has passed, as the application has asked.
     Time,
 }
 

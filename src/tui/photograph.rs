@@ -8,7 +8,7 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 use unicode_width::UnicodeWidthStr;
 
-use novamind_report::html::escaped;
+use novamind_base::notation::escaped_html;
 
 /// Width of a cell, pixels.
 const WIDTH: f64 = 8.4;
@@ -121,7 +121,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks
         out,
         "<text x=\"{left:.1}\" y=\"{base:.1}\" textLength=\"{length:.1}\" lengthAdjust=\"spacingAndGlyphs\" \
          fill=\"{ink}\"{weight}{faint}{line}>{}</text>",
-        escaped(word)
+        escaped_html(word)
     );
 }
 

@@ -174,7 +174,9 @@ pub fn tokens(sql: &str) -> Vec<Token> {
             '"' | '`' => (LexemeKind::Name, quoted(rest, first)),
             '[' => (LexemeKind::Name, rest.find(']').map_or(rest.len(), |end| end + 1)),
             digit if digit.is_ascii_digit() => (LexemeKind::Number, number(rest)),
-            '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => (LexemeKind::Number, number(rest)),
+            '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => {
+                (LexemeKind::Number, number(rest))
+            }
             letter if is_word(letter) => {
                 let end = rest.find(|next| !is_word(next)).unwrap_or(rest.len());
                 let known = KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(&rest[..end]));
@@ -186,20 +188,6 @@ pub fn tokens(sql: &str) -> Vec<Token> {
         at += length;
     }
     found
-}
-
-/// Whether a statement names a table of the x-ray: `hidden.groups`.
-pub fn names_hidden(sql: &str) -> bool {
-    let pieces: Vec<Token> =
-        tokens(sql).into_iter().filter(|token| token.kind != LexemeKind::Comment).collect();
-    let text = |token: &Token| sql[token.place.clone()].trim_matches(['"', '`', '[', ']']);
-    let is_hidden = |pair: &[Token]| {
-        pair[0].kind == LexemeKind::Name
-            && text(&pair[0]).eq_ignore_ascii_case("hidden")
-            && pair[1].kind == LexemeKind::Sign
-            && text(&pair[1]) == "."
-    };
-    pieces.windows(2).any(is_hidden)
 }
 
 /// Length of a quoted piece; a doubled quote does not end it.
@@ -231,11 +219,13 @@ fn number(rest: &str) -> usize {
 /// all of them. A place behind the last semicolon belongs to the statement before it if nothing follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokens(sql);
-    let ends = pieces.iter().filter(|token| token.kind == LexemeKind::Sign && &sql[token.place.clone()] == ";");
+    let ends =
+        pieces.iter().filter(|token| token.kind == LexemeKind::Sign && &sql[token.place.clone()] == ";");
     let mut from = 0;
     let mut all: Vec<Range<usize>> = Vec::new();
     for end in ends.map(|token| token.place.start).chain([sql.len()]) {
-        let says = |token: &&Token| token.kind != LexemeKind::Comment && (from..end).contains(&token.place.start);
+        let says =
+            |token: &&Token| token.kind != LexemeKind::Comment && (from..end).contains(&token.place.start);
         if pieces.iter().filter(says).count() > 0 {
             all.push(from..end);
         }
@@ -300,15 +290,5 @@ mod tests {
         assert_eq!(statement_at("SELECT 1 -- ;\n", 2), (0..14, 1, 1));
         assert_eq!(statement_at("", 0), (0..0, 1, 1));
         assert_eq!(statement_at(";;", 1), (0..2, 1, 1));
-    }
-
-    #[test]
-    fn hidden_tables_are_named_by_their_schema() {
-        for sql in ["SELECT * FROM hidden.groups", "select 1 from \"Hidden\" . drift", "x [hidden]/**/.pmi"] {
-            assert!(names_hidden(sql), "{sql}");
-        }
-        for sql in ["SELECT 'hidden.groups'", "SELECT hidden FROM x", "-- hidden.groups\nSELECT 1", "hidden", ""] {
-            assert!(!names_hidden(sql), "{sql}");
-        }
     }
 }

@@ -16,39 +16,39 @@ use crossterm::terminal::{
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
-use super::app::App;
-use super::frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Position;
 
 /// The terminal while the console has it; given back when this is dropped.
 pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
-/// What a panic prints besides its own words: where the run is safe.
-static SAVED_AT: Mutex<Option<String>> = Mutex::new(None);
+/// Line printed after the message of a panic.
+static PANIC_NOTE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Says where the run is kept, for the words of a panic.
-pub fn remember_run(folder: Option<String>) {
-    *SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = folder;
+/// Sets the line printed after the message of a panic, for example where the user's work is saved.
+pub fn set_panic_note(note: Option<String>) {
+    *PANIC_NOTE.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = note;
 }
 
 impl TerminalScreen {
-    /// Takes the terminal. A failure of the program names the command that goes on with the newest run.
+    /// Takes the terminal. If the main thread panics, the terminal is given back before the message is printed.
     ///
     /// # Errors
     /// It does not let itself be taken.
-    pub fn take(again: String) -> io::Result<TerminalScreen> {
+    pub fn take() -> io::Result<TerminalScreen> {
         let taken = prepare().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
         let terminal = taken.inspect_err(|_| restore())?;
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            // Threads behind the screen report their panics as news; the console leaves in good order.
+            // The application handles panics of its other threads itself.
             if std::thread::current().name() == Some("main") {
                 restore();
                 usual(panic);
-                let saved = SAVED_AT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-                if let Some(folder) = &*saved {
-                    eprintln!("novamind: everything confirmed is safe in {folder}; `{again}` continues");
+                let note = PANIC_NOTE.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                if let Some(note) = &*note {
+                    eprintln!("{note}");
                 }
             }
         }));
@@ -79,27 +79,18 @@ impl TerminalScreen {
         self.clear()
     }
 
-    /// Draws a frame.
+    /// Draws a frame with `paint`, which returns where the cursor is shown.
     ///
     /// # Errors
     /// The terminal does not take it.
-    pub fn draw(&mut self, app: &mut App) -> io::Result<()> {
+    pub fn draw(&mut self, paint: impl FnOnce(&mut Buffer) -> Option<Position>) -> io::Result<()> {
         execute!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
-        let mut drawn = None;
         self.terminal.draw(|whole| {
-            let result = frame::draw(app, whole.buffer_mut());
-            if let Some(cursor) = result.cursor {
+            if let Some(cursor) = paint(whole.buffer_mut()) {
                 whole.set_cursor_position(cursor);
             }
-            drawn = Some(result);
         })?;
-        execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)?;
-        if let Some(drawn) = drawn {
-            app.clicks = drawn.clicks;
-            app.page = drawn.page;
-            app.window = drawn.window;
-        }
-        Ok(())
+        execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)
     }
 
     /// Forgets what is on the screen, so that the next frame is drawn whole.

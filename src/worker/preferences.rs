@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::glyphs::Glyphs;
 use novamind_session::{Configuration, RunError};
+use novamind_tui::glyphs::Glyphs;
 
 const FILE: &str = "console.toml";
 

@@ -3,8 +3,6 @@
 use ratatui::style::{Color, Modifier, Style};
 use serde::Deserialize;
 
-use novamind_session::Configuration;
-
 /// What a piece of the screen means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
@@ -118,44 +116,17 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// A theme by name; a person's file goes before the shipped one.
+    /// Returns a bundled theme, or `None` if there is none of this name.
+    pub fn bundled(name: &str) -> Option<Theme> {
+        let (_, text) = novamind_assets::themes().into_iter().find(|(bundled, _)| *bundled == name)?;
+        Some(Theme::parse(name, text).expect("a test parses the bundled themes"))
+    }
+
+    /// Parses the text of a theme file.
     ///
     /// # Errors
-    /// There is none of this name, or its file is wrong.
-    pub fn find(name: &str, configuration: &Configuration) -> Result<Theme, String> {
-        let own = configuration.file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
-        if let Some(source) = own {
-            return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
-        }
-        match novamind_assets::themes().into_iter().find(|(shipped, _)| *shipped == name) {
-            Some((_, text)) => Theme::parse(name, text),
-            None => {
-                let own = configuration.names("themes");
-                let known: Vec<&str> = novamind_assets::themes()
-                    .into_iter()
-                    .map(|(shipped, _)| shipped)
-                    .chain(own.iter().map(String::as_str))
-                    .collect();
-                Err(format!("there is no theme {name}; there are {}", known.join(", ")))
-            }
-        }
-    }
-
-    /// Every theme that can be read, the shipped ones first. A person's broken file is left out: [`Theme::find`] tells
-    /// what is wrong with it.
-    pub fn all(configuration: &Configuration) -> Vec<Theme> {
-        let own = configuration.names("themes");
-        let shipped: Vec<&str> = novamind_assets::themes().into_iter().map(|(name, _)| name).collect();
-        let others = own.iter().map(String::as_str).filter(|own| !shipped.contains(own));
-        shipped
-            .iter()
-            .copied()
-            .chain(others)
-            .filter_map(|name| Theme::find(name, configuration).ok())
-            .collect()
-    }
-
-    fn parse(name: &str, text: &str) -> Result<Theme, String> {
+    /// The text is not TOML, a role is missing or unknown, or there is no colour for series.
+    pub fn parse(name: &str, text: &str) -> Result<Theme, String> {
         let looks: File = toml::from_str(text).map_err(|error| error.to_string())?;
         if looks.series.is_empty() {
             return Err("series needs at least one entry".to_owned());
@@ -208,22 +179,21 @@ mod tests {
     #[test]
     fn the_shipped_themes_are_read_and_mono_has_no_colour() {
         for (name, _) in novamind_assets::themes() {
-            Theme::find(name, &Configuration::shipped()).expect(name);
+            Theme::bundled(name).expect(name);
         }
-        let mono = Theme::find("mono", &Configuration::shipped()).expect("mono");
+        let mono = Theme::bundled("mono").expect("mono");
         for role in [Role::Bad, Role::Selection, Role::Series(3), Role::TabHere] {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
         }
         assert!(!mono.colours_apart(2));
         // Colour 8 is the background on many palettes: no words stand in it.
         for name in ["dark", "light"] {
-            let theme = Theme::find(name, &Configuration::shipped()).expect(name);
+            let theme = Theme::bundled(name).expect(name);
             for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {
                 assert_ne!(theme.style(role).fg, Some(Color::DarkGray), "{name} {role:?}");
             }
             assert!(theme.colours_apart(12), "{name}: one colour a category");
         }
-        let problem = Theme::find("pink", &Configuration::shipped()).expect_err("no theme");
-        assert!(problem.contains("dark, high-contrast, light, mono"), "{problem}");
+        assert!(Theme::bundled("pink").is_none());
     }
 }

@@ -3,7 +3,6 @@
 use unicode_width::UnicodeWidthStr;
 
 use novamind_base::notation::grouped;
-pub use novamind_base::notation::short_dollars;
 
 /// Text in lines of at most a width, broken between words where that is possible.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
@@ -53,7 +52,7 @@ pub fn arrow(change: f64, shown: &str) -> String {
 
 /// A count with its noun: `1 seat`, `1,200 seats`.
 pub fn count(number: f64, noun: &str) -> String {
-    novamind_report::count(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
+    novamind_base::notation::count(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
 }
 
 /// A number with as many decimals as it needs, at most two.

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::action::Action;
+use super::ListAction;
 
 /// The row that stands first, and the farthest that may.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -14,15 +14,15 @@ pub struct Scroll {
 
 impl Scroll {
     /// Moves through the text by rows, by pages of so many rows, or to an end; true if the action does that.
-    pub fn act(&mut self, action: Action, page: usize) -> bool {
+    pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
         let from = self.from.min(self.last.get());
-        let to = match action {
-            Action::Up | Action::ScrollUp => from.saturating_sub(1),
-            Action::Down | Action::ScrollDown => from + 1,
-            Action::PageUp => from.saturating_sub(page),
-            Action::PageDown => from + page,
-            Action::First => 0,
-            Action::Last => usize::MAX,
+        let to = match action.into() {
+            Some(ListAction::Up | ListAction::ScrollUp) => from.saturating_sub(1),
+            Some(ListAction::Down | ListAction::ScrollDown) => from + 1,
+            Some(ListAction::PageUp) => from.saturating_sub(page),
+            Some(ListAction::PageDown) => from + page,
+            Some(ListAction::First) => 0,
+            Some(ListAction::Last) => usize::MAX,
             _ => return false,
         };
         self.from = to.min(self.last.get());
@@ -53,15 +53,21 @@ mod tests {
             assert!(scroll.act(action, 8));
             scroll.within(20)
         };
-        let moves =
-            [Action::PageDown, Action::Down, Action::Last, Action::ScrollDown, Action::PageUp, Action::First];
+        let moves = [
+            ListAction::PageDown,
+            ListAction::Down,
+            ListAction::Last,
+            ListAction::ScrollDown,
+            ListAction::PageUp,
+            ListAction::First,
+        ];
         assert_eq!(moves.map(&mut after), [8, 9, 20, 20, 12, 0]);
-        assert!(!scroll.act(Action::Confirm, 8));
-        scroll.act(Action::Last, 8);
+        assert!(!scroll.act(ListAction::Sort, 8));
+        scroll.act(ListAction::Last, 8);
         assert_eq!(scroll.within(3), 3, "the window has grown");
         scroll.show_end();
         assert_eq!(scroll.within(40), 40, "the text has grown");
-        scroll.act(Action::Up, 8);
+        scroll.act(ListAction::Up, 8);
         assert_eq!(scroll.within(40), 39);
     }
 }

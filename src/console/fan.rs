@@ -2,12 +2,12 @@
 
 use ratatui::layout::Rect;
 
-use super::chart::{Axis, Band, Line, Plot, Side, zero_if_near};
-use super::scale::Unit;
-use crate::canvas::Canvas;
-use crate::company::Company;
-use crate::theme::Role;
 use novamind_tools::Forecast;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Unit;
+use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, zero_if_near};
+use novamind_worker::company::Company;
 
 /// Forecasts that look as far ahead as half of what lies behind: farther ones would leave the past no room.
 pub fn near(company: &Company, forecasts: &[Forecast]) -> Vec<Forecast> {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::stopwatch::ms;
+use crate::attention::ms;
 use crate::dialogs::Dialog;
 use novamind_session::record::{DialogOutcome, DialogStep, DialogUse};
 

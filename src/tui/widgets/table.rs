@@ -6,8 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
+use super::ListAction;
 use super::field::Field;
-use crate::action::Action;
 use crate::canvas::{Align, Canvas, Click, fit};
 use crate::theme::Role;
 
@@ -214,27 +214,27 @@ impl Table {
     }
 
     /// Does what a list can do; false if it can do nothing with the action.
-    pub fn act(&mut self, action: Action, page: u16) -> bool {
+    pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
+        let Some(action) = action.into() else { return false };
         let last = self.shown.len().saturating_sub(1);
         match action {
-            Action::Up => self.selected = self.selected.saturating_sub(1),
-            Action::Down => self.selected = (self.selected + 1).min(last),
-            Action::PageUp => self.selected = self.selected.saturating_sub(page.max(1) as usize),
-            Action::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
-            Action::First => self.selected = 0,
-            Action::Last => self.selected = last,
-            Action::Left => self.column = self.column.saturating_sub(1),
-            Action::Right => self.column = (self.column + 1).min(self.columns.len().saturating_sub(1)),
-            Action::Sort => self.sort(),
-            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
-            Action::Commit if self.typing.is_some() => self.typing = None,
-            Action::CommitDown if self.typing.is_some() => self.typing = None,
-            Action::Discard if self.typing.is_some() => {
+            ListAction::Up => self.selected = self.selected.saturating_sub(1),
+            ListAction::Down => self.selected = (self.selected + 1).min(last),
+            ListAction::PageUp => self.selected = self.selected.saturating_sub(page.max(1) as usize),
+            ListAction::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
+            ListAction::First => self.selected = 0,
+            ListAction::Last => self.selected = last,
+            ListAction::Left => self.column = self.column.saturating_sub(1),
+            ListAction::Right => self.column = (self.column + 1).min(self.columns.len().saturating_sub(1)),
+            ListAction::Sort => self.sort(),
+            ListAction::Filter => self.typing = Some(Field::of(self.filter.clone())),
+            ListAction::Commit if self.typing.is_some() => self.typing = None,
+            ListAction::Discard if self.typing.is_some() => {
                 self.typing = None;
                 self.filter.clear();
                 self.arrange();
             }
-            Action::Close if !self.filter.is_empty() => {
+            ListAction::Close if !self.filter.is_empty() => {
                 self.filter.clear();
                 self.arrange();
             }
@@ -438,36 +438,38 @@ mod tests {
     #[test]
     fn sorting_turns_round_and_ends() {
         let mut table = table();
-        table.act(Action::Sort, 5);
+        table.act(ListAction::Sort, 5);
         assert_eq!(names(&table), ["alpha", "Beta", "gamma"]);
-        table.act(Action::Right, 5);
-        table.act(Action::Sort, 5);
+        table.act(ListAction::Right, 5);
+        table.act(ListAction::Sort, 5);
         assert_eq!(names(&table), ["alpha", "Beta", "gamma"], "largest first");
-        table.act(Action::Sort, 5);
+        table.act(ListAction::Sort, 5);
         assert_eq!(names(&table), ["gamma", "Beta", "alpha"]);
-        table.act(Action::Sort, 5);
+        table.act(ListAction::Sort, 5);
         assert_eq!(names(&table), ["Beta", "alpha", "gamma"]);
     }
 
     #[test]
     fn a_filter_keeps_the_selected_row_if_it_can() {
         let mut table = table();
-        table.act(Action::Last, 5);
-        table.act(Action::Filter, 5);
+        table.act(ListAction::Last, 5);
+        table.act(ListAction::Filter, 5);
         table.typing().expect("typing").insert("A");
         table.typed();
         assert_eq!((names(&table), table.selected()), (vec!["Beta", "alpha", "gamma"], Some(2)));
         table.typing().expect("typing").insert("m");
         table.typed();
         assert_eq!((names(&table), table.selected()), (vec!["gamma"], Some(2)));
-        table.act(Action::Discard, 5);
+        table.act(ListAction::Discard, 5);
         assert_eq!((table.shown.len(), table.selected()), (3, Some(2)));
     }
 
     #[test]
     fn an_empty_table_has_nothing_selected() {
         let mut table = Table::new(vec![Column::words("name")]);
-        for action in [Action::Down, Action::PageDown, Action::Last, Action::Sort, Action::Right] {
+        for action in
+            [ListAction::Down, ListAction::PageDown, ListAction::Last, ListAction::Sort, ListAction::Right]
+        {
             table.act(action, 3);
         }
         assert_eq!(table.selected(), None);

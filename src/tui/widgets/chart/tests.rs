@@ -1,19 +1,13 @@
-use ratatui::buffer::Buffer;
 use ratatui::symbols::Marker;
 
 use super::*;
-use crate::theme::Theme;
-use novamind_session::Configuration;
+use crate::painted;
 
 fn drawn(plot: &Plot<'_>, width: u16, height: u16, marker: Marker) -> Vec<String> {
-    let area = Rect::new(0, 0, width, height);
-    let mut buffer = Buffer::empty(area);
-    let theme = Theme::find("mono", &Configuration::shipped()).expect("a theme");
-    let mut canvas = Canvas::new(&mut buffer, &theme);
-    canvas.marker = marker;
-    plot.draw(&mut canvas, area);
-    let line = |y: u16| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
-    (0..height).map(|y| line(y).trim_end().to_owned()).collect()
+    painted(width, height, |canvas, area| {
+        canvas.marker = marker;
+        plot.draw(canvas, area);
+    })
 }
 
 fn plot<'a>(lines: &'a [Line], band: Option<&'a Band>) -> Plot<'a> {
@@ -75,7 +69,7 @@ fn a_band_is_shaded_where_it_is_and_names_never_share_a_row() {
 #[test]
 fn nothing_is_drawn_without_points_and_no_value_is_too_strange() {
     let nothing = drawn(&plot(&[], None), 60, 8, Marker::Braille);
-    assert!(nothing[0].starts_with(NO_DATA));
+    assert!(nothing[0].starts_with("no data"));
     let one = drawn(&plot(&[Line::of(&[5.0], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
     assert!(one.contains('•') && one.contains("$0┤"), "{one}");
     let zeros = drawn(&plot(&[Line::of(&[0.0; 9], Role::Text)], None), 60, 8, Marker::Braille).join("\n");

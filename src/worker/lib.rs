@@ -8,6 +8,7 @@ mod answering;
 mod branches;
 mod causes;
 mod class;
+pub mod company;
 mod curve;
 mod desk;
 mod folder;
@@ -15,11 +16,20 @@ mod inside;
 mod kin;
 mod lesson;
 mod limits;
+pub mod look_inside;
 mod mending;
+pub mod message;
 mod opponents;
 mod player;
+pub mod posts;
+pub mod preferences;
 mod queries;
+pub mod readings;
+pub mod request;
+pub mod resimulation;
 mod run;
+#[cfg(any(test, feature = "test-kit"))]
+pub mod test_kit;
 mod values;
 mod visit;
 
@@ -33,12 +43,12 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::company::Company;
-use super::look_inside::LookQuestion;
-use super::message::{Message, News};
-use super::preferences::Preferences;
-use super::request::Request;
-use super::resimulation::{BranchesAsked, WhyAsked};
+use crate::company::Company;
+use crate::look_inside::LookQuestion;
+use crate::message::{Message, News};
+use crate::preferences::Preferences;
+use crate::request::Request;
+use crate::resimulation::{BranchesAsked, WhyAsked};
 use answering::words_of;
 use desk::Desk;
 use novamind_report::opponents::PlayOpponents;

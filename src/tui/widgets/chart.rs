@@ -9,9 +9,6 @@ use crate::canvas::{Align, Canvas};
 use crate::text::arrow;
 use crate::theme::Role;
 
-/// What stands where a chart has no data.
-pub const NO_DATA: &str = "no data yet: run a week (n)";
-
 /// Narrowest plot that leaves room for names at the ends of its curves.
 const ROOM_FOR_NAMES: u16 = 36;
 
@@ -155,7 +152,7 @@ impl Plot<'_> {
         }
         let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
         if points().next().is_none() {
-            canvas.text(area, NO_DATA, Role::Dim);
+            canvas.text(area, canvas.no_data, Role::Dim);
             return;
         }
         let band = || self.band.iter().flat_map(|band| &band.ends);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::posts::{self, Posts};
+use crate::posts::{self, Posts};
 use novamind_report::WeekReport;
 use novamind_report::fit::{Fit, fits};
 use novamind_report::funnel::{Funnel, funnels};

@@ -1,0 +1,195 @@
+//! Keys with their modifiers, as key files write them: `n`, `ctrl-s`, `shift-tab`.
+
+use std::fmt;
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+/// Longest row of chords for one action.
+const LONGEST: usize = 3;
+
+/// A key with its modifiers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd)]
+pub struct Chord {
+    code: KeyCode,
+    ctrl: bool,
+    alt: bool,
+    shift: bool,
+}
+
+/// Names of keys that are no characters.
+const NAMED: [(&str, KeyCode); 15] = [
+    ("enter", KeyCode::Enter),
+    ("esc", KeyCode::Esc),
+    ("tab", KeyCode::Tab),
+    ("space", KeyCode::Char(' ')),
+    ("backspace", KeyCode::Backspace),
+    ("delete", KeyCode::Delete),
+    ("insert", KeyCode::Insert),
+    ("up", KeyCode::Up),
+    ("down", KeyCode::Down),
+    ("left", KeyCode::Left),
+    ("right", KeyCode::Right),
+    ("home", KeyCode::Home),
+    ("end", KeyCode::End),
+    ("pageup", KeyCode::PageUp),
+    ("pagedown", KeyCode::PageDown),
+];
+
+impl Chord {
+    /// The chord of a key event.
+    pub fn of(event: &KeyEvent) -> Chord {
+        let has = |modifier| event.modifiers.contains(modifier);
+        let (mut code, mut shift) = (event.code, has(KeyModifiers::SHIFT));
+        if code == KeyCode::BackTab {
+            (code, shift) = (KeyCode::Tab, true);
+        }
+        // A character already says whether shift was held.
+        if matches!(code, KeyCode::Char(_)) {
+            shift = false;
+        }
+        Chord { code, ctrl: has(KeyModifiers::CONTROL), alt: has(KeyModifiers::ALT), shift }
+    }
+
+    /// Reads a chord as the key file writes it.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(text: &str) -> Result<Chord, String> {
+        let mut chord = Chord { code: KeyCode::Null, ctrl: false, alt: false, shift: false };
+        let mut rest = text;
+        loop {
+            rest = match rest {
+                _ if rest.starts_with("ctrl-") => {
+                    chord.ctrl = true;
+                    &rest[5..]
+                }
+                _ if rest.starts_with("alt-") => {
+                    chord.alt = true;
+                    &rest[4..]
+                }
+                _ if rest.starts_with("shift-") => {
+                    chord.shift = true;
+                    &rest[6..]
+                }
+                _ => break,
+            };
+        }
+        let mut letters = rest.chars();
+        chord.code = match (letters.next(), letters.next()) {
+            (Some(letter), None) if !letter.is_control() => KeyCode::Char(letter),
+            _ => match NAMED.iter().find(|(name, _)| *name == rest) {
+                Some((_, code)) => *code,
+                None => rest
+                    .strip_prefix('f')
+                    .and_then(|number| number.parse::<u8>().ok())
+                    .filter(|number| (1..=12).contains(number))
+                    .map(KeyCode::F)
+                    .ok_or_else(|| format!("{text:?} is no key"))?,
+            },
+        };
+        Ok(chord)
+    }
+
+    /// The event a terminal would send.
+    pub fn event(&self) -> KeyEvent {
+        let mut modifiers = KeyModifiers::NONE;
+        for (held, modifier) in [
+            (self.ctrl, KeyModifiers::CONTROL),
+            (self.alt, KeyModifiers::ALT),
+            (self.shift, KeyModifiers::SHIFT),
+        ] {
+            modifiers.set(modifier, held);
+        }
+        KeyEvent::new(self.code, modifiers)
+    }
+
+    /// Whether it is the key that cancels.
+    pub fn is_escape(&self) -> bool {
+        self.code == KeyCode::Esc
+    }
+
+    /// Whether it is a character that is typed.
+    pub fn is_printable(&self) -> bool {
+        matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
+    }
+
+    /// Whether it begins a number.
+    pub fn begins_number(&self) -> bool {
+        matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
+            && !self.ctrl
+            && !self.alt
+    }
+
+    /// Whether a text field wants it for itself.
+    pub fn is_text(&self) -> bool {
+        match self.code {
+            KeyCode::Char(_) => !self.ctrl && !self.alt,
+            KeyCode::Backspace
+            | KeyCode::Delete
+            | KeyCode::Left
+            | KeyCode::Right
+            | KeyCode::Up
+            | KeyCode::Down
+            | KeyCode::Home
+            | KeyCode::End
+            | KeyCode::PageUp
+            | KeyCode::PageDown
+            | KeyCode::Enter => true,
+            KeyCode::Tab => !self.shift,
+            _ => false,
+        }
+    }
+}
+
+impl fmt::Display for Chord {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (held, name) in [(self.ctrl, "ctrl-"), (self.alt, "alt-"), (self.shift, "shift-")] {
+            if held {
+                formatter.write_str(name)?;
+            }
+        }
+        match self.code {
+            KeyCode::Char(letter) if letter != ' ' => write!(formatter, "{letter}"),
+            KeyCode::F(number) => write!(formatter, "f{number}"),
+            code => {
+                let name = NAMED.iter().find(|(_, named)| *named == code).map_or("?", |(name, _)| name);
+                formatter.write_str(name)
+            }
+        }
+    }
+}
+
+/// Reads chords that are pressed one after the other.
+///
+/// # Errors
+/// A chord cannot be parsed, or there are too many.
+pub fn sequence(text: &str) -> Result<Vec<Chord>, String> {
+    let chords: Result<Vec<Chord>, String> = text.split(' ').map(Chord::parse).collect();
+    let chords = chords?;
+    if chords.len() > LONGEST {
+        return Err(format!("{text:?} is longer than {LONGEST} keys"));
+    }
+    Ok(chords)
+}
+
+/// Chords as the key file writes them.
+pub fn written(chords: &[Chord]) -> String {
+    chords.iter().map(Chord::to_string).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chords_read_back_as_they_are_written() {
+        for text in
+            ["n", "N", ":", "ctrl-s", "shift-tab", "f5", "space", "pageup", "ctrl-enter", "-", "ctrl--"]
+        {
+            assert_eq!(Chord::parse(text).expect(text).to_string(), text);
+        }
+        for text in ["", "ctrl-", "f0", "f13", "entr", "ab"] {
+            assert!(Chord::parse(text).is_err(), "{text}");
+        }
+    }
+}

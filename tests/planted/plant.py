@@ -1,37 +1,44 @@
 #!/usr/bin/env python3
-"""Plants small errors and counts how many of them the default test suite notices.
+"""Makes one error at a time in a copy of the repository and counts how many the test suite notices.
 
-    tests/planted/plant.py                    all errors, the whole suite
-    tests/planted/plant.py --only 3,17,40     some of them
-    tests/planted/plant.py --house session    those of one house
-    tests/planted/plant.py --check            only see whether every error still finds its place
-    tests/planted/plant.py -- --lib           what follows -- goes to `cargo test`
+    tests/planted/plant.py                        all errors, the whole suite
+    tests/planted/plant.py --only 3,17,40         some errors
+    tests/planted/plant.py --crate novamind-world the errors of one crate
+    tests/planted/plant.py --stages own,library   some of the stages
+    tests/planted/plant.py --check                only test that each error still finds its place
+    tests/planted/plant.py -- --skip pictures     arguments after -- go to every test program
 
-All errors go into one copy of the repository, each behind a switch, so that one build serves them all: the
-expression that `errors.toml` marks with « » becomes `(if planted(7) { WRONG } else { RIGHT })`, and the environment
-variable NOVAMIND_PLANTED says which number is wrong. What is asked of the text of the sources (tests/tidy.rs) is left
-out, because the copy is not as tidy.
+All errors go into one copy, each behind a switch, so that one build serves them all. The expression that `errors.toml`
+marks with « » becomes `(if planted(7) { WRONG } else { RIGHT })`; the environment variable NOVAMIND_PLANTED selects
+the wrong one. The tests of the text of the sources (tests/tidy) are left out, because a copy full of switches fails them.
+
+Stages run in the order of STAGES, each with the errors that no earlier stage noticed. A test program is stopped at its
+first failure. The failing test counts if it fails a second time and passes without the error.
 """
 
 import argparse
 import collections
+import json
 import os
 import pathlib
+import re
 import shutil
+import signal
 import subprocess
 import sys
-import tempfile
+import threading
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIST = pathlib.Path(__file__).with_name("errors.toml")
-COPIED = ["Cargo.toml", "Cargo.lock", "build.rs", "clippy.toml", "rustfmt.toml", "README.md"]
-COPIED += ["assets", "configs", "docs", "src", "tests"]
-# Seconds after which a suite that hangs counts as having noticed.
+COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md", "assets", "configs", "docs", "src", "tests"]
+# Unit tests of the crate with the error, integration tests, everything else.
+STAGES = ["own", "library", "program", "console", "study", "others"]
+# Seconds without the end of a test after which a test program counts as one that hangs.
 LONGEST = 1200
-SWITCH = '''//! Which planted error is made.
+SWITCH = '''//! The switch of planted errors.
 
-/// Whether this error is made.
+/// Returns whether this error is made.
 pub fn planted(number: u32) -> bool {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
     let read = || std::env::var("NOVAMIND_PLANTED").ok().and_then(|text| text.parse().ok()).unwrap_or(0);
@@ -40,108 +47,159 @@ pub fn planted(number: u32) -> bool {
 '''
 
 
-def errors():
+def listed():
     with open(LIST, "rb") as file:
-        listed = tomllib.load(file)["error"]
-    return [dict(error, number=number) for number, error in enumerate(listed, 1)]
+        errors = tomllib.load(file)["error"]
+    return [dict(error, number=number) for number, error in enumerate(errors, 1)]
 
 
-def plant(text, error):
-    """The text with the error behind its switch."""
-    place = error["place"]
-    before, rest = place.split("«")
-    right, after = rest.split("»")
-    found = text.count(before + right + after)
-    if found != 1:
-        sys.exit(f"error {error['number']}, {error['file']}: its place is there {found} times: {place}")
-    choice = f"(if crate::planted::planted({error['number']}) {{ {error['wrong']} }} else {{ {right} }})"
-    return text.replace(before + right + after, before + choice + after)
+def crate_of(path):
+    """The name of the crate of a source file."""
+    folder = next(folder for folder in path.parents if (folder / "Cargo.toml").exists())
+    return tomllib.loads((folder / "Cargo.toml").read_text())["package"]["name"]
 
 
-def copy(folder, planted):
+def plant(texts, error):
+    """Puts the error behind its switch. Its place is searched in all sources, regardless of line breaks."""
+    before, right, after = re.split("[«»]", error["place"])
+    parts = [r"\s+".join(re.escape(word) for word in part.split(" ")) for part in (before, right, after)]
+    pattern = re.compile("({})({})({})".format(*parts))
+    found = [path for path, text in texts.items() for _ in pattern.finditer(text)]
+    if len(found) != 1:
+        sys.exit(f"error {error['number']}: its place is there {len(found)} times: {error['place']}")
+    error["crate"] = crate_of(found[0])
+    base = "crate" if error["crate"] == "novamind-base" else "novamind_base"
+    switch = f"{base}::planted::planted({error['number']})"
+    wrong = lambda match: f"{match[1]}(if {switch} {{ {error['wrong']} }} else {{ {match[2]} }}){match[3]}"
+    texts[found[0]] = pattern.sub(wrong, texts[found[0]])
+
+
+def sources(errors):
+    """The sources with errors, by path."""
+    original = {path: path.read_text() for path in sorted((ROOT / "src").rglob("*.rs"))}
+    texts = dict(original)
+    for error in errors:
+        plant(texts, error)
+    changed = {path: text for path, text in texts.items() if text != original[path]}
+    base = ROOT / "src/base"
+    library = base / "lib.rs"
+    return changed | {base / "planted.rs": SWITCH, library: texts[library] + "\n#[doc(hidden)]\npub mod planted;\n"}
+
+
+def copy(folder, changed):
+    """Replaces the copy. Times of files stay, so that cargo builds only what differs from the last copy."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     for name in COPIED:
         source = ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, folder / name)
-        elif source.exists():
-            shutil.copy(source, folder / name)
-    # It asks for tidy sources, which a copy full of switches is not.
-    for name in folder.glob("tests/tidy*"):
-        name.unlink() if name.is_file() else shutil.rmtree(name)
-    for error in planted:
-        path = folder / error["file"]
-        path.write_text(plant(path.read_text(), error))
-    for crate in {crate_of(folder, error) for error in planted}:
-        (crate / "planted.rs").write_text(SWITCH)
-        library = next(crate / name for name in ["lib.rs", "mod.rs"] if (crate / name).exists())
-        library.write_text(library.read_text() + "\n#[doc(hidden)]\npub mod planted;\n")
+        (shutil.copytree if source.is_dir() else shutil.copy2)(source, folder / name)
+    (folder / "tests/tidy/main.rs").write_text("")
+    newest = max(path.stat().st_mtime for path in (LIST, pathlib.Path(__file__)))
+    for path, text in changed.items():
+        place = folder / path.relative_to(ROOT)
+        place.write_text(text)
+        time = max(newest, path.stat().st_mtime if path.exists() else 0)
+        os.utime(place, (time, time))
 
 
-def crate_of(folder, error):
-    """The folder with the sources of the crate in which an error is made."""
-    for parent in (folder / error["file"]).parents:
-        if (parent / "Cargo.toml").exists():
-            return parent / "src" if parent == folder else parent
+class Program:
+    """A test program that cargo built."""
+
+    def __init__(self, built):
+        self.path, self.folder = built["executable"], pathlib.Path(built["manifest_path"]).parent
+        self.crate = tomllib.loads((self.folder / "Cargo.toml").read_text())["package"]["name"]
+        self.test = built["target"]["name"] if "test" in built["target"]["kind"] else None
+        self.skipped = []
+
+    def is_of(self, stage, crate):
+        if self.test:
+            return stage == (self.test if self.test in STAGES else "others")
+        return stage == ("own" if self.crate == crate else "others")
+
+    def first_failure(self, number, arguments):
+        """The name of the first test that fails, or `None` if all pass."""
+        environment = dict(os.environ, NOVAMIND_PLANTED=str(number), CARGO_MANIFEST_DIR=str(self.folder))
+        run = subprocess.Popen(
+            [self.path, *arguments], cwd=self.folder, env=environment, text=True, errors="replace",
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
+        )
+        stop = lambda: os.killpg(run.pid, signal.SIGKILL)
+        failed = None
+        lines = iter(run.stdout.readline, "")
+        while failed is None:
+            timer = threading.Timer(LONGEST, stop)
+            timer.start()
+            line = next(lines, None)
+            timer.cancel()
+            if line is None:
+                break
+            match = re.match(r"test (\S+).* FAILED$", line)
+            failed = match and match[1]
+        if failed:
+            stop()
+        run.stdout.close()
+        return failed or ("(the program stops)" if run.wait() else None)
+
+    def notices(self, number, arguments):
+        """The name of a test that fails because of the error, or `None`."""
+        while True:
+            skips = [word for name in self.skipped for word in ("--skip", name)]
+            failed = self.first_failure(number, [*arguments, *skips])
+            if failed is None or failed.startswith("("):
+                return failed
+            if self.first_failure(number, ["--exact", failed]) and not self.first_failure(0, ["--exact", failed]):
+                return failed
+            print(f"     {failed} does not depend on the error and is skipped", flush=True)
+            self.skipped.append(failed)
 
 
-def cargo(folder, arguments, number, target):
-    environment = dict(os.environ, NOVAMIND_PLANTED=str(number), CARGO_TARGET_DIR=str(target), RUSTFLAGS="-Awarnings")
-    command = [os.environ.get("CARGO", "cargo"), "test", *arguments]
-    try:
-        return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=LONGEST)
-    except subprocess.TimeoutExpired:
-        return None
-
-
-def first_failure(run):
-    if run is None:
-        return "it does not end"
-    for line in run.stdout.splitlines():
-        if line.startswith("test ") and line.rstrip().endswith("FAILED"):
-            return line.split()[1]
-    return "it does not run"
+def build(folder, target):
+    command = [os.environ.get("CARGO", "cargo"), "test", "--no-run", "--message-format=json"]
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(target))
+    run = subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True, stderr=subprocess.PIPE)
+    messages = [json.loads(line) for line in run.stdout.splitlines() if line.startswith("{")]
+    if run.returncode != 0:
+        texts = [message["message"]["rendered"] for message in messages if message["reason"] == "compiler-message"]
+        sys.exit("the copy does not build:\n" + "".join(text for text in texts if text.startswith("error")) + run.stderr[-2000:])
+    artifacts = [message for message in messages if message["reason"] == "compiler-artifact"]
+    return [Program(built) for built in artifacts if built["executable"] and built["profile"]["test"]]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", help="numbers of errors, separated by commas")
-    parser.add_argument("--house", help="errors of one house")
-    parser.add_argument("--check", action="store_true", help="only see whether every error finds its place")
-    parser.add_argument("--target", default=ROOT / "target/planted", type=pathlib.Path, help="folder of the build")
-    parser.add_argument("tests", nargs="*", help="arguments of cargo test, after --")
+    parser.add_argument("--crate", help="errors of one crate")
+    parser.add_argument("--stages", default=",".join(STAGES), help="stages, separated by commas")
+    parser.add_argument("--check", action="store_true", help="only test that each error finds its place")
+    parser.add_argument("--folder", default=ROOT / "target/planted", type=pathlib.Path, help="folder of copy and build")
+    parser.add_argument("arguments", nargs="*", help="arguments of the test programs, after --")
     options = parser.parse_args()
 
-    listed = errors()
-    chosen = [error for error in listed if not options.house or error["house"] == options.house]
-    if options.only:
-        wanted = {int(number) for number in options.only.split(",")}
-        chosen = [error for error in chosen if error["number"] in wanted]
-
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
-        copy(folder, listed)
-        if options.check:
-            print(f"{len(listed)} errors find their places")
-            return
-        built = cargo(folder, ["--no-run"], 0, options.target)
-        if built is None or built.returncode != 0:
-            sys.exit("the copy does not build:\n" + (built.stderr[-4000:] if built else "no end"))
-        clean = cargo(folder, options.tests, 0, options.target)
-        if clean is None or clean.returncode != 0:
-            sys.exit(f"the suite fails without an error: {first_failure(clean)}")
-        score = collections.defaultdict(lambda: [0, 0])
-        for error in chosen:
-            run = cargo(folder, options.tests, error["number"], options.target)
-            noticed = run is None or run.returncode != 0
-            score[error["house"]][0] += noticed
-            score[error["house"]][1] += 1
-            by = first_failure(run) if noticed else "NOBODY"
-            print(f"{error['number']:>3}  {error['house']:<8}  {error['what']}: noticed by {by}", flush=True)
-    print()
-    for house, (noticed, of) in sorted(score.items()):
-        print(f"{house:<8}  {noticed} of {of}")
-    noticed, of = (sum(pair[at] for pair in score.values()) for at in (0, 1))
-    print(f"all       {noticed} of {of}: {100 * noticed / max(of, 1):.0f} %")
+    errors = listed()
+    changed = sources(errors)
+    if options.check:
+        print(f"{len(errors)} errors find their places")
+        return
+    wanted = {int(number) for number in options.only.split(",")} if options.only else {error["number"] for error in errors}
+    left = [error for error in errors if error["number"] in wanted and options.crate in (None, error["crate"])]
+    total = collections.Counter(error["crate"] for error in left)
+    copy(options.folder / "copy", changed)
+    programs = build(options.folder / "copy", options.folder / "build")
+    for stage in options.stages.split(","):
+        print(f"stage {stage}: {len(left)} errors", flush=True)
+        unnoticed = []
+        for error in left:
+            chosen = [program for program in programs if program.is_of(stage, error["crate"])]
+            by = next(filter(None, (program.notices(error["number"], options.arguments) for program in chosen)), None)
+            print(f"{error['number']:>3}  {error['crate']}: {by or '-'}", flush=True)
+            unnoticed += [] if by else [error]
+        left = unnoticed
+    missed = collections.Counter(error["crate"] for error in left)
+    for crate, count in sorted(total.items()):
+        print(f"{crate:<20} {count - missed[crate]} of {count}")
+    print(f"{'all':<20} {total.total() - missed.total()} of {total.total()}")
+    for error in left:
+        print(f"not noticed: {error['number']:>3}  {error['place']}  →  {error['wrong']}")
 
 
 if __name__ == "__main__":

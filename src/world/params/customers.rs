@@ -2,163 +2,161 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The willingness curve (docs/mechanics/customers/participation.md).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Participation {
-    /// Steepness of both halves of the curve.
-    pub curve_gain: f64,
-    /// Price / budget in the middle of the lower half.
-    pub curve_left_center: f64,
-    /// Price / budget in the middle of the upper half.
-    pub curve_right_center: f64,
-    /// Price / budget where the halves meet.
-    pub curve_split: f64,
-    /// Each half spans the quality range divided by this.
-    pub curve_half_divisor: f64,
-    /// Weight of the lower sigmoid in the blended form, 0..=1.
-    pub blend_weight: f64,
-    /// Lower clamp of the logistic argument.
-    pub sigmoid_input_min: f64,
-    /// Upper clamp of the logistic argument.
-    pub sigmoid_input_max: f64,
-    /// A lead prefers a plan only with a surplus above this.
-    pub lead_min_satisfaction_exclusive: f64,
-}
+use super::check::parameters;
 
-/// Bounds of the traits a new customer draws (docs/mechanics/customers/generation.md).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CustomerGeneration {
-    /// Mean of the exponential part of the lower steepness.
-    pub steepness_left_exp_scale: f64,
-    /// Added to it.
-    pub steepness_left_offset: f64,
-    /// Lower bound.
-    pub steepness_left_min: f64,
-    /// Upper bound.
-    pub steepness_left_max: f64,
-    /// Mean of the exponential part of the upper steepness.
-    pub steepness_right_exp_scale: f64,
-    /// Added to it.
-    pub steepness_right_offset: f64,
-    /// Lower bound.
-    pub steepness_right_min: f64,
-    /// Upper bound.
-    pub steepness_right_max: f64,
-    /// Widens the group's spread of budgets.
-    pub c_max_std_multiplier: f64,
-    /// Least budget before and after drift, dollars a month.
-    pub c_max_min: f64,
-    /// Least quality floor, before drift.
-    pub q_min_min: f64,
-    /// Least width of the quality band.
-    pub q_range_min: f64,
-    /// Least demand, units a day and seat.
-    pub usage_demand_min: f64,
-    /// Least mean reply delay of a company, in days.
-    pub reply_delay_mean_min: f64,
-    /// Spread of it as a share of the group's spread.
-    pub reply_delay_mean_noise_std_factor: f64,
-    /// Least spread of the reply delay, in days.
-    pub reply_delay_std_min: f64,
-    /// Spread of the spread as a share of the group's.
-    pub reply_delay_std_noise_std_factor: f64,
-    /// Lower bound of the first bid as a share of the most a company would pay.
-    pub initial_offer_factor_min: f64,
-    /// Upper bound of it.
-    pub initial_offer_factor_max: f64,
-    /// Least number of turns a company takes part in.
-    pub max_negotiation_turns_min: u32,
-    /// Lower bound.
-    pub ads_quality_sensitivity_min: f64,
-    /// Lower bound.
-    pub ads_return_sensitivity_min: f64,
-    /// Spread of a period's usage rate as a share of the customer's demand.
-    pub daily_usage_rate_std_fraction: f64,
-    /// Lower bound of the usage rate, units a day.
-    pub daily_usage_rate_min: f64,
-}
+parameters! {
+    /// The willingness curve (docs/mechanics/customers/participation.md).
+    pub struct Participation {
+        /// Steepness of both halves of the curve.
+        pub curve_gain: f64,
+        /// Price / budget in the middle of the lower half.
+        pub curve_left_center: f64,
+        /// Price / budget in the middle of the upper half.
+        pub curve_right_center: f64,
+        /// Price / budget where the halves meet.
+        pub curve_split: f64 where 0.0..=1.0,
+        /// Each half spans the quality range divided by this.
+        pub curve_half_divisor: f64 where 1.0..=100.0,
+        /// Weight of the lower sigmoid in the blended form, 0..=1.
+        pub blend_weight: f64 where 0.0..=1.0,
+        /// Lower clamp of the logistic argument.
+        pub sigmoid_input_min: f64,
+        /// Upper clamp of the logistic argument.
+        pub sigmoid_input_max: f64,
+        /// A lead prefers a plan only with a surplus above this.
+        pub lead_min_satisfaction_exclusive: f64,
+    }
 
-/// One of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise groups are
-/// per seat.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GroupParams {
-    /// Identifier.
-    pub id: String,
-    /// Name shown to the player.
-    pub name: String,
-    /// What kind of people or companies these are.
-    pub description: String,
-    /// Individuals or enterprises.
-    pub segment: Segment,
-    /// Known from day 0.
-    pub initially_known: bool,
-    /// Whether posts of the group weigh more.
-    pub influencer: bool,
-    /// Mean floor of quality.
-    pub q_min_mean: f64,
-    /// Its spread.
-    pub q_min_std: f64,
-    /// Mean width of the quality band.
-    pub q_range_mean: f64,
-    /// Its spread.
-    pub q_range_std: f64,
-    /// Mean budget, dollars a month.
-    pub c_max_mean: f64,
-    /// Its spread, before `c_max_std_multiplier`.
-    pub c_max_std: f64,
-    /// Mean demand, units a day.
-    pub usage_demand_mean: f64,
-    /// Its spread.
-    pub usage_demand_std: f64,
-    /// Customers or accounts the market holds on day 0.
-    pub base_market_cap: f64,
-    /// Growth of the market a year, as a share of the base.
-    pub annual_cap_growth_rate: f64,
-    /// Mean aversion to long contracts; shown as an estimate, otherwise without effect.
-    pub lockin_penalty_mean: f64,
-    /// Its spread.
-    pub lockin_penalty_std: f64,
-    /// Mean quality lost to ads of full strength.
-    pub ads_quality_sensitivity_mean: f64,
-    /// Its spread.
-    pub ads_quality_sensitivity_std: f64,
-    /// Mean revenue of ads of full strength, dollars a day and seat.
-    pub ads_return_sensitivity_mean: f64,
-    /// Its spread.
-    pub ads_return_sensitivity_std: f64,
-    /// Mean chance a month that a payment fails for good.
-    pub involuntary_churn_mean: f64,
-    /// Its spread.
-    pub involuntary_churn_std: f64,
-    /// Share of a competitor's event that raises this group's expectations further.
-    pub competitor_reactivity_q_bias: f64,
-    /// Fewest seats of a company.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub seat_count_min: Option<u32>,
-    /// Most seats of a company.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub seat_count_max: Option<u32>,
-    /// Mean reply delay of a company, in days.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reply_delay_mean: Option<f64>,
-    /// Its spread.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reply_delay_std: Option<f64>,
-    /// Mean number of turns a company takes part in.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_negotiation_turns_mean: Option<f64>,
-    /// Its spread.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_negotiation_turns_std: Option<f64>,
-    /// Sensitivities to the economy; an absent dimension does not react.
-    pub macro_beta: MacroBeta,
-    /// Drift of the whole group.
-    pub group_drift_per_day: GroupDrift,
-    /// Drift of each subscriber; an absent rate also skips its bounds.
-    pub individual_drift_per_day: IndividualDrift,
+    /// Bounds of the traits a new customer draws (docs/mechanics/customers/generation.md).
+    pub struct CustomerGeneration {
+        /// Mean of the exponential part of the lower steepness.
+        pub steepness_left_exp_scale: f64 where 0.0..=1e6,
+        /// Added to it.
+        pub steepness_left_offset: f64 where 0.0..=1e6,
+        /// Lower bound.
+        pub steepness_left_min: f64 where 0.0..=1e6,
+        /// Upper bound.
+        pub steepness_left_max: f64 where 0.0..=1e6,
+        /// Mean of the exponential part of the upper steepness.
+        pub steepness_right_exp_scale: f64 where 0.0..=1e6,
+        /// Added to it.
+        pub steepness_right_offset: f64 where 0.0..=1e6,
+        /// Lower bound.
+        pub steepness_right_min: f64 where 0.0..=1e6,
+        /// Upper bound.
+        pub steepness_right_max: f64 where 0.0..=1e6,
+        /// Widens the group's spread of budgets.
+        pub c_max_std_multiplier: f64 where 0.0..=1e6,
+        /// Least budget before and after drift, dollars a month.
+        pub c_max_min: f64 where 0.0..=1e6,
+        /// Least quality floor, before drift.
+        pub q_min_min: f64 where 0.0..=1e6,
+        /// Least width of the quality band.
+        pub q_range_min: f64 where 0.0..=1e6,
+        /// Least demand, units a day and seat.
+        pub usage_demand_min: f64 where 0.0..=1e6,
+        /// Least mean reply delay of a company, in days.
+        pub reply_delay_mean_min: f64 where 0.0..=1e6,
+        /// Spread of it as a share of the group's spread.
+        pub reply_delay_mean_noise_std_factor: f64 where 0.0..=1e6,
+        /// Least spread of the reply delay, in days.
+        pub reply_delay_std_min: f64 where 0.0..=1e6,
+        /// Spread of the spread as a share of the group's.
+        pub reply_delay_std_noise_std_factor: f64 where 0.0..=1e6,
+        /// Lower bound of the first bid as a share of the most a company would pay.
+        pub initial_offer_factor_min: f64 where 0.0..=1e6,
+        /// Upper bound of it.
+        pub initial_offer_factor_max: f64 where 0.0..=1e6,
+        /// Least number of turns a company takes part in.
+        pub max_negotiation_turns_min: u32 where 0.0..=1e6,
+        /// Lower bound.
+        pub ads_quality_sensitivity_min: f64 where 0.0..=1e6,
+        /// Lower bound.
+        pub ads_return_sensitivity_min: f64 where 0.0..=1e6,
+        /// Spread of a period's usage rate as a share of the customer's demand.
+        pub daily_usage_rate_std_fraction: f64 where 0.0..=1e6,
+        /// Lower bound of the usage rate, units a day.
+        pub daily_usage_rate_min: f64 where 0.0..=1e6,
+    }
+
+    /// One of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise groups are
+    /// per seat.
+    pub struct GroupParams {
+        /// Identifier.
+        pub id: String,
+        /// Name shown to the player.
+        pub name: String,
+        /// What kind of people or companies these are.
+        pub description: String,
+        /// Individuals or enterprises.
+        pub segment: Segment,
+        /// Known from day 0.
+        pub initially_known: bool,
+        /// Whether posts of the group weigh more.
+        pub influencer: bool,
+        /// Mean floor of quality.
+        pub q_min_mean: f64,
+        /// Its spread.
+        pub q_min_std: f64 where 0.0..=1e9,
+        /// Mean width of the quality band.
+        pub q_range_mean: f64,
+        /// Its spread.
+        pub q_range_std: f64 where 0.0..=1e9,
+        /// Mean budget, dollars a month.
+        pub c_max_mean: f64,
+        /// Its spread, before `c_max_std_multiplier`.
+        pub c_max_std: f64 where 0.0..=1e9,
+        /// Mean demand, units a day.
+        pub usage_demand_mean: f64 where 0.0..=1e6,
+        /// Its spread.
+        pub usage_demand_std: f64 where 0.0..=1e6,
+        /// Customers or accounts the market holds on day 0.
+        pub base_market_cap: f64 where 0.0..=1e12,
+        /// Growth of the market a year, as a share of the base.
+        pub annual_cap_growth_rate: f64,
+        /// Mean aversion to long contracts; shown as an estimate, otherwise without effect.
+        pub lockin_penalty_mean: f64,
+        /// Its spread.
+        pub lockin_penalty_std: f64 where 0.0..=1e9,
+        /// Mean quality lost to ads of full strength.
+        pub ads_quality_sensitivity_mean: f64,
+        /// Its spread.
+        pub ads_quality_sensitivity_std: f64 where 0.0..=1e9,
+        /// Mean revenue of ads of full strength, dollars a day and seat.
+        pub ads_return_sensitivity_mean: f64,
+        /// Its spread.
+        pub ads_return_sensitivity_std: f64 where 0.0..=1e9,
+        /// Mean chance a month that a payment fails for good.
+        pub involuntary_churn_mean: f64,
+        /// Its spread.
+        pub involuntary_churn_std: f64 where 0.0..=1e9,
+        /// Share of a competitor's event that raises this group's expectations further.
+        pub competitor_reactivity_q_bias: f64,
+        /// Fewest seats of a company.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub seat_count_min: Option<u32> where 1.0..=1e6,
+        /// Most seats of a company.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub seat_count_max: Option<u32> where 1.0..=1e6,
+        /// Mean reply delay of a company, in days.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub reply_delay_mean: Option<f64>,
+        /// Its spread.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub reply_delay_std: Option<f64> where 0.0..=1e9,
+        /// Mean number of turns a company takes part in.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub max_negotiation_turns_mean: Option<f64>,
+        /// Its spread.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub max_negotiation_turns_std: Option<f64> where 0.0..=1e9,
+        /// Sensitivities to the economy; an absent dimension does not react.
+        pub macro_beta: MacroBeta,
+        /// Drift of the whole group.
+        pub group_drift_per_day: GroupDrift,
+        /// Drift of each subscriber; an absent rate also skips its bounds.
+        pub individual_drift_per_day: IndividualDrift,
+    }
 }
 
 /// Individuals decide alone, enterprises negotiate.

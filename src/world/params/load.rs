@@ -133,9 +133,10 @@ impl Params {
 /// (key, problem) of the first that is not.
 pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
     let with_names = |(key, problem): (String, String)| (named(&tables, &key), problem);
-    check::ranges(&tables).map_err(with_names)?;
+    let whole = Value::Table(tables.clone());
+    check::ranges(&whole).map_err(with_names)?;
     check::bounds(&tables).map_err(with_names)?;
-    let params = read(tables.clone()).map_err(with_names)?;
+    let params = read(whole).map_err(with_names)?;
     check::relations(&params).map_err(with_names)?;
     Ok(params)
 }
@@ -144,8 +145,8 @@ fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
     source.text.parse::<Table>().map_err(|error| ParameterError::of_toml(&source.name, &source.text, &error))
 }
 
-fn read(tables: Table) -> Result<Params, (String, String)> {
-    serde_path_to_error::deserialize(Value::Table(tables)).map_err(|error| {
+fn read(tables: Value) -> Result<Params, (String, String)> {
+    serde_path_to_error::deserialize(tables).map_err(|error| {
         // `group[0].c_max_mean`: elements are parts of the key, as they are everywhere else.
         let key = error.path().to_string().replace('[', ".").replace(']', "");
         (key, in_plain_words(error.inner().message()))

@@ -18,7 +18,6 @@ mod social;
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 pub use change::Difference;
@@ -34,6 +33,7 @@ pub use retention::*;
 pub use run::*;
 pub use social::*;
 
+use self::check::parameters;
 use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
@@ -41,101 +41,98 @@ use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 /// which is the default.
 const ADDED_KEYS: [(&str, &str, &str); 1] = [("fidelity", "insight_noise", "\"independent\"")];
 
-/// All parameters, one field per table of the files in `configs/world`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Params {
-    /// Length and end of a run.
-    pub run: Run,
-    /// Day 0.
-    pub initial: Initial,
-    /// Limits of tools, queries and texts.
-    pub limits: Limits,
-    /// Which form odd mechanics take.
-    pub fidelity: Fidelity,
-    /// Which recorded series are replayed.
-    pub series: SeriesChoice,
-    /// The willingness curve.
-    pub participation: Participation,
-    /// Bounds of a new customer's traits.
-    pub customer_generation: CustomerGeneration,
-    /// Delivered and perceived quality.
-    pub quality: Quality,
-    /// Development and R&D.
-    pub development: Development,
-    /// Service health.
-    pub operations: Operations,
-    /// In-app advertising.
-    pub ads: Ads,
-    /// Model tiers 1..=5.
-    pub model_tier: Vec<ModelTier>,
-    /// Capacity tiers 0..=7.
-    pub capacity_tier: Vec<CapacityTier>,
-    /// R&D tiers 1..=20.
-    pub research_tier: Vec<ResearchTier>,
-    /// Daily satisfaction.
-    pub satisfaction: Satisfaction,
-    /// Support issues.
-    pub issues: Issues,
-    /// Billing.
-    pub billing: Billing,
-    /// Floors of discounts.
-    pub promotions: Promotions,
-    /// Failed payments.
-    pub involuntary_churn: InvoluntaryChurn,
-    /// Weekday and day of the month.
-    pub calendar: Calendar,
-    /// Rushes of demand.
-    pub demand_surge: DemandSurge,
-    /// Leads and channel yields.
-    pub leads: Leads,
-    /// Reputation.
-    pub reputation: Reputation,
-    /// Competitor events.
-    pub competitor: Competitor,
-    /// Preference drift.
-    pub drift: Drift,
-    /// The economy.
-    #[serde(rename = "macro")]
-    pub economy: MacroEconomy,
-    /// Posts of customers.
-    pub social: SocialParams,
-    /// Posts of the company.
-    pub ceo_posts: CeoPosts,
-    /// Negotiations.
-    pub enterprise: EnterpriseParams,
-    /// Finding groups.
-    pub market_research: MarketResearch,
-    /// Levels of knowledge 1..=5.
-    pub info_level: Vec<InfoLevel>,
-    /// Studies of groups.
-    pub group_research: GroupResearch,
-    /// The 26 groups, in their fixed order.
-    pub group: Vec<GroupParams>,
-    /// The five channels, in their fixed order.
-    pub channel: Vec<ChannelParams>,
-    /// Leads a day in a group per active subscription of the source group.
-    pub referral_leads_per_subscriber_day: BTreeMap<String, Vec<f64>>,
-    /// Weight of a change of reputation of the source group on a group.
-    pub reputation_influence: BTreeMap<String, Vec<f64>>,
-    /// Words of customer profiles.
-    pub personas: Personas,
-    /// The mechanism that is wrong on purpose, in a debug run that asks for it; in no table, so that nothing but the start of a
-    /// run sets it.
-    #[serde(skip)]
-    pub fault: Option<Fault>,
-}
+parameters! {
+    /// All parameters, one field per table of the files in `configs/world`.
+    pub struct Params {
+        /// Length and end of a run.
+        pub run: Run,
+        /// Day 0.
+        pub initial: Initial,
+        /// Limits of tools, queries and texts.
+        pub limits: Limits,
+        /// Which form odd mechanics take.
+        pub fidelity: Fidelity,
+        /// Which recorded series are replayed.
+        pub series: SeriesChoice,
+        /// The willingness curve.
+        pub participation: Participation,
+        /// Bounds of a new customer's traits.
+        pub customer_generation: CustomerGeneration,
+        /// Delivered and perceived quality.
+        pub quality: Quality,
+        /// Development and R&D.
+        pub development: Development,
+        /// Service health.
+        pub operations: Operations,
+        /// In-app advertising.
+        pub ads: Ads,
+        /// Model tiers 1..=5.
+        pub model_tier: Vec<ModelTier>,
+        /// Capacity tiers 0..=7.
+        pub capacity_tier: Vec<CapacityTier>,
+        /// R&D tiers 1..=20.
+        pub research_tier: Vec<ResearchTier>,
+        /// Daily satisfaction.
+        pub satisfaction: Satisfaction,
+        /// Support issues.
+        pub issues: Issues,
+        /// Billing.
+        pub billing: Billing,
+        /// Floors of discounts.
+        pub promotions: Promotions,
+        /// Failed payments.
+        pub involuntary_churn: InvoluntaryChurn,
+        /// Weekday and day of the month.
+        pub calendar: Calendar,
+        /// Rushes of demand.
+        pub demand_surge: DemandSurge,
+        /// Leads and channel yields.
+        pub leads: Leads,
+        /// Reputation.
+        pub reputation: Reputation,
+        /// Competitor events.
+        pub competitor: Competitor,
+        /// Preference drift.
+        pub drift: Drift,
+        /// The economy.
+        pub economy as "macro": MacroEconomy,
+        /// Posts of customers.
+        pub social: SocialParams,
+        /// Posts of the company.
+        pub ceo_posts: CeoPosts,
+        /// Negotiations.
+        pub enterprise: EnterpriseParams,
+        /// Finding groups.
+        pub market_research: MarketResearch,
+        /// Levels of knowledge 1..=5.
+        pub info_level: Vec<InfoLevel>,
+        /// Studies of groups.
+        pub group_research: GroupResearch,
+        /// The 26 groups, in their fixed order.
+        pub group: Vec<GroupParams>,
+        /// The five channels, in their fixed order.
+        pub channel: Vec<ChannelParams>,
+        /// Leads a day in a group per active subscription of the source group.
+        pub referral_leads_per_subscriber_day: BTreeMap<String, Vec<f64>> where 0.0..=1e6,
+        /// Weight of a change of reputation of the source group on a group.
+        pub reputation_influence: BTreeMap<String, Vec<f64>> where 0.0..=f64::INFINITY,
+        /// Words of customer profiles.
+        pub personas: Personas,
+        /// The mechanism that is wrong on purpose, in a debug run that asks for it; in no table, so that nothing but the start of a
+        /// run sets it.
+        #[serde(skip)]
+        pub fault: Option<Fault>,
+    }
 
-/// One advertising channel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ChannelParams {
-    /// Identifier.
-    pub id: String,
-    /// Name shown to the player.
-    pub name: String,
-    /// Leads a day for 1,000 dollars a day by group, at the start of a run.
-    pub leads_per_1000_dollars: BTreeMap<String, f64>,
+    /// One advertising channel.
+    pub struct ChannelParams {
+        /// Identifier.
+        pub id: String,
+        /// Name shown to the player.
+        pub name: String,
+        /// Leads a day for 1,000 dollars a day by group, at the start of a run.
+        pub leads_per_1000_dollars: BTreeMap<String, f64> where 0.0..=1e9,
+    }
 }
 
 impl Params {

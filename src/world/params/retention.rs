@@ -1,87 +1,79 @@
 //! Staying and leaving: `configs/world/retention.toml`.
 
-use serde::{Deserialize, Serialize};
+use super::check::parameters;
 
-/// Daily satisfaction (`docs/mechanics/retention/satisfaction.md`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Satisfaction {
-    /// Weight of today in the moving average.
-    pub satisfaction_ema_alpha: f64,
-}
+parameters! {
+    /// Daily satisfaction (`docs/mechanics/retention/satisfaction.md`).
+    pub struct Satisfaction {
+        /// Weight of today in the moving average.
+        pub satisfaction_ema_alpha: f64 where 0.0..=1.0,
+    }
 
-/// Support issues (`docs/mechanics/retention/issues.md`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Issues {
-    /// Chance a day of an issue at full satisfaction.
-    pub base_issue_rate: f64,
-    /// Added per point of missing satisfaction.
-    pub issue_quality_factor: f64,
-    /// Added on a day with an outage.
-    pub issue_outage_factor: f64,
-    /// Satisfaction that counts as full.
-    pub issue_satisfaction_reference: f64,
-    /// Lower clamp of the chance.
-    pub issue_probability_min: f64,
-    /// Upper clamp of the chance.
-    pub issue_probability_max: f64,
-    /// Issues resolved a day without spending.
-    pub issue_resolution_base_rate: f64,
-    /// Issues of individuals resolved per dollar of operations.
-    pub individual_ops_scale: f64,
-    /// Issues of companies resolved per dollar of operations.
-    pub enterprise_ops_scale: f64,
-    /// A solution within this many open days pleases.
-    pub quick_resolution_threshold_days: u32,
-    /// Open days that earn the larger gain.
-    pub quick_boost_first_day: u32,
-    /// Relationship gained by a solution on the first day.
-    pub quick_resolution_boost_1day: f64,
-    /// Relationship gained by a later quick solution.
-    pub quick_resolution_boost_2day: f64,
-    /// Relationship lost per day without a solution.
-    pub relationship_decay_per_unresolved_day: f64,
-    /// Lower bound of a relationship.
-    pub relationship_min: f64,
-    /// Upper bound of a relationship.
-    pub relationship_max: f64,
-    /// Open days of a fresh issue.
-    pub new_issue_open_days: u32,
-}
+    /// Support issues (`docs/mechanics/retention/issues.md`).
+    pub struct Issues {
+        /// Chance a day of an issue at full satisfaction.
+        pub base_issue_rate: f64,
+        /// Added per point of missing satisfaction.
+        pub issue_quality_factor: f64,
+        /// Added on a day with an outage.
+        pub issue_outage_factor: f64,
+        /// Satisfaction that counts as full.
+        pub issue_satisfaction_reference: f64,
+        /// Lower clamp of the chance.
+        pub issue_probability_min: f64 where 0.0..=1.0,
+        /// Upper clamp of the chance.
+        pub issue_probability_max: f64 where 0.0..=1.0,
+        /// Issues resolved a day without spending.
+        pub issue_resolution_base_rate: f64 where 0.0..=1e9,
+        /// Issues of individuals resolved per dollar of operations.
+        pub individual_ops_scale: f64 where 0.0..=1e6,
+        /// Issues of companies resolved per dollar of operations.
+        pub enterprise_ops_scale: f64 where 0.0..=1e6,
+        /// A solution within this many open days pleases.
+        pub quick_resolution_threshold_days: u32,
+        /// Open days that earn the larger gain.
+        pub quick_boost_first_day: u32,
+        /// Relationship gained by a solution on the first day.
+        pub quick_resolution_boost_1day: f64,
+        /// Relationship gained by a later quick solution.
+        pub quick_resolution_boost_2day: f64,
+        /// Relationship lost per day without a solution.
+        pub relationship_decay_per_unresolved_day: f64 where 0.0..=1.0,
+        /// Lower bound of a relationship.
+        pub relationship_min: f64 where 0.0..=1.0,
+        /// Upper bound of a relationship.
+        pub relationship_max: f64 where 0.0..=1.0,
+        /// Open days of a fresh issue.
+        pub new_issue_open_days: u32 where 1.0..=1_000.0,
+    }
 
-/// Billing (`docs/mechanics/retention/billing.md`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Billing {
-    /// Days between two bills.
-    pub billing_period_days: u32,
-    /// Floor of a price after discounts, dollars a month.
-    pub effective_price_min: f64,
-    /// Least budget remembered with a bill, dollars a month.
-    pub billing_c_max_min: f64,
-}
+    /// Billing (`docs/mechanics/retention/billing.md`).
+    pub struct Billing {
+        /// Days between two bills.
+        pub billing_period_days: u32 where 30.0..=30.0,
+        /// Floor of a price after discounts, dollars a month.
+        pub effective_price_min: f64,
+        /// Least budget remembered with a bill, dollars a month.
+        pub billing_c_max_min: f64,
+    }
 
-/// Floors of summed discounts (`docs/mechanics/retention/billing.md#promotions`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Promotions {
-    /// Floor of summed ongoing discounts, dollars a month.
-    pub promotion_min: f64,
-    /// Floor of summed lead discounts, dollars a month.
-    pub lead_promotion_min: f64,
-}
+    /// Floors of summed discounts (`docs/mechanics/retention/billing.md#promotions`).
+    pub struct Promotions {
+        /// Floor of summed ongoing discounts, dollars a month.
+        pub promotion_min: f64,
+        /// Floor of summed lead discounts, dollars a month.
+        pub lead_promotion_min: f64,
+    }
 
-/// Cancellations nobody chose (`docs/mechanics/retention/involuntary-churn.md`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InvoluntaryChurn {
-    /// Whether payments fail at all.
-    pub enable_involuntary_churn: bool,
-    /// Length of a month of one rate, in days.
-    pub month_days: u32,
-    /// Lower clamp of the monthly rate.
-    pub mu_min: f64,
-    /// Upper clamp of the monthly rate.
-    pub mu_max: f64,
+    /// Cancellations nobody chose (`docs/mechanics/retention/involuntary-churn.md`).
+    pub struct InvoluntaryChurn {
+        /// Whether payments fail at all.
+        pub enable_involuntary_churn: bool,
+        /// Length of a month of one rate, in days.
+        pub month_days: u32 where 1.0..=100_000.0,
+        /// Lower clamp of the monthly rate.
+        pub mu_min: f64 where 0.0..=1.0,
+        /// Upper clamp of the monthly rate.
+        pub mu_max: f64 where 0.0..=1.0,
+    }
 }

@@ -2,91 +2,80 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Length and end of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Run {
-    /// Default seed of a new run.
-    pub seed: u64,
-    /// Default horizon in days; the competitors grow towards it.
-    pub total_days: u32,
-    /// Days of one `next_week`; the last week of a run may be shorter.
-    pub days_per_week: u32,
-    /// The run ends when cash is below this at the end of a day, in dollars.
-    pub bankruptcy_cash_threshold: f64,
-}
+use super::check::parameters;
 
-/// The company and its market on day 0 (`docs/mechanics/day.md#day-0`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Initial {
-    /// Cash on day 0, in dollars.
-    pub initial_cash: f64,
-    /// Opening price of plan A, dollars a month.
-    #[serde(rename = "default_price_A")]
-    pub default_price_a: f64,
-    /// Opening price of plan B, dollars a month.
-    #[serde(rename = "default_price_B")]
-    pub default_price_b: f64,
-    /// Opening price of plan C, dollars a month.
-    #[serde(rename = "default_price_C")]
-    pub default_price_c: f64,
-    /// Opening model tier of plan A, 1..=5.
-    #[serde(rename = "default_tier_A")]
-    pub default_tier_a: u8,
-    /// Opening model tier of plan B, 1..=5.
-    #[serde(rename = "default_tier_B")]
-    pub default_tier_b: u8,
-    /// Opening model tier of plan C, 1..=5.
-    #[serde(rename = "default_tier_C")]
-    pub default_tier_c: u8,
-    /// Opening quota of plan A, units a day.
-    #[serde(rename = "default_quota_A")]
-    pub default_quota_a: u64,
-    /// Opening quota of plan B, units a day.
-    #[serde(rename = "default_quota_B")]
-    pub default_quota_b: u64,
-    /// Opening quota of plan C, units a day.
-    #[serde(rename = "default_quota_C")]
-    pub default_quota_c: u64,
-    /// Opening spend on operations, dollars a day.
-    pub default_spend_operations: f64,
-    /// Opening spend on development, dollars a day.
-    pub default_spend_development: f64,
-    /// Opening capacity tier, 0..=7.
-    pub default_capacity_tier: u8,
-    /// Reputation of every group at the start, 0..=1.
-    pub initial_reputation: f64,
-    /// Quality gained before day 1.
-    pub q_shared_bonus: f64,
-    /// Info level of the six initial groups.
-    pub initial_group_info_level: u8,
-    /// Info level of the twenty groups still to be found.
-    pub discoverable_group_info_level: u8,
-    /// Satisfaction of a new customer.
-    pub customer_satisfaction: f64,
-    /// Relationship of a new customer, 0..=1.
-    pub customer_relationship: f64,
-}
+parameters! {
+    /// Length and end of a run.
+    pub struct Run {
+        /// Default seed of a new run.
+        pub seed: u64,
+        /// Default horizon in days; the competitors grow towards it.
+        pub total_days: u32 where 7.0..=100_000.0,
+        /// Days of one `next_week`; the last week of a run may be shorter.
+        pub days_per_week: u32 where 7.0..=7.0,
+        /// The run ends when cash is below this at the end of a day, in dollars.
+        pub bankruptcy_cash_threshold: f64,
+    }
 
-/// Limits of tools, queries and texts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Limits {
-    /// Longest post of the company, in code points.
-    pub post_max_chars: u32,
-    /// Posts read when no limit is given.
-    pub get_social_posts_default_limit: u32,
-    /// Rows a query returns at most.
-    pub query_row_limit: u32,
-    /// A query is stopped after this many seconds.
-    pub query_timeout_seconds: u32,
-    /// Characters shown of a daily calculation.
-    pub dashboard_calculation_max_chars: u32,
-    /// Characters shown of an own post.
-    pub dashboard_post_preview_chars: u32,
-    /// Horizons of the cash forecasts that every week asks for, in days.
-    pub prediction_horizons_days: Vec<u32>,
+    /// The company and its market on day 0 (`docs/mechanics/day.md#day-0`).
+    pub struct Initial {
+        /// Cash on day 0, in dollars.
+        pub initial_cash: f64 where POSITIVE..=1e15,
+        /// Opening price of plan A, dollars a month.
+        pub default_price_a as "default_price_A": f64 where 0.0..=1e9,
+        /// Opening price of plan B, dollars a month.
+        pub default_price_b as "default_price_B": f64 where 0.0..=1e9,
+        /// Opening price of plan C, dollars a month.
+        pub default_price_c as "default_price_C": f64 where 0.0..=1e9,
+        /// Opening model tier of plan A, 1..=5.
+        pub default_tier_a as "default_tier_A": u8 where 1.0..=5.0,
+        /// Opening model tier of plan B, 1..=5.
+        pub default_tier_b as "default_tier_B": u8 where 1.0..=5.0,
+        /// Opening model tier of plan C, 1..=5.
+        pub default_tier_c as "default_tier_C": u8 where 1.0..=5.0,
+        /// Opening quota of plan A, units a day.
+        pub default_quota_a as "default_quota_A": u64 where 0.0..=1e15,
+        /// Opening quota of plan B, units a day.
+        pub default_quota_b as "default_quota_B": u64 where 0.0..=1e15,
+        /// Opening quota of plan C, units a day.
+        pub default_quota_c as "default_quota_C": u64 where 0.0..=1e15,
+        /// Opening spend on operations, dollars a day.
+        pub default_spend_operations: f64 where 0.0..=1e12,
+        /// Opening spend on development, dollars a day.
+        pub default_spend_development: f64 where 0.0..=1e12,
+        /// Opening capacity tier, 0..=7.
+        pub default_capacity_tier: u8 where 0.0..=7.0,
+        /// Reputation of every group at the start, 0..=1.
+        pub initial_reputation: f64 where 0.0..=1.0,
+        /// Quality gained before day 1.
+        pub q_shared_bonus: f64,
+        /// Info level of the six initial groups.
+        pub initial_group_info_level: u8 where 0.0..=5.0,
+        /// Info level of the twenty groups still to be found.
+        pub discoverable_group_info_level: u8 where 0.0..=5.0,
+        /// Satisfaction of a new customer.
+        pub customer_satisfaction: f64,
+        /// Relationship of a new customer, 0..=1.
+        pub customer_relationship: f64 where 0.0..=1.0,
+    }
+
+    /// Limits of tools, queries and texts.
+    pub struct Limits {
+        /// Longest post of the company, in code points.
+        pub post_max_chars: u32 where 0.0..=1e9,
+        /// Posts read when no limit is given.
+        pub get_social_posts_default_limit: u32 where 0.0..=1e9,
+        /// Rows a query returns at most.
+        pub query_row_limit: u32 where 0.0..=1e9,
+        /// A query is stopped after this many seconds.
+        pub query_timeout_seconds: u32 where 0.0..=1e9,
+        /// Characters shown of a daily calculation.
+        pub dashboard_calculation_max_chars: u32 where 0.0..=1e9,
+        /// Characters shown of an own post.
+        pub dashboard_post_preview_chars: u32 where 0.0..=1e9,
+        /// Horizons of the cash forecasts that every week asks for, in days.
+        pub prediction_horizons_days: Vec<u32> where 1.0..=100_000.0,
+    }
 }
 
 /// Odd mechanics, each with a second form (`docs/mechanics/README.md#the-release-and-the-paper`).

@@ -46,6 +46,8 @@ pub use novamind_database as database;
 #[doc(inline)]
 pub use novamind_glossary as glossary;
 #[doc(inline)]
+pub use novamind_insight as insight;
+#[doc(inline)]
 pub use novamind_lab as lab;
 #[doc(inline)]
 pub use novamind_plain as plain;

@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
 use novamind::database::query::Limits;
+use novamind::insight::Inspect;
 use novamind::session::{
     Cell, Configuration, Mode, NewRun, QueryConnection, QueryError, Rows, Session, Storage, Via,
 };
@@ -254,7 +255,7 @@ fn the_connection_of_the_xray_withstands_the_same_statements() {
         if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
             continue;
         }
-        let outcome = match session.xray_query(&attack.sql, None) {
+        let outcome = match session.inspect().xray_query(&attack.sql, None) {
             Err(refusal) => {
                 Err(QueryError { code: refusal.code, message: refusal.message.clone(), position: None })
             }

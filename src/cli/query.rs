@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
+use crate::insight::Inspect;
 use crate::notation::{csv_cell, printable};
 use crate::session::record::Outcome;
 use crate::session::{
@@ -88,7 +89,7 @@ fn ask_xray(folder: &Path, options: &Options, context: &Context) -> Result<Rows,
     let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
     session.refuse_to_look_inside()?;
     let statement = statement(&options.sql, context)?;
-    let rows = session.xray_query(&statement, options.day)?;
+    let rows = session.inspect().xray_query(&statement, options.day)?;
     session.save()?;
     Ok(rows)
 }

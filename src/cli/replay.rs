@@ -10,7 +10,8 @@ use clap::Args;
 use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
-use crate::session::{Goal, Session, find_run_to_read, record_look, verify_sealed};
+use crate::insight::open_to_look_inside;
+use crate::session::{Goal, find_run_to_read, record_look, verify_sealed};
 use crate::worker::request::Recorded;
 use crate::worker::request::Request;
 
@@ -99,7 +100,7 @@ fn check_inside(recorded: &Recorded, context: &Context) -> Result<(), Failure> {
         )
     })?;
     context.check_look(&folder)?;
-    Ok(Session::open_to_look_inside(&folder, context.seal_key()?).map(drop)?)
+    Ok(open_to_look_inside(&folder, context.seal_key()?).map(drop)?)
 }
 
 /// The folder of a run that a path names: it, or the one in which a trajectory lies.

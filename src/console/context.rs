@@ -2,7 +2,7 @@
 
 use super::action::{Action, Scope};
 use super::keys::Keys;
-use novamind_session::WeekQuantity;
+use novamind_insight::WeekQuantity;
 use novamind_worker::company::Company;
 
 /// Text of charts and tables before the first week.

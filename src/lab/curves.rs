@@ -3,7 +3,7 @@
 use super::exhibit::{
     AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
 };
-use novamind_session::true_curve_of;
+use novamind_insight::true_curve_of;
 use novamind_world::customers::curve::{Curve, required_quality};
 use novamind_world::identifiers::Group;
 use novamind_world::params::{GroupParams, Params};
@@ -111,7 +111,7 @@ pub fn curve_of(group: Group, params: &Params) -> Exhibit {
         ]);
     }
     let mut exhibit = Exhibit::of(format!("Participation curve of {}: {}", group.id(), own.name), table);
-    let drawn = |name: &str, of: &dyn Fn(&novamind_session::CurvePoint) -> f64| Series {
+    let drawn = |name: &str, of: &dyn Fn(&novamind_insight::CurvePoint) -> f64| Series {
         name: name.to_owned(),
         points: sample.iter().map(|point| (point.price, of(point))).filter(|(_, y)| y.is_finite()).collect(),
     };

@@ -8,8 +8,9 @@ use super::policy::Policy;
 use super::runner::{advance, decide};
 use super::strong::STRONG;
 use super::{RunError, RunSpec};
+use novamind_insight::SameWorld;
 use novamind_report::opponents::{Opponent, Opponents};
-use novamind_session::{Configuration, Ended, Refusal, SameWorld, Session};
+use novamind_session::{Configuration, Ended, Refusal, Session};
 
 /// Plays the strong policies and the baseline in the world of the run in a folder, with its luck; demand surges, days and cash
 /// are those of the run. None if it was not to go on.

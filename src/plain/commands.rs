@@ -35,11 +35,10 @@ use super::next;
 use super::signals::{Phase, Watch};
 use novamind_base::nearest;
 use novamind_database::text::table;
+use novamind_insight::{Causes, LastRead, WhatIf};
 use novamind_report::research::late_in_words;
 use novamind_session::record::{Help, Select};
-use novamind_session::{
-    Activity, Causes, Change, LastRead, Library, QuerySource, Session, Via, WhatIf, rows_as_json,
-};
+use novamind_session::{Activity, Change, Library, QuerySource, Session, Via, rows_as_json};
 use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, Kind, Module, ToolId};
 

@@ -1,8 +1,8 @@
 //! The curve explorer in words: what it is drawn from, the curve at some prices, and what leads would do.
 
 use novamind_base::notation::{cents, percent, price_to_cents};
+use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
-use novamind_session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint};
 
 /// Every so many points of the curve is a row.
 const ROW_EVERY: usize = 6;
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn an_unfinished_run_is_told_with_ends_and_what_is_assumed() {
         let mut session = played(0);
-        let own = session.curve_explorer(Group::parse("S1").expect("a group")).expect("an explorer");
+        let own = CurveExplorer::of(&mut session, Group::parse("S1").expect("a group")).expect("an explorer");
         assert_eq!(basis_in_words(&own.basis), "estimates of day 0, ±65%");
         assert_eq!(columns(&own).len(), 6);
         assert_eq!(rows(&own).len(), 11);
@@ -111,7 +111,8 @@ mod tests {
         assert_eq!(remarks(&own).len(), 2);
         let told = outcome_in_words(&own.outcome_of(20.0, 0.4));
         assert!(told.contains(" to ") && told.contains("revenue per lead $"), "{told}");
-        let companies = session.curve_explorer(Group::parse("E1").expect("a group")).expect("an explorer");
+        let companies =
+            CurveExplorer::of(&mut session, Group::parse("E1").expect("a group")).expect("an explorer");
         let told = outcome_in_words(&companies.outcome(&companies.plans));
         assert!(told.contains("ask for an offer"), "{told}");
     }

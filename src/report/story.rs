@@ -6,9 +6,9 @@ use super::highlights::{Highlight, highlights};
 use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
+use novamind_insight::{BranchOrigin, origin_of};
 use novamind_session::{
-    BranchOrigin, Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures,
-    filed_forecasts, origin_of,
+    Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures, filed_forecasts,
 };
 
 /// How a company went under.

@@ -4,10 +4,11 @@ use super::why::{signed, written};
 use super::words::{count, first_change_in_words};
 use novamind_base::notation::{compact, printable, short_dollars};
 use novamind_base::statistics::Interval;
-use novamind_session::{
-    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, FigureUnit, Futures,
-    Kin, ParameterDifference,
+use novamind_insight::{
+    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin,
+    ParameterDifference,
 };
+use novamind_session::FigureUnit;
 
 /// The name of the branch without edits. Days after the end of the record were not played in it either.
 const UNCHANGED: &str = "your decisions unchanged";

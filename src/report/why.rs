@@ -3,7 +3,8 @@
 use super::chapters::change_in_words;
 use super::words::{count, number, points, short_week_in_words, whole};
 use novamind_base::notation::{grouped, percent};
-use novamind_session::{Detail, FigureUnit, InputDetail, Why};
+use novamind_insight::{Detail, InputDetail, Why};
+use novamind_session::FigureUnit;
 
 /// What no cause explains.
 pub const REST: &str = "composition and chance";
@@ -27,7 +28,7 @@ pub fn lines(why: &Why) -> Vec<CauseLine> {
         let written = signed(why.quantity.unit(), amount);
         CauseLine { name, amount, written, details }
     };
-    let part = |part: &novamind_session::WhyPart| {
+    let part = |part: &novamind_insight::WhyPart| {
         line(part.cause.name(), part.amount, part.details.iter().map(in_words).collect())
     };
     why.parts.iter().map(part).chain([line(REST, why.rest, Vec::new())]).collect()
@@ -92,7 +93,8 @@ fn in_words(detail: &Detail) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::{Cause, ToolId, WeekFigure, WeekQuantity, WhyPart};
+    use novamind_insight::{Cause, WeekQuantity, WhyPart};
+    use novamind_session::{ToolId, WeekFigure};
 
     fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
         let part =

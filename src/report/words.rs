@@ -2,7 +2,8 @@
 
 pub use novamind_base::notation::count;
 use novamind_base::notation::{compact, grouped, signed_dollars};
-use novamind_session::{BranchOrigin, Category, FirstChange, Observation};
+use novamind_insight::{BranchOrigin, FirstChange};
+use novamind_session::{Category, Observation};
 
 /// Money with its sign before the dollar: `$1,234`, `-$45`.
 pub fn money(value: f64) -> String {

@@ -13,6 +13,7 @@ use novamind_database::query::{Limits, SQL_CANCELLED};
 use novamind_database::{
     Cell, Interrupt, Location, QueryConnection, QueryError, Rows, Scope, Ticket, query_connection,
 };
+use novamind_record::error::RunError;
 use novamind_record::trajectory::Record;
 use novamind_record::trajectory::record::{Query, QuerySource};
 use novamind_tools::Refusal;
@@ -164,7 +165,7 @@ impl Session {
     }
 
     /// Waits until the database holds everything up to now, and mends it where it could not be written.
-    pub(super) fn complete_database(&mut self) -> Result<(), Refusal> {
+    pub fn complete_database(&mut self) -> Result<(), Refusal> {
         let Err(problem) = self.wait_for_database() else { return Ok(()) };
         // There may be room again.
         self.mend_database().map_err(|_| problem)
@@ -187,6 +188,11 @@ pub fn query_refusal(error: QueryError) -> Refusal {
         None => error.message,
     };
     Refusal::new(error.code, message)
+}
+
+/// What says that a record cannot be read.
+pub fn not_readable(error: &RunError) -> Refusal {
+    Refusal::new("not_readable", error.to_string())
 }
 
 /// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at. The key is

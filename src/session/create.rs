@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use self::agreement::agreed;
+use crate::inside::companion::Companion;
 use crate::lesson::conduct::LessonEntry;
 use crate::model_voice::joining::model_of;
 use crate::model_voice::speaker::{ModelVoice, Speaker};
@@ -21,7 +22,6 @@ use crate::play::surroundings::RunSurroundings;
 use crate::resume::sealing::SealKey;
 use crate::resume::unnamed::remove_leftovers;
 use crate::state::Session;
-use crate::xray::breakpoint::list::Breakpoints;
 use novamind_database::{Location, Position, Projector};
 use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
@@ -180,6 +180,16 @@ impl Session {
         }
     }
 
+    /// Begins a run that is described already, in memory and without a database.
+    ///
+    /// # Errors
+    /// The parameters of the run are none of this program.
+    pub fn begin_in_memory(manifest: Manifest) -> Result<Session, RunError> {
+        let params = manifest.params()?;
+        let new = NewRun { projection: false, sync_calls: false, ..NewRun::default() };
+        Session::begin(manifest, params, None, &new, &mut |_| {})
+    }
+
     pub(crate) fn begin(
         manifest: Manifest,
         params: Params,
@@ -225,12 +235,9 @@ impl Session {
             viewed: BTreeMap::new(),
             answers: AnswerBook::default(),
             seal_key: SealKey::default(),
-            shadow: None,
             is_shadow: false,
-            diary: Arc::default(),
-            breakpoints: Breakpoints::default(),
+            companion: Companion::default(),
             voice: ModelVoice::default(),
-            hidden_tables: None,
             clock: PersonalClock::default(),
             lesson: None,
             company_answers: None,

@@ -6,10 +6,9 @@
 
 pub mod archive;
 mod ask;
-mod counterfactual;
 mod create;
-mod curve;
 mod figures;
+mod inside;
 mod lesson;
 mod model_voice;
 mod play;
@@ -18,28 +17,16 @@ mod python;
 #[cfg(test)]
 mod record_tests;
 mod resume;
-mod same_world;
 mod state;
-mod whatif;
-mod why;
-mod xray;
 
 pub use archive::{
     Export, Imported, LabKey, LabPublicKey, Seal, Workshop, import_run, is_archive_name, is_run_name,
     read_seal_key, write_seal_key,
 };
-pub use ask::{connection_to_file, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
-pub use counterfactual::last_read::{LastRead, OfRecord};
-pub use counterfactual::one_each::unless_stopped;
-pub use counterfactual::script::{PastCall, PastDecision};
+pub use ask::{connection_to_file, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
 pub use create::{NewRun, Storage, StudyEntry, new_id};
-pub use curve::access::CurveLook;
-pub use curve::example::example_curve;
-pub use curve::explorer::{
-    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS, true_curve_of,
-};
 pub use figures::alike_plans::AlikePlans;
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
 pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
@@ -51,16 +38,23 @@ pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::Estimates;
 pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
+pub use figures::measured_group::MeasuredGroup;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
 pub use figures::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId, setting_values};
+pub use figures::simulated_week::{GroupOfWeek, SimulatedWeek};
 pub use figures::sitting_count::SittingCount;
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use figures::truth::truth_behind;
 pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
+pub use figures::week_figure::{FigureUnit, WeekFigure};
+pub use inside::last_day::Xray;
+pub use inside::look::{Look, WatchedDays};
+pub use inside::permission::{REFUSED_LOOK, may_look_inside};
+pub use inside::shadow::Shadow;
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
     Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
@@ -75,9 +69,12 @@ pub use lesson::definition::{
 pub use lesson::lesson_call::LessonCall;
 pub use lesson::lesson_file::Lesson;
 pub use lesson::measurement::{Measurement, NumberSource, Over};
+pub use lesson::over::is_lesson_over;
 pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
 pub use lesson::reference::{PartPlay, play_part, play_part_telling};
 pub use lesson::standing::LessonStanding;
+#[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
+pub use model_voice::stub::{Manner, Stub};
 pub use novamind_record::error::RunError;
 pub use novamind_record::folder::configuration::{
     Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
@@ -119,51 +116,16 @@ pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
 pub use playback::{Origin, Playback, read as read_recorded};
 pub use python::PYTHON_NOT_RUN;
-pub use resume::branch::write_past;
+pub use resume::branch::{not_saved, write_past};
 pub use resume::integrity::Integrity;
 pub use resume::look::record_look;
 pub use resume::open::{Access, end_run};
 pub use resume::rebuild::rebuild_database;
 pub use resume::rescue::{Rescued, rescue};
 pub use resume::sealing::SealKey;
+pub use resume::unnamed::UnnamedBranch;
 pub use resume::verify::{Verification, verify, verify_sealed};
-pub use same_world::SameWorld;
 pub use state::{AnswersCompanies, Session};
-pub use whatif::{
-    Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
-    FORMS, FirstChange, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference,
-    WhatIf, branches_of, origin_of, sets_amounts,
-};
-pub use why::{
-    Cause, Causes, Detail, FigureUnit, InputDetail, OnProgress, WeekFigure, WeekQuantity, WeekQuestion, Why,
-    WhyPart, WhyProgress,
-};
-
-pub use xray::breakpoint::condition::{Condition, Direction, Judged, Relation, WorldEvent};
-pub use xray::breakpoint::grammar::ConditionProblem;
-pub use xray::breakpoint::list::Breakpoint;
-pub use xray::breakpoint::look_back::LookBack;
-pub use xray::breakpoint::measure::{Measure, MeasureKind, Quantity};
-pub use xray::breakpoint::run::{Hit, RunUntil, TrueBefore};
-pub use xray::company_day::{CompanyDay, JudgedPlan};
-pub use xray::company_lens::CompanyLens;
-pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
-pub use xray::customer_lens::CustomerLens;
-pub use xray::difference::{CustomerDifference, Difference, RunDifference};
-pub use xray::drift_state::{DriftState, GroupDrifted};
-pub use xray::hidden_values::{HiddenValues, TrueGroup};
-pub use xray::last_day::Xray;
-pub use xray::lead_equation::{LeadEquation, LeadFactor};
-pub use xray::lens::Lens;
-pub use xray::next_draws::{Draw, DrawnPart, Follows, KeyedDraws, MOST_DRAWS, NextDraws};
-pub use xray::permission::{REFUSED_LOOK, may_look_inside};
-pub use xray::quality_equation::{PlanDelivered, QualityEquation, SharedGains};
-pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, ReputationEquation, Spillover};
-pub use xray::rival_state::{NextRivalMove, RivalState};
-pub use xray::satisfaction_equation::{MoodTerm, SatisfactionEquation};
-pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
-pub use xray::writes::target::WriteTarget;
-pub use xray::writes::{WhoWrites, Write, WrittenBy};
 
 pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
@@ -179,3 +141,20 @@ pub use novamind_world::market::drift::Expectation;
 pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::market::surges::Surge;
 pub use novamind_world::settings::{CoreSettings, Settings};
+
+/// What the days of a recorded run are simulated again with: for novamind-insight alone, which says who may see what comes of it.
+pub mod engine {
+    pub use crate::figures::capacity_by_usage::UsageRule;
+    pub use crate::figures::changes::changes;
+    pub use crate::figures::churn::churn;
+    pub use crate::figures::groups::count as count_groups;
+    pub use crate::figures::mood::mood_of;
+    pub use crate::play::facts_chain::StateHash;
+    pub use crate::play::feed::Feed;
+    pub use crate::play::overrides::{
+        Overrides, ParameterChange, Taken, Unfit, json_of_value, value_of_json,
+    };
+    pub use crate::play::parameters::{not_allowed, unknown};
+    pub use crate::play::projection::{Entries, Projection};
+    pub use crate::play::simulation::Simulation;
+}

@@ -10,6 +10,7 @@ use crate::figures::changes::Decisions;
 use crate::figures::groups::GroupWeek;
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::WeekFigures;
+use crate::inside::companion::Companion;
 use crate::lesson::standing::LessonStanding;
 use crate::model_voice::speaker::ModelVoice;
 use crate::play::history::History;
@@ -19,9 +20,6 @@ use crate::play::recorder::Recorder;
 use crate::play::simulation::Simulation;
 use crate::play::surroundings::RunSurroundings;
 use crate::resume::sealing::SealKey;
-use crate::xray::breakpoint::list::Breakpoints;
-use crate::xray::hidden_day::Diary;
-use crate::xray::hidden_tables::HiddenTables;
 use novamind_database::Position;
 use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
@@ -30,6 +28,7 @@ use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::Ended;
 use novamind_tools::{Numbers, Refusal, ToolId};
 use novamind_voice::CompanyNames;
+use novamind_world::customers::numbers::CustomerNumbers;
 use novamind_world::identifiers::ByGroup;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
@@ -64,16 +63,10 @@ pub struct Session {
     pub(super) answers: AnswerBook,
     /// What seals its snapshots.
     pub(super) seal_key: SealKey,
-    /// The run again, watched from within; none before somebody looks.
-    pub(super) shadow: Option<Box<Session>>,
     /// It is a run simulated again beside one that may be looked into: its days are told with their hidden state.
     pub(super) is_shadow: bool,
-    /// What was seen of its days.
-    pub(super) diary: Arc<Diary>,
-    /// Conditions at which it stops.
-    pub(super) breakpoints: Breakpoints,
-    /// The hidden tables; none before somebody asks them.
-    pub(super) hidden_tables: Option<HiddenTables>,
+    /// What is kept for those who look inside.
+    pub(super) companion: Companion,
     /// The lesson that it belongs to, and how it went; none outside lessons.
     pub(super) lesson: Option<Box<LessonStanding>>,
     /// Who speaks besides the built-in voice.
@@ -172,6 +165,11 @@ impl Session {
     /// What the companies of the run are called.
     pub fn company_names(&self) -> &CompanyNames {
         &self.simulation.names
+    }
+
+    /// Which customers their numbers mean.
+    pub fn customer_numbers(&self) -> &CustomerNumbers {
+        &self.simulation.world.customers.numbers
     }
 
     /// The effective parameters.

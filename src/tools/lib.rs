@@ -42,7 +42,7 @@ pub use analytics::{GetSocialPosts, PostLimit, SocialPost};
 pub use arguments::Arguments;
 pub use catalogue::{Answer, CATALOGUE, ToolId, find};
 pub use deal_results::{DealResult, DealResults};
-pub use enterprise::readdressed;
+pub use enterprise::{highest_named, readdressed};
 pub use infrastructure::{CapacityTierFacts, GetCostInfo, ModelTierFacts, PriceList};
 pub use market::{
     DiscoveryAttempt, Estimates, GetGroupInsights, GetMarketOverview, GroupInsights, Influence,

@@ -10,8 +10,9 @@ use super::causes::folder_of;
 use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::message::{Message, News};
 use crate::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
+use novamind_insight::{DecisionEdit, WhatIf, branch_with_decisions, look_at_what_if, unless_stopped};
 use novamind_session::record::LeavingCause;
-use novamind_session::{Access, DecisionEdit, Refusal, Session, WhatIf, unless_stopped};
+use novamind_session::{Access, Refusal, Session};
 
 impl SessionThread {
     /// Finds what would have been, and reports how far that has come.
@@ -21,7 +22,7 @@ impl SessionThread {
         let is_recorded = match &asked.question {
             BranchesQuestion::Compare { week, .. } => {
                 let week = *week;
-                self.session_to_look_into(false).is_ok_and(|session| session.look_at_what_if(week))
+                self.session_to_look_into(false).is_ok_and(|session| look_at_what_if(session, week))
             }
             BranchesQuestion::Decisions => false,
         };
@@ -43,12 +44,12 @@ impl SessionThread {
         let mode = open.session().manifest().mode.of_branch();
         let mut on = |_| ControlFlow::Continue(());
         let adopted = match open {
-            Open::Played(session) => session.branch_with_decisions(week, edits, mode, &mut on),
+            Open::Played(session) => branch_with_decisions(session, week, edits, mode, &mut on),
             // The moment that is shown is not the end of the record.
             Open::Replayed(_) => folder_of(open).and_then(|folder| {
                 let whole = Session::open(&folder, Access::Read, false);
                 let whole = whole.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
-                whole.branch_with_decisions(week, edits, mode, &mut on)
+                branch_with_decisions(&whole, week, edits, mode, &mut on)
             }),
         };
         match adopted {

@@ -8,7 +8,10 @@ use super::answering::{answer_on_thread, lock_kept};
 use super::{Open, SessionThread};
 use crate::message::{Message, News};
 use crate::resimulation::WhyAsked;
-use novamind_session::{Causes, LastRead, Refusal, WeekQuestion, Why, unless_stopped};
+use novamind_insight::{
+    Causes, LastRead, WeekQuestion, Why, folder_of_causes, look_at_figure, unless_stopped,
+};
+use novamind_session::Refusal;
 
 impl SessionThread {
     /// Finds causes, and reports how far that has come and what they are.
@@ -19,7 +22,7 @@ impl SessionThread {
         if question.quantity.is_hidden() {
             // A look, which is recorded before anything is shown.
             let looked =
-                self.session_to_look_into(false).and_then(|session| session.look_at_figure(&question));
+                self.session_to_look_into(false).and_then(|session| look_at_figure(session, &question));
             folder = looked.and(folder);
         }
         let (news, kept) = (self.news.clone(), self.causes.clone());
@@ -35,7 +38,7 @@ impl SessionThread {
 /// The folder from which a run is simulated again.
 pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
     match open {
-        Open::Played(session) => session.folder_of_causes(),
+        Open::Played(session) => folder_of_causes(session),
         // What a record allows is read from it: it may be over though this moment of it is not.
         Open::Replayed(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
             Refusal::new("not_possible", "this trajectory stands alone, without the folder of its run")

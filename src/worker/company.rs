@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 use crate::posts::{self, Posts};
+use novamind_insight::HiddenValues;
 use novamind_report::WeekReport;
 use novamind_report::fit::{Fit, fits};
 use novamind_report::funnel::{Funnel, funnels};
@@ -14,9 +15,9 @@ use novamind_report::lead_costs::{PairCost, pair_costs};
 use novamind_report::needs::{Need, needs};
 use novamind_session::identifiers::{ByGroup, Group};
 use novamind_session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, HiddenValues, JournalEntry,
-    LessonPage, Mode, Numbers, Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp,
-    ToolLimits, WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode,
+    Numbers, Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits,
+    WeekFigures,
 };
 use novamind_tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,

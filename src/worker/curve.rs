@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::{Open, SessionThread};
 use crate::message::News;
+use novamind_insight::{CurveExplorer, CurveLook};
+use novamind_session::Refusal;
 use novamind_session::identifiers::Group;
-use novamind_session::{CurveExplorer, Refusal};
 
 impl SessionThread {
     /// Draws the curve of a group, and says what was found; the number says which question it answers.
@@ -24,7 +25,7 @@ impl SessionThread {
             Some(Open::Replayed(playback)) => (playback.may_look_inside(), playback.session().day()),
         };
         let look = match is_allowed {
-            true => Some(self.session_to_look_into(false)?.look_at_curve(group, day)?),
+            true => Some(CurveLook::begin(self.session_to_look_into(false)?, group, day)?),
             false => None,
         };
         let session = match &self.open {
@@ -32,6 +33,9 @@ impl SessionThread {
             Some(Open::Replayed(playback)) => playback.session(),
             None => return Err(Refusal::new("not_possible", "no run is open")),
         };
-        look.map_or_else(|| session.estimated_curve(group), |look| Ok(session.true_curve(&look)))
+        look.map_or_else(
+            || CurveExplorer::estimated(session, group),
+            |look| Ok(CurveExplorer::true_at(session, &look)),
+        )
     }
 }

@@ -6,13 +6,14 @@ use std::time::Instant;
 use super::{Open, SessionThread};
 use crate::look_inside::{BreakpointWork, LookCurve, LookFound, LookQuestion};
 use crate::message::News;
+use novamind_insight::{Inspect, LeadEquation, LeadFactor, Lens};
 use novamind_report::xray::{
     EVENINGS, SATISFACTION, SpillMap, breakpoints_in_words, company_in_words, customer_in_words,
     drift_in_words, leads_in_words, line_of_factor, look_back_in_words, quality_in_words,
     reputation_in_words, rivals_in_words, satisfaction_in_words, spillover_in_words, streams_in_words,
 };
 use novamind_session::identifiers::Group;
-use novamind_session::{Access, LeadEquation, LeadFactor, Lens, REFUSED_LOOK, Refusal, Session};
+use novamind_session::{Access, REFUSED_LOOK, Refusal, Session};
 
 impl SessionThread {
     /// Looks at hidden state, and says what was seen or why nothing is shown; where that has changed the run, with the company
@@ -43,11 +44,11 @@ impl SessionThread {
             _ => None,
         };
         let answer = self.session_to_look_into(true).and_then(|session| {
-            let interrupt = session.xray_interrupt()?;
+            let interrupt = session.inspect().xray_interrupt()?;
             // What is stopped from here on is this question.
             let ticket = interrupt.ticket();
             hold(Some(interrupt));
-            session.xray_query_as(ticket, sql, day)
+            session.inspect().xray_query_as(ticket, sql, day)
         });
         hold(None);
         self.with_run(|_| None);
@@ -105,26 +106,28 @@ impl SessionThread {
 fn answer(session: &mut Session, question: &LookQuestion) -> Result<LookFound, Refusal> {
     let lines = match question {
         LookQuestion::Leads(group, day, held) => return of_leads(session, *group, *day, held),
-        LookQuestion::Quality(group, day) => quality_in_words(&session.quality_equation(*group, Some(*day))?),
+        LookQuestion::Quality(group, day) => {
+            quality_in_words(&session.inspect().quality_equation(*group, Some(*day))?)
+        }
         LookQuestion::Satisfaction(group, day) => {
-            let own = session.satisfaction_equation(*group, Some(*day))?;
+            let own = session.inspect().satisfaction_equation(*group, Some(*day))?;
             let days = own.evenings.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
             return Ok(with_curve(satisfaction_in_words(&own), EVENINGS, days));
         }
         LookQuestion::Reputation(group, day) => {
-            let own = session.reputation_equation(*group, Some(*day))?;
+            let own = session.inspect().reputation_equation(*group, Some(*day))?;
             let lines = reputation_in_words(&own);
             return Ok(with_curve(lines, EVENINGS, own.evenings));
         }
         LookQuestion::Spillover(day) => {
-            let own = session.spillover(Some(*day))?;
+            let own = session.inspect().spillover(Some(*day))?;
             let map = Some(SpillMap::of(&own));
             return Ok(LookFound { lines: spillover_in_words(&own), map, ..LookFound::default() });
         }
-        LookQuestion::Rivals(day) => rivals_in_words(&session.rival_state(Some(*day))?),
-        LookQuestion::Drift(day) => drift_in_words(&session.drift_state(Some(*day))?),
-        LookQuestion::Draws(part, _) => streams_in_words(&session.next_draws(*part, None)?),
-        LookQuestion::Customer(customer, day) => match session.lens(*customer, Some(*day))? {
+        LookQuestion::Rivals(day) => rivals_in_words(&session.inspect().rival_state(Some(*day))?),
+        LookQuestion::Drift(day) => drift_in_words(&session.inspect().drift_state(Some(*day))?),
+        LookQuestion::Draws(part, _) => streams_in_words(&session.inspect().next_draws(*part, None)?),
+        LookQuestion::Customer(customer, day) => match session.inspect().lens(*customer, Some(*day))? {
             Lens::Individual(lens) => {
                 let days = lens.days.iter().map(|own| own.satisfaction).collect();
                 let day = lens.shown().map_or(lens.first.day, |own| own.day);
@@ -146,7 +149,7 @@ fn of_leads(
     day: u32,
     held: &[(LeadFactor, f64)],
 ) -> Result<LookFound, Refusal> {
-    let days = session.lead_equations(group, Some(day))?;
+    let days = session.inspect().lead_equations(group, Some(day))?;
     let lines = leads_in_words(&days, held);
     let value = |own: &LeadEquation, factor| if own.is_known { own.factor(factor) } else { f64::NAN };
     let curve = |factor| LookCurve {
@@ -166,18 +169,19 @@ fn with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> LookFound {
 }
 
 fn of_breakpoints(session: &mut Session, work: &BreakpointWork) -> Result<LookFound, Refusal> {
-    let found = |lines, session: &Session| {
-        let breakpoints = session.breakpoints()?.to_vec();
+    let found = |lines, session: &mut Session| {
+        let breakpoints = session.inspect().breakpoints()?;
         Ok(LookFound { lines, breakpoints, ..LookFound::default() })
     };
     match work {
         BreakpointWork::List => {}
-        BreakpointWork::Set(condition) => drop(session.set_breakpoint(*condition)?),
-        BreakpointWork::Remove(number) => drop(session.clear_breakpoints(Some(*number))?),
+        BreakpointWork::Set(condition) => drop(session.inspect().set_breakpoint(*condition)?),
+        BreakpointWork::Remove(number) => drop(session.inspect().clear_breakpoints(Some(*number))?),
         BreakpointWork::LookBack => {
-            let told = session.look_back_from(None)?;
+            let told = session.inspect().look_back_from(None)?;
             return found(told.iter().flat_map(look_back_in_words).collect(), session);
         }
     }
-    found(breakpoints_in_words(session.breakpoints()?), session)
+    let set = session.inspect().breakpoints()?;
+    found(breakpoints_in_words(&set), session)
 }

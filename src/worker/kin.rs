@@ -5,7 +5,7 @@ use std::path::Path;
 use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
 use crate::message::News;
-use novamind_session::branches_of;
+use novamind_insight::branches_of;
 
 impl SessionThread {
     /// Reads the tree of branches. It is empty where other runs are nobody's business here: in sessions of a study, and where

@@ -51,12 +51,13 @@ use crate::request::Request;
 use crate::resimulation::{BranchesAsked, WhyAsked};
 use answering::words_of;
 use desk::Desk;
+use novamind_insight::{Causes, LastRead, WhatIf};
 use novamind_report::opponents::PlayOpponents;
 use novamind_session::identifiers::Group;
 use novamind_session::record::{LeavingCause, PresenceEvent};
 use novamind_session::{
-    Activity, Causes, Configuration, Goal, Interface, Interrupt, LastRead, Playback, QuerySource, Refusal,
-    Rows, RunError, Session, UnsentTexts, WhatIf,
+    Activity, Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError,
+    Session, UnsentTexts,
 };
 use novamind_tools::ToolId;
 use queries::QueryThreads;

@@ -1,8 +1,8 @@
 //! What the X-ray screen asks of the hidden state of a run, and what it is told: the words of plain mode.
 
+use novamind_insight::{Breakpoint, Condition, DrawnPart, LeadFactor};
 use novamind_report::xray::{AskedWords, SpillMap};
 use novamind_session::identifiers::Group;
-use novamind_session::{Breakpoint, Condition, DrawnPart, LeadFactor};
 
 /// A look at hidden state. Days are those that are over.
 #[derive(Debug, Clone, PartialEq)]

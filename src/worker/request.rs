@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use novamind_insight::DecisionEdit;
 use novamind_report::class::Shown;
-use novamind_session::{Access, ConsentGiven, DecisionEdit, Forecasts, Goal, Mode, NewRun};
+use novamind_session::{Access, ConsentGiven, Forecasts, Goal, Mode, NewRun};
 use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use novamind_session::{BranchComparison, DecisionEdit, Futures, PastDecision, WeekQuantity};
+use novamind_insight::{BranchComparison, DecisionEdit, Futures, PastDecision, WeekQuantity};
 
 /// A question why a figure changed in a week.
 pub struct WhyAsked {

@@ -11,9 +11,10 @@ use super::queries::QueryThreads;
 use crate::company::Company;
 use crate::look_inside::DaysRan;
 use crate::message::{DayTold, Message, News};
+use novamind_insight::Inspect;
 use novamind_report::xray::stop_in_words;
 use novamind_report::{Story, as_html, as_markdown};
-use novamind_session::{Breakpoint, DayReport, Forecasts, Interrupt, Session, Via};
+use novamind_session::{DayReport, Forecasts, Interrupt, Session, Via};
 use novamind_tools::ToolId;
 
 /// The run that is open, and where news of it go.
@@ -61,8 +62,9 @@ impl OpenRun<'_> {
 
     pub(super) fn run_days(&mut self, days: u32) -> Option<News> {
         let mut tell = tell_days(self.news);
-        let breakpoints = self.session.breakpoints().map_or(0, <[Breakpoint]>::len);
-        let ran = self.session.run_until_breakpoint(days, &mut tell).map(|run| DaysRan {
+        let breakpoints = self.session.inspect().breakpoints().map_or(0, |set| set.len());
+        let run = self.session.inspect().run_until_breakpoint(days, &mut tell);
+        let ran = run.map(|run| DaysRan {
             lines: stop_in_words(&run, self.session.day(), breakpoints),
             is_over: run.week.ended.is_some(),
         });

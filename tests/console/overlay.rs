@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use novamind::insight::Inspect;
 use novamind::session::{Access, Goal, Mode, Session, lines_afterwards};
 use novamind::world::identifiers::Group;
 
@@ -52,10 +53,10 @@ fn true_values_stand_beside_figures_and_estimates() {
     // What stands there is what the world holds.
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S1").expect("a group");
-    let own = session.hidden_values(None).expect("values").groups[group];
-    let reputation = session.reputation_equation(group, None).expect("an equation").after;
+    let own = session.inspect().hidden_values(None).expect("values").groups[group];
+    let reputation = session.inspect().reputation_equation(group, None).expect("an equation").after;
     assert_eq!(own.reputation.to_bits(), reputation.to_bits());
-    let leads = session.lead_equations(group, None).expect("equations");
+    let leads = session.inspect().lead_equations(group, None).expect("equations");
     let expected = leads.last().map(|own| own.expected());
     assert_eq!(Some(own.expected_leads), expected);
     let mood = session.xray().expect("a debug run").mood(group).map(|(satisfaction, _)| satisfaction);
@@ -107,7 +108,10 @@ fn an_unfinished_run_of_another_mode_shows_nothing_of_it() {
         let folder = folder_of(runs.path());
         assert_eq!(looks(&recorded(&folder)), Vec::<String>::new());
         let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
-        assert_eq!(session.hidden_values(None).map(drop).expect_err("refused").code, "not_in_this_mode");
+        assert_eq!(
+            session.inspect().hidden_values(None).map(drop).expect_err("refused").code,
+            "not_in_this_mode"
+        );
     }
 }
 

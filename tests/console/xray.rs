@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crossterm::event::Event;
+use novamind::insight::Inspect;
 use novamind::session::{Access, Goal, Mode, Record, Session, lines_afterwards, verify};
 use novamind::worker::request::Recorded;
 use novamind::world::identifiers::Group;
@@ -69,7 +70,7 @@ fn the_screen_says_what_plain_mode_says_and_each_look_is_a_line() {
     assert_eq!(verify(&folder).expect("it verifies").day, 28);
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S2").expect("a group");
-    let days = session.lead_equations(group, Some(19)).expect("a look");
+    let days = session.inspect().lead_equations(group, Some(19)).expect("a look");
     let own = days.last().expect("a day");
     for part in ["leads of S2 on day 19".to_owned(), format!("λ {:.2}, came {}", own.expected(), own.came)] {
         assert!(screen.contains(&part), "{part} is missing in\n{screen}");
@@ -265,11 +266,12 @@ fn words_are_answered_as_in_plain_mode_and_each_look_is_a_line() {
     assert_eq!(told.len(), 4, "{told:?}");
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let shows = |screen: &str, part: &str| assert!(screen.contains(part), "{part:?} is missing in\n{screen}");
-    let days = session.find_days("leads(S1) >= 1".parse().expect("a condition")).expect("days");
+    let days = session.inspect().find_days("leads(S1) >= 1".parse().expect("a condition")).expect("days");
     shows(&screens[0], &format!("leads(S1) >= 1 became true on {} of 28 days", days.len()));
-    let writes = session.who_writes("reputation(S1)".parse().expect("a figure"), Some(20)).expect("writes");
+    let writes =
+        session.inspect().who_writes("reputation(S1)".parse().expect("a figure"), Some(20)).expect("writes");
     shows(&screens[1], &format!("reputation(S1) on day 20: {:.9} → {:.9}", writes.first, writes.last));
-    let found = session.difference_of_days(27, 28).expect("a difference");
+    let found = session.inspect().difference_of_days(27, 28).expect("a difference");
     shows(&screens[2], &format!("differs: {}", found.parts.join(", ")));
     shows(&screens[3], "no parameter differs from");
     let value = session.parameter("group.S1.c_max_mean").expect("a value");

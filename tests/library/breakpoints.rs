@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use novamind::insight::{Condition, Hit, Inspect, WriteTarget, WrittenBy};
 use novamind::session::{
-    Access, Activity, Condition, Configuration, Hit, Mode, NewRun, Record, ReputationCause, Session, Storage,
-    Trajectory, Via, WriteTarget, WrittenBy, lines_afterwards, verify,
+    Access, Activity, Configuration, Mode, NewRun, Record, ReputationCause, Session, Storage, Trajectory,
+    Via, lines_afterwards, verify,
 };
 use novamind::world::identifiers::{ByGroup, Group};
 use proptest::prelude::*;
@@ -160,13 +161,17 @@ fn breakpoints_equal_a_scan() {
     expected.dedup();
     let mut stopping = run_in(folder.path(), Mode::Debug, DAYS);
     for (text, _) in CONDITIONS {
-        stopping.set_breakpoint(condition(text)).expect("a breakpoint");
+        stopping.inspect().set_breakpoint(condition(text)).expect("a breakpoint");
     }
-    assert_eq!(stopping.breakpoints().expect("a look").len(), CONDITIONS.len() - 1, "two are the same");
+    assert_eq!(
+        stopping.inspect().breakpoints().expect("a look").len(),
+        CONDITIONS.len() - 1,
+        "two are the same"
+    );
     let mut stops: Vec<(u32, String)> = Vec::new();
     while stopping.day() < DAYS {
         let from = stopping.day();
-        let run = stopping.run_until_breakpoint(1000, &mut |_| {}).expect("days");
+        let run = stopping.inspect().run_until_breakpoint(1000, &mut |_| {}).expect("days");
         assert_eq!(run.from, from);
         assert!(
             !run.hits.is_empty() || stopping.day() == DAYS,
@@ -195,10 +200,11 @@ fn breakpoints_equal_a_scan() {
     // What was found looking forward is found looking back, in the run that had no breakpoints and is over.
     for (text, holds) in CONDITIONS {
         let own = condition(text);
-        let found: Vec<u32> = alone.find_days(own).expect("a look").iter().map(|own| own.day).collect();
+        let found: Vec<u32> =
+            alone.inspect().find_days(own).expect("a look").iter().map(|own| own.day).collect();
         let of_it = expected.iter().filter(|(_, text)| *text == own.to_string());
         assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
-        let back = alone.look_back(own).expect("a look");
+        let back = alone.inspect().look_back(own).expect("a look");
         let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
         assert_eq!(back.last_true.map(|own| own.day as usize), last(true), "{text}");
         assert_eq!(back.last_false.map(|own| own.day as usize), last(false), "{text}");
@@ -217,19 +223,19 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
     other.step(7, &mut |_| {}).expect("days");
     other.step(3, &mut |_| {}).expect("days");
     // Days that nobody watched are simulated again first.
-    session.set_breakpoint(condition("subscribers(S1) < 0")).expect("a breakpoint");
-    let run = session.run_until_breakpoint(10, &mut |_| {}).expect("days");
+    session.inspect().set_breakpoint(condition("subscribers(S1) < 0")).expect("a breakpoint");
+    let run = session.inspect().run_until_breakpoint(10, &mut |_| {}).expect("days");
     assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
     assert_eq!(session.state_hash(), other.state_hash());
-    let leads = session.find_days(condition("leads > 0")).expect("a look");
+    let leads = session.inspect().find_days(condition("leads > 0")).expect("a look");
     assert!(!leads.is_empty());
-    let removed = session.clear_breakpoints(Some(1)).expect("it is set");
+    let removed = session.inspect().clear_breakpoints(Some(1)).expect("it is set");
     assert_eq!(removed[0].condition.to_string(), "subscribers(S1) < 0");
     assert_eq!(
-        session.clear_breakpoints(Some(1)).expect_err("it is gone").to_string(),
+        session.inspect().clear_breakpoints(Some(1)).expect_err("it is gone").to_string(),
         "breakpoint_unknown (number): there is no breakpoint 1; none is set"
     );
-    session.run_until_breakpoint(2, &mut |_| {}).expect("days without breakpoints");
+    session.inspect().run_until_breakpoint(2, &mut |_| {}).expect("days without breakpoints");
     let place = session.folder().expect("a folder").to_owned();
     drop(session);
     let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
@@ -254,8 +260,14 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
 fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, DAYS);
-    session.run_until_breakpoint(90, &mut |_| {}).expect("days");
-    let churn = session.look_back(condition("churn(S1) >= 0")).expect("a look").today.value.expect("a share");
+    session.inspect().run_until_breakpoint(90, &mut |_| {}).expect("days");
+    let churn = session
+        .inspect()
+        .look_back(condition("churn(S1) >= 0"))
+        .expect("a look")
+        .today
+        .value
+        .expect("a share");
     let now = session.day();
     let sql = format!(
         "SELECT 1.0 * sum(status = 'cancelled' AND end_day <= {now}) / count(*) FROM subscriptions \
@@ -282,7 +294,7 @@ fn accounted(
     let floor = session.params().reputation.reputation_floor;
     let mut causes: BTreeMap<String, u32> = BTreeMap::new();
     for (target, day) in targets.iter().flat_map(|target| days.iter().map(move |day| (*target, *day))) {
-        let own = session.who_writes(target, Some(day)).expect("a look");
+        let own = session.inspect().who_writes(target, Some(day)).expect("a look");
         for (value, day) in [(own.first, day - 1), (own.last, day)] {
             assert!(
                 recorded(target, day).is_none_or(|known| known == value),
@@ -401,12 +413,14 @@ fn what_spills_over_has_the_sign_of_the_mood_that_it_comes_from() {
     recorded_up_to(&mut session, 110);
     let mut spilled = 0;
     for day in (61..=110).step_by(3) {
-        let of_source = session.who_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
+        let of_source =
+            session.inspect().who_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
         let mood = of_source.writes.iter().find_map(|write| match write.by {
             WrittenBy::Reputation(ReputationCause::Mood(_)) => Some(write.changes[0]),
             _ => None,
         });
-        let own = session.who_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
+        let own =
+            session.inspect().who_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
         for write in own.writes {
             let WrittenBy::Reputation(ReputationCause::SpillOver(spill)) = write.by else { continue };
             if spill.source == group("S1") {
@@ -434,18 +448,20 @@ fn hidden_figures_of_runs_that_go_on_stop_nothing() {
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let (before, own) = (lines(), condition("reputation(S3) falls"));
         let reputation = WriteTarget::Reputation(group("S3"));
+        let mut inside = session.inspect();
         let told = [
-            session.set_breakpoint(own).expect_err("hidden"),
-            session.breakpoints().expect_err("hidden"),
-            session.clear_breakpoints(None).expect_err("hidden"),
-            session.clear_breakpoints(Some(99)).expect_err("hidden"),
-            session.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
-            session.look_back(own).expect_err("hidden"),
-            session.look_back_from(Some(99)).expect_err("hidden"),
-            session.find_days(own).expect_err("hidden"),
-            session.who_writes(reputation, None).expect_err("hidden"),
-            session.who_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
+            inside.set_breakpoint(own).expect_err("hidden"),
+            inside.breakpoints().expect_err("hidden"),
+            inside.clear_breakpoints(None).expect_err("hidden"),
+            inside.clear_breakpoints(Some(99)).expect_err("hidden"),
+            inside.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
+            inside.look_back(own).expect_err("hidden"),
+            inside.look_back_from(Some(99)).expect_err("hidden"),
+            inside.find_days(own).expect_err("hidden"),
+            inside.who_writes(reputation, None).expect_err("hidden"),
+            inside.who_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
         ];
+        drop(inside);
         for refusal in told {
             assert_eq!(
                 refusal.to_string(),
@@ -455,10 +471,13 @@ fn hidden_figures_of_runs_that_go_on_stop_nothing() {
         assert_eq!((lines(), session.day()), (before, 7), "nothing is recorded and no day runs");
         // Whoever gives it up may look back, and cannot go on.
         session.end().expect("it ends");
-        let number = session.set_breakpoint(own).expect("a breakpoint").number;
-        assert_eq!(session.look_back_from(Some(number)).expect("a look").len(), 1);
-        assert!(session.who_writes(reputation, Some(3)).expect("a look").day == 3);
-        assert_eq!(session.run_until_breakpoint(3, &mut |_| {}).expect_err("over").code, "not_in_this_mode");
+        let number = session.inspect().set_breakpoint(own).expect("a breakpoint").number;
+        assert_eq!(session.inspect().look_back_from(Some(number)).expect("a look").len(), 1);
+        assert!(session.inspect().who_writes(reputation, Some(3)).expect("a look").day == 3);
+        assert_eq!(
+            session.inspect().run_until_breakpoint(3, &mut |_| {}).expect_err("over").code,
+            "not_in_this_mode"
+        );
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         let after = lines_afterwards(&place, &trajectory).expect("lines");
@@ -473,12 +492,15 @@ fn a_run_in_memory_stops_as_long_as_all_its_days_were_watched() {
     let new = NewRun { seed: Some(7), days: Some(40), mode: Mode::Debug, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
     open_shop(&mut session);
-    session.set_breakpoint(condition("new_subscribers >= 1")).expect("a breakpoint");
-    let run = session.run_until_breakpoint(30, &mut |_| {}).expect("days");
+    session.inspect().set_breakpoint(condition("new_subscribers >= 1")).expect("a breakpoint");
+    let run = session.inspect().run_until_breakpoint(30, &mut |_| {}).expect("days");
     assert_eq!(run.hits.len(), 1);
     let forecasts = session.naive_forecasts();
     session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    assert_eq!(session.run_until_breakpoint(3, &mut |_| {}).expect_err("a gap").code, "not_possible");
+    assert_eq!(
+        session.inspect().run_until_breakpoint(3, &mut |_| {}).expect_err("a gap").code,
+        "not_possible"
+    );
 }
 
 #[test]
@@ -543,9 +565,9 @@ fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
     let mut session = run_in(folder.path(), Mode::Debug, 56);
     weeks(&mut session, 2);
     for text in ["cash > 1", "cash < 1"] {
-        session.set_breakpoint(condition(text)).expect("it is set");
+        session.inspect().set_breakpoint(condition(text)).expect("it is set");
     }
-    let run = session.run_until_breakpoint(5, &mut |_| {}).expect("days");
+    let run = session.inspect().run_until_breakpoint(5, &mut |_| {}).expect("days");
     assert_eq!(run.hits, []);
     let told: Vec<_> = run.true_before.iter().map(|own| (own.hit.breakpoint.number, own.until)).collect();
     assert_eq!(told, [(1, 19)]);
@@ -557,15 +579,15 @@ fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
 fn a_figure_over_days_is_watched_from_its_second_value_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 70);
-    session.set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
-    let run = session.run_until_breakpoint(69, &mut |_| {}).expect("days");
+    session.inspect().set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
+    let run = session.inspect().run_until_breakpoint(69, &mut |_| {}).expect("days");
     assert_eq!(run.hits, [], "it begins true, which is no change");
     let told: Vec<_> = run.true_before.iter().map(|own| own.began).collect();
     let began = told[0].expect("it began on one of the days");
     assert!(began > 30, "{began}");
-    let found = session.find_days(condition("churn(S1) >= 0")).expect("days");
+    let found = session.inspect().find_days(condition("churn(S1) >= 0")).expect("days");
     let told: Vec<_> = found.iter().map(|own| (own.day, own.begins, own.becomes_true())).collect();
     assert_eq!(told, [(began, true, false)], "where it began so is told as such");
     // What is read on a day is watched from its first day on.
-    assert_eq!(session.find_days(condition("subscribers(S1) >= 0")).expect("days").len(), 1);
+    assert_eq!(session.inspect().find_days(condition("subscribers(S1) >= 0")).expect("days").len(), 1);
 }

@@ -1,5 +1,6 @@
 //! The curve explorer line by line: who is told what, and what a look leaves behind.
 
+use novamind::insight::{CurveExplorer, CurveLook};
 use novamind::session::{Mode, Trajectory, lines_afterwards};
 use novamind::world::identifiers::Group;
 
@@ -18,17 +19,17 @@ fn unfinished_runs_are_told_of_studies_and_runs_that_are_over_of_the_truth() {
         let place = session.folder().expect("a folder").to_owned();
         let read = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         let before = read().lines.len();
-        assert!(!session.curve_explorer(s1).expect("estimates").is_truth());
-        let refused = session.curve_explorer(unknown).expect_err("not found yet");
+        assert!(!CurveExplorer::of(&mut session, s1).expect("estimates").is_truth());
+        let refused = CurveExplorer::of(&mut session, unknown).expect_err("not found yet");
         assert_eq!(
             refused.to_string(),
             "group_not_discovered (group): group D_S05 is not known yet; the known groups are S1, S2, S3, E1, E2, E3"
         );
-        assert_eq!(session.look_at_curve(s1, 7).expect_err("hidden").code, "not_in_this_mode");
+        assert_eq!(CurveLook::begin(&mut session, s1, 7).expect_err("hidden").code, "not_in_this_mode");
         assert_eq!(read().lines.len(), before, "nothing hidden was shown, so nothing is recorded");
         session.end().expect("it ends");
-        assert!(session.curve_explorer(s1).expect("the truth").is_truth());
-        assert!(session.curve_explorer(unknown).expect("the truth").is_truth());
+        assert!(CurveExplorer::of(&mut session, s1).expect("the truth").is_truth());
+        assert!(CurveExplorer::of(&mut session, unknown).expect("the truth").is_truth());
         drop(session);
         let after = lines_afterwards(&place, &read()).expect("lines");
         assert_eq!(looks(&after), ["curve S1 7", "curve D_S05 7"]);

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use novamind::insight::{Inspect, LeadFactor, MoodTerm, WriteTarget, WrittenBy};
 use novamind::session::{
-    Category, Configuration, LeadFactor, Mode, MoodTerm, NewRun, Record, ReputationCause, RunError, Session,
-    Storage, Trajectory, WriteTarget, WrittenBy, manifest_of, verify,
+    Category, Configuration, Mode, NewRun, Record, ReputationCause, RunError, Session, Storage, Trajectory,
+    manifest_of, verify,
 };
 use novamind::world::fault::Fault;
 use novamind::world::identifiers::Group;
@@ -26,7 +27,7 @@ fn new_run(folder: &Path, fault: Option<Fault>) -> NewRun {
 
 fn run(session: &mut Session, days: u32) {
     if days > 0 {
-        session.run_until_breakpoint(days, &mut |_| {}).expect("days");
+        session.inspect().run_until_breakpoint(days, &mut |_| {}).expect("days");
     }
 }
 
@@ -68,21 +69,24 @@ fn symptom(fault: Fault) -> Symptom {
     let at = |days, shows| Symptom { days, shows };
     match fault {
         Fault::EconomyReversed => at(12, |session| {
-            let leads = session.lead_equations(group("S1"), Some(12)).expect("a look");
+            let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("a look");
             let factor = leads.last().expect("a day").factor(LeadFactor::Economy);
-            let rows = session.xray_query("SELECT pmi FROM hidden.pmi WHERE day = 12", None).expect("a look");
+            let rows = session
+                .inspect()
+                .xray_query("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
+                .expect("a look");
             let pmi = novamind::session::number_at(&rows.rows[0], 0);
             let gap = pmi - parameter(session, "macro.neutral_pmi");
             assert!(gap.abs() > 0.1 && parameter(session, "group.S1.macro_beta.lead_generation") > 0.0);
             (factor - 1.0) * gap < 0.0
         }),
         Fault::QuotaInverted => at(12, |session| {
-            let mood = session.satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
             // Nobody's demand is near the quota.
             mood.term(MoodTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
-            let moves = session.rival_state(Some(75)).expect("a look").moves;
+            let moves = session.inspect().rival_state(Some(75)).expect("a look").moves;
             assert!(!moves.is_empty());
             moves.iter().any(|(event, _)| event.boost < event.sampled)
         }),
@@ -90,7 +94,7 @@ fn symptom(fault: Fault) -> Symptom {
             let spilled: Vec<bool> = (10..=30)
                 .flat_map(|day| {
                     let target = WriteTarget::Reputation(group("S3"));
-                    session.who_writes(target, Some(day)).expect("a look").writes
+                    session.inspect().who_writes(target, Some(day)).expect("a look").writes
                 })
                 .filter_map(|write| match write.by {
                     WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
@@ -103,14 +107,14 @@ fn symptom(fault: Fault) -> Symptom {
             spilled.contains(&true)
         }),
         Fault::TenureInDays => at(12, |session| {
-            let mood = session.satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
             let most = parameter(session, "quality.stickiness_log_scale")
                 * libm::log(1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale"));
             mood.term(MoodTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
-            let before = session.drift_state(Some(89)).expect("a look");
-            let after = session.drift_state(Some(90)).expect("a look");
+            let before = session.inspect().drift_state(Some(89)).expect("a look");
+            let after = session.inspect().drift_state(Some(90)).expect("a look");
             assert_eq!(before.next_day, Some(90));
             before.groups.iter().zip(&after.groups).any(|(before, after)| {
                 let moved = after.expectation.c_max - before.expectation.c_max;
@@ -119,7 +123,7 @@ fn symptom(fault: Fault) -> Symptom {
         }),
         Fault::ReferralsSwapped => at(12, |session| {
             let mut from_s1 = |to: &str| {
-                let leads = session.lead_equations(group(to), Some(12)).expect("a look");
+                let leads = session.inspect().lead_equations(group(to), Some(12)).expect("a look");
                 let own = &leads.last().expect("a day").word_of_mouth;
                 own.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
             };
@@ -128,7 +132,7 @@ fn symptom(fault: Fault) -> Symptom {
             (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
-            let writes = session.who_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
+            let writes = session.inspect().who_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
             let compute = writes.iter().find(|own| own.by == WrittenBy::Booked(Category::Compute));
             let paid = -compute.expect("compute is booked").asked();
             let used = number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
@@ -140,12 +144,13 @@ fn symptom(fault: Fault) -> Symptom {
             let floor = parameter(session, "reputation.reputation_floor");
             (29..=STRESSED).any(|day| {
                 let target = WriteTarget::Reputation(group("S1"));
-                let writes = session.who_writes(target, Some(day)).expect("a look").writes;
+                let writes = session.inspect().who_writes(target, Some(day)).expect("a look").writes;
                 writes.iter().any(|write| write.after < floor)
             })
         }),
         Fault::TargetedGainAsGeneral => at(7, |session| {
-            let mut own = |day| session.quality_equation(group("S1"), Some(day)).expect("a look").own;
+            let mut own =
+                |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").own;
             let grown = own(5) - own(4);
             let gain = parameter(session, "development.targeted_dev_improvement_coef")
                 * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
@@ -169,7 +174,7 @@ fn each_fault_changes_the_world_and_shows_in_its_view() {
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
         assert!(!shows(sound), "{fault:?} shows where it is not");
         assert!(shows(&mut faulty), "{fault:?} does not show");
-        let first = sound.difference_to(&mut faulty, None).expect("a look").first_day;
+        let first = sound.inspect().difference_to(&mut faulty, None).expect("a look").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
     }
 }
@@ -251,7 +256,7 @@ fn what_is_set_keeps_the_fault() {
     let set: Value = json!(0.3);
     session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
     weeks(&mut session, 1);
-    let mut own = |day| session.quality_equation(group("S1"), Some(day)).expect("a look").own;
+    let mut own = |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").own;
     let grown = own(13) - own(12);
     assert!(grown < 0.005, "{grown}");
     let place = place(&session);

@@ -4,10 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use novamind::insight::{Inspect, WeekQuestion, look_at_figure, open_to_look_inside};
 use novamind::rules::answers_to_companies;
-use novamind::session::{
-    Access, Lesson, PartPlay, Playback, SealKey, Session, WeekQuestion, may_look_inside, play_part,
-};
+use novamind::session::{Access, Lesson, PartPlay, Playback, SealKey, Session, may_look_inside, play_part};
 use novamind::world::identifiers::Group;
 
 use crate::support::lessons::{begin, code, lesson_of, week};
@@ -83,7 +82,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
         assert!(refused.message.contains("once its last part is over"), "{refused}");
         // The causes are those that a player of an unfinished run sees: no hidden figure, no look.
         let asked: WeekQuestion = "satisfaction 3".parse().expect("a question");
-        assert_eq!(code(session.look_at_figure(&asked)), "not_in_this_mode");
+        assert_eq!(code(look_at_figure(session, &asked)), "not_in_this_mode");
         assert!(!may_look_inside(session.manifest(), session.ended(), session.folder()));
     };
     hidden(&mut first);
@@ -92,13 +91,13 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
     drop(first);
     let playback = Playback::open(&own).expect("a replay");
     assert!(!playback.may_look_inside());
-    assert!(Session::open_to_look_inside(&own, SealKey::default()).is_err());
+    assert!(open_to_look_inside(&own, SealKey::default()).is_err());
     week(&mut second).expect("a week");
     assert!(second.ended().is_some() && second.may_look_inside());
     drop(second);
     let mut first = Session::open(&own, Access::Write, true).expect("it opens");
     assert!(first.may_look_inside() && Playback::open(&own).expect("a replay").may_look_inside());
-    first.quality_equation(Group::parse("S1").expect("a group"), None).expect("a look");
+    first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("a look");
 }
 
 #[test]

@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use novamind::insight::{DecisionEdit, OfRecord, WhatIf, branch_with_decisions};
 use novamind::lab::check_plays;
-use novamind::session::{
-    Access, Configuration, DecisionEdit, Ended, Lesson, Mode, OfRecord, Session, Via, WhatIf, verify,
-};
+use novamind::session::{Access, Configuration, Ended, Lesson, Mode, Session, Via, verify};
 use serde_json::json;
 
 use crate::support::lessons::{self, code, lesson_of, week};
@@ -175,7 +174,7 @@ fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_lock
         let refused = what_if().compare(2, None, &decided(text), on);
         assert_eq!(code(refused), "not_in_this_lesson", "{text}");
         let mut go_on = |_| std::ops::ControlFlow::Continue(());
-        let adopted = session.branch_with_decisions(2, &decided(text)[0], Mode::Sandbox, &mut go_on);
+        let adopted = branch_with_decisions(&session, 2, &decided(text)[0], Mode::Sandbox, &mut go_on);
         assert_eq!(code(adopted.map(drop)), "not_in_this_lesson", "{text}");
     }
     let found = what_if().compare(2, None, &decided("set_prices {\"A\": 10}"), on);

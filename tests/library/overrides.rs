@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use novamind::insight::Inspect;
 use novamind::session::{
     Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Trajectory, Via,
     list_runs, rescue, verify,
@@ -108,7 +109,7 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
     // The x-ray simulates the days again.
     let mut again = Session::open(&own, Access::Write, false).expect("it opens");
     let s1 = Group::parse("S1").expect("a group");
-    assert_eq!(again.lead_equations(s1, Some(day)).expect("a look").len(), 28);
+    assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("a look").len(), 28);
 }
 
 #[test]
@@ -412,7 +413,7 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     let today = session.day();
     let crowded = json!([1e6, 1e6, 1e6, 1e6, 1e6, 1e6, 1e6]);
     let usual = session.set_parameter("calendar.weekly", &crowded, None).expect("in its range").old;
-    let refused = session.run_until_breakpoint(7, &mut |_| {}).expect_err("no room");
+    let refused = session.inspect().run_until_breakpoint(7, &mut |_| {}).expect_err("no room");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
     let forecasts = session.naive_forecasts();
     let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
@@ -430,7 +431,10 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     let mut again = Session::open(&folder, Access::Write, true).expect("it replays");
     assert_eq!(again.day(), today + 2);
     again.set_parameter("calendar.weekly", &usual, Some(today + 3)).expect("a later line counts");
-    assert_eq!(again.run_until_breakpoint(7, &mut |_| {}).expect("days").week.figures.day, today + 9);
+    assert_eq!(
+        again.inspect().run_until_breakpoint(7, &mut |_| {}).expect("days").week.figures.day,
+        today + 9
+    );
     drop(again);
     verify(&folder).expect("the record holds");
 }

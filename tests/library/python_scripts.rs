@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use novamind::insight::branch_with_decisions;
 use novamind::session::{
     Access, Configuration, Mode, NewRun, QuerySource, Record, Refusal, Session, Storage, Trajectory, Via,
     verify,
@@ -238,7 +239,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     week(&mut session);
 
     // Decisions that are played again start nothing, whatever was registered before them.
-    let again = session.branch_with_decisions(2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
+    let again = branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());
     let said = &branch.calculated()[0].output;

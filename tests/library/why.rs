@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use novamind::session::{Causes, Condition, Mode, OfRecord, Refusal, Session, WeekQuestion, Why};
+use novamind::insight::{Causes, Condition, Inspect, OfRecord, WeekQuestion, Why, folder_of_causes};
+use novamind::session::{Mode, Refusal, Session};
 use serde_json::json;
 
 use crate::support::company::{begin_run, call, number, open_shop, week, weeks};
@@ -13,7 +14,7 @@ fn asked(text: &str) -> WeekQuestion {
 }
 
 fn why(session: &Session, text: &str) -> Result<Why, Refusal> {
-    let mut causes = Causes::read(&session.folder_of_causes()?)?;
+    let mut causes = Causes::read(&folder_of_causes(&session)?)?;
     Ok(causes.why(asked(text), &|_| ControlFlow::Continue(()))?.expect("it is not stopped"))
 }
 
@@ -37,7 +38,7 @@ fn figures_of_a_group_are_those_of_breakpoints_and_of_the_tables() {
         ["churn(S1)", "cancellations(S1)", "leads(S2)", "conversion(S1)", "new_subscribers(S1)", "churn"]
     {
         let condition: Condition = format!("{figure} >= 0 over 7").parse().expect("a condition");
-        let value = session.look_back(condition).expect("a look").today.value.expect("a value");
+        let value = session.inspect().look_back(condition).expect("a look").today.value.expect("a value");
         let told = why(&session, figure).expect("an answer");
         assert!((told.after - value).abs() < 1e-12, "{figure}: {} {value}", told.after);
         let sum = told.parts.iter().map(|part| part.amount).sum::<f64>() + told.rest;
@@ -45,7 +46,7 @@ fn figures_of_a_group_are_those_of_breakpoints_and_of_the_tables() {
     }
     for figure in ["subscribers(S1)", "satisfaction(S1)", "reputation(S1)", "open_issues(S1)"] {
         let condition: Condition = format!("{figure} >= 0").parse().expect("a condition");
-        let value = session.look_back(condition).expect("a look").today.value.expect("a value");
+        let value = session.inspect().look_back(condition).expect("a look").today.value.expect("a value");
         assert_eq!(why(&session, figure).expect("an answer").after, value, "{figure}");
     }
     let left = number(

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use novamind::insight::{CustomerLens, DayOutcome, Inspect, LeadFactor, Lens};
 use novamind::session::{
-    Access, Activity, Cell, CompanyAnswer, Configuration, CustomerLens, DayOutcome, EndCause, LeadFactor,
-    Lens, Mode, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, lines_afterwards, verify,
+    Access, Activity, Cell, CompanyAnswer, Configuration, EndCause, Mode, NewRun, Record, Session, Storage,
+    Trajectory, Via, WaitingThread, lines_afterwards, verify,
 };
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
@@ -40,14 +41,16 @@ fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
         let told: Vec<String> =
             [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
                 .into_iter()
-                .map(|(group, day)| session.lead_equations(group, day).expect_err("hidden").to_string())
+                .map(|(group, day)| {
+                    session.inspect().lead_equations(group, day).expect_err("hidden").to_string()
+                })
                 .collect();
         assert!(told.iter().all(|one| *one == told[0]), "{told:?}");
         assert_eq!(told[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
         // Whoever gives it up may look, and cannot go on.
         session.end().expect("it ends");
-        assert_eq!(session.lead_equations(s2(), Some(3)).expect("a look").len(), 3);
+        assert_eq!(session.inspect().lead_equations(s2(), Some(3)).expect("a look").len(), 3);
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         assert_eq!(looks(&trajectory), [], "the end is the last line");
@@ -65,19 +68,22 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
         open_shop(session);
         week(session);
     }
-    watched.lead_equations(s2(), Some(2)).expect("a look");
+    watched.inspect().lead_equations(s2(), Some(2)).expect("a look");
     watched.step(3, &mut |_| {}).expect("days");
     alone.step(3, &mut |_| {}).expect("days");
     // In the middle of a week, after a call, and of an earlier day.
     for session in [&mut watched, &mut alone] {
         session.call("set_prices", &json!({"A": 13}), Via::Script).expect("a price");
     }
-    assert_eq!(watched.lead_equations(s2(), None).expect("a look").last().map(|own| own.day), Some(10));
-    watched.lead_equations(s2(), Some(4)).expect("a look");
+    assert_eq!(
+        watched.inspect().lead_equations(s2(), None).expect("a look").last().map(|own| own.day),
+        Some(10)
+    );
+    watched.inspect().lead_equations(s2(), Some(4)).expect("a look");
     week(&mut watched);
     week(&mut alone);
     assert_eq!(watched.state_hash(), alone.state_hash());
-    let refused = watched.lead_equations(s2(), Some(15)).expect_err("not simulated");
+    let refused = watched.inspect().lead_equations(s2(), Some(15)).expect_err("not simulated");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
     let place = watched.folder().expect("a folder").to_owned();
     drop(watched);
@@ -87,7 +93,7 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
     assert_eq!(told, ["leads S2 2", "leads S2 10", "leads S2 4"]);
     assert_eq!(verify(&place).expect("it verifies").day, 14);
     let mut again = Session::open(&place, Access::Write, false).expect("it opens");
-    assert_eq!(again.lead_equations(s2(), Some(10)).expect("a look").len(), 10);
+    assert_eq!(again.inspect().lead_equations(s2(), Some(10)).expect("a look").len(), 10);
 }
 
 #[test]
@@ -111,8 +117,9 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
     }
     let mut compared = 0;
     for group in Group::all() {
-        for own in
-            [20, 42].into_iter().flat_map(|day| session.lead_equations(group, Some(day)).expect("a look"))
+        for own in [20, 42]
+            .into_iter()
+            .flat_map(|day| session.inspect().lead_equations(group, Some(day)).expect("a look"))
         {
             let factors: f64 = LeadFactor::ALL.iter().map(|factor| own.factor(*factor)).product();
             let channels: f64 = own.channels().map(|(_, leads)| leads).sum();
@@ -135,7 +142,7 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
 }
 
 fn individual(session: &mut Session, customer: u32, day: Option<u32>) -> CustomerLens {
-    match session.lens(customer, day).expect("a look") {
+    match session.inspect().lens(customer, day).expect("a look") {
         Lens::Individual(lens) => *lens,
         Lens::Company(_) => panic!("customer {customer} is a company"),
     }
@@ -206,7 +213,8 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
         ["lost", "cancelled", "subscribed", "with an issue"].iter().all(|status| seen.get(status) > Some(&2)),
         "{seen:?}"
     );
-    let refused = |session: &mut Session, customer, day| session.lens(customer, day).expect_err("no").code;
+    let refused =
+        |session: &mut Session, customer, day| session.inspect().lens(customer, day).expect_err("no").code;
     assert_eq!(refused(&mut session, 0, None), "customer_not_found");
     assert_eq!(refused(&mut session, u32::MAX, None), "customer_not_found");
     let late = whole(&known.last().expect("a customer")[0]).expect("a customer");
@@ -271,7 +279,7 @@ fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
         let [customer, thread, day] = [0, 1, 2].map(|at| whole(&turn[at]));
         let Cell::Text(said) = &turn[3] else { panic!("{turn:?}") };
         let said: Value = serde_json::from_str(said).expect("JSON");
-        let Lens::Company(lens) = session.lens(customer, Some(day)).expect("a look") else {
+        let Lens::Company(lens) = session.inspect().lens(customer, Some(day)).expect("a look") else {
             panic!("a company")
         };
         let own = lens.shown().find(|own| own.thread == thread).expect("its thread");
@@ -320,7 +328,7 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
         let group = Group::parse(id).expect("a group");
         let (mut statistic, mut freedom, mut spread, mut extreme) = (0.0, 0.0, 0.0, 0);
         for last in (28..=1000).step_by(28).chain([1000]) {
-            let days = session.lead_equations(group, Some(last)).expect("a look");
+            let days = session.inspect().lead_equations(group, Some(last)).expect("a look");
             for own in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
                 let (expected, came) = (own.expected(), f64::from(own.came));
                 if expected > 0.0 {
@@ -353,9 +361,9 @@ fn a_run_that_is_only_read_is_not_looked_into() {
     drop(session);
     let before = std::fs::read(own.join("trajectory.jsonl")).expect("bytes");
     let mut read = Session::open(&own, Access::Read, true).expect("it opens");
-    assert_eq!(read.lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
-    assert_eq!(read.xray_query("SELECT 1", None).expect_err("a refusal").code, "read_only");
-    assert_eq!(read.difference_of_days(3, 4).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.inspect().lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.inspect().xray_query("SELECT 1", None).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.inspect().difference_of_days(3, 4).expect_err("a refusal").code, "read_only");
     // What is hidden is asked in another way, and that is said where it may be asked.
     let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(refused.message.contains("query --xray"), "{refused}");

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use novamind::session::{DrawnPart, Mode, Refusal, Session, Trajectory, Via, lines_afterwards, verify};
+use novamind::insight::{DrawnPart, Inspect};
+use novamind::session::{Mode, Refusal, Session, Trajectory, Via, lines_afterwards, verify};
 use novamind::world::identifiers::Group;
 use serde_json::json;
 
@@ -18,14 +19,15 @@ fn run_in(folder: &Path, mode: Mode) -> Session {
 /// What every view says of a group and a day, refused or shown.
 fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Refusal>> {
     let group = Group::parse(group).expect("a group");
+    let mut inside = session.inspect();
     vec![
-        session.quality_equation(group, day).map(drop),
-        session.satisfaction_equation(group, day).map(drop),
-        session.reputation_equation(group, day).map(drop),
-        session.spillover(day).map(drop),
-        session.rival_state(day).map(drop),
-        session.drift_state(day).map(drop),
-        session.hidden_values(day).map(drop),
+        inside.quality_equation(group, day).map(drop),
+        inside.satisfaction_equation(group, day).map(drop),
+        inside.reputation_equation(group, day).map(drop),
+        inside.spillover(day).map(drop),
+        inside.rival_state(day).map(drop),
+        inside.drift_state(day).map(drop),
+        inside.hidden_values(day).map(drop),
     ]
 }
 
@@ -45,7 +47,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
         for part in DrawnPart::ALL {
             told.extend(
                 [None, Some(0), Some(3), Some(usize::MAX)]
-                    .map(|count| session.next_draws(part, count).map(drop)),
+                    .map(|count| session.inspect().next_draws(part, count).map(drop)),
             );
         }
         for answer in told {
@@ -55,7 +57,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
         assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
         session.end().expect("it ends");
         assert!(views(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
-        session.next_draws(DrawnPart::Service, None).expect("a look");
+        session.inspect().next_draws(DrawnPart::Service, None).expect("a look");
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         assert!(looks(&trajectory).is_empty(), "the end is the last line");
@@ -89,7 +91,7 @@ fn looking_at_views_changes_no_hash() {
             assert!(views(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
         }
         for part in DrawnPart::ALL {
-            watched.next_draws(part, Some(5)).expect("a look");
+            watched.inspect().next_draws(part, Some(5)).expect("a look");
         }
         week(&mut watched);
         week(&mut alone);
@@ -112,7 +114,7 @@ fn before_the_first_day_only_draws_are_there() {
         assert_eq!(answer.expect_err("no day").to_string(), "day_unknown (day): no day has run yet");
     }
     for part in DrawnPart::ALL {
-        assert_eq!(session.next_draws(part, None).expect("a look").day, 1);
+        assert_eq!(session.inspect().next_draws(part, None).expect("a look").day, 1);
     }
 }
 
@@ -123,12 +125,13 @@ fn a_view_of_a_past_day_stays_as_it_was() {
     weeks(&mut session, 3);
     let group = Group::parse("S1").expect("a group");
     let all = |session: &mut Session| {
+        let mut inside = session.inspect();
         (
-            session.quality_equation(group, Some(12)).expect("a look"),
-            session.satisfaction_equation(group, Some(12)).expect("a look"),
-            session.reputation_equation(group, Some(12)).expect("a look"),
-            session.spillover(Some(12)).expect("a look"),
-            session.drift_state(Some(12)).expect("a look"),
+            inside.quality_equation(group, Some(12)).expect("a look"),
+            inside.satisfaction_equation(group, Some(12)).expect("a look"),
+            inside.reputation_equation(group, Some(12)).expect("a look"),
+            inside.spillover(Some(12)).expect("a look"),
+            inside.drift_state(Some(12)).expect("a look"),
         )
     };
     let before = all(&mut session);

@@ -4,6 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::cli::{Context, Failure, print};
+use crate::insight::{Inspect, open_to_look_inside};
 use crate::notation::printable;
 use crate::report::xray::{difference_as_data, runs_in_words};
 use crate::session::{Session, find_run_to_read};
@@ -31,14 +32,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let open = |name: &str| -> Result<Session, Failure> {
         let folder = find_run_to_read(&runs, name)?;
         context.check_look(&folder)?;
-        Ok(Session::open_to_look_inside(&folder, context.seal_key()?)?)
+        Ok(open_to_look_inside(&folder, context.seal_key()?)?)
     };
     let mut one = open(&options.one)?;
     if one.folder() == Some(&*find_run_to_read(&runs, &options.other)?) {
         return Err(Failure::usage("name two runs; `diff DAY DAY` in plain mode compares two days of one"));
     }
     let mut other = open(&options.other)?;
-    let found = one.difference_to(&mut other, options.day);
+    let found = one.inspect().difference_to(&mut other, options.day);
     let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
     let ids = [&one, &other].map(|run| run.manifest().id.clone());
     if options.json {

@@ -4,8 +4,9 @@ use clap::Args;
 
 use crate::cli::run::figure_rows;
 use crate::cli::{Context, Failure, print};
+use crate::insight::{Inspect, open_to_look_inside};
 use crate::lab::Collector;
-use crate::session::{Session, find_run_to_read};
+use crate::session::find_run_to_read;
 
 /// Options of `lab metrics`.
 #[derive(Debug, Args)]
@@ -19,9 +20,9 @@ pub struct Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs()?, &options.run)?;
     context.check_look(&folder)?;
-    let mut session = Session::open_to_look_inside(&folder, context.seal_key()?)?;
+    let mut session = open_to_look_inside(&folder, context.seal_key()?)?;
     let mut collector = Collector::new(None);
-    let told = session.tell_days_again(&mut |day| collector.day(day));
+    let told = session.inspect().tell_days_again(&mut |day| collector.day(day));
     told.map_err(|refusal| Failure::failed(refusal.message))?;
     let manifest = session.manifest();
     // A participant of a study does not learn the seed.

@@ -13,11 +13,12 @@ use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 
 use super::{Context, Failure, print};
+use crate::insight::{BranchOrigin, origin_of};
 use crate::notation::{dollars, printable};
 use crate::report::origin_in_words;
 use crate::session::{
-    BranchOrigin, Record, RunSummary, Trajectory, all_run_folders, delete_run, end_run, find_run,
-    find_run_to_read, list_runs, manifest_text, origin_of, rescue,
+    Record, RunSummary, Trajectory, all_run_folders, delete_run, end_run, find_run, find_run_to_read,
+    list_runs, manifest_text, rescue,
 };
 
 /// Options of `runs`.

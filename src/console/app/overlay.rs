@@ -3,7 +3,8 @@
 
 use super::{App, Order, Run, Stage};
 use crate::context::ScreenId;
-use novamind_session::{HiddenValues, REFUSED_LOOK, Refusal};
+use novamind_insight::HiddenValues;
+use novamind_session::{REFUSED_LOOK, Refusal};
 use novamind_worker::Job;
 use novamind_worker::company::Company;
 use std::sync::Arc;

@@ -10,8 +10,9 @@ use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, Look};
 use crate::effect::Effect;
+use novamind_insight::{Cause, WeekQuantity, Why, WhyProgress};
 use novamind_report::why::{CauseLine, equation, heading, lines};
-use novamind_session::{Cause, Refusal, WeekQuantity, Why, WhyProgress};
+use novamind_session::Refusal;
 use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
@@ -213,7 +214,8 @@ impl Dialog for WhyBox {
 mod tests {
     use super::*;
     use crate::test_kit::{company, dialog_picture, in_dialog};
-    use novamind_session::{Detail, InputDetail, ToolId, WeekFigure, WhyPart};
+    use novamind_insight::{Detail, InputDetail, WhyPart};
+    use novamind_session::{ToolId, WeekFigure};
 
     fn cancellations() -> WeekQuantity {
         WeekQuantity::of_company(WeekFigure::Cancellations).expect("a figure of the company")

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
-use novamind_session::{Causes, ConditionProblem, DecisionEdit, OfRecord, Session, WhatIf};
+use novamind_insight::{Causes, ConditionProblem, DecisionEdit, OfRecord, WhatIf, folder_of_causes};
+use novamind_session::Session;
 
 /// Subscribers of the smaller company.
 const SMALL: u32 = 20_000;
@@ -36,7 +37,7 @@ pub fn resimulation(bench: &Bench) -> Result<Samples, BenchError> {
     let (mut first, mut next) = (Vec::new(), Vec::new());
     for _ in 0..bench.repetitions {
         let started = Instant::now();
-        let mut what_if = WhatIf::read(&company.session.folder_of_causes()?)?;
+        let mut what_if = WhatIf::read(&folder_of_causes(&company.session)?)?;
         ask(&mut what_if, parting)?;
         first.push(started.elapsed().as_secs_f64());
         let again = Instant::now();
@@ -65,7 +66,7 @@ fn ask(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
 
 /// Seconds until it is known why the cancellations of the last week changed.
 fn why(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
-    let folder = session.folder_of_causes()?;
+    let folder = folder_of_causes(&session)?;
     let once = |_| {
         let started = Instant::now();
         let asked =

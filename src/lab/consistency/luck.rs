@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::policy::Policy;
 use crate::runner::{RunError, RunSpec, advance, decide_telling, is_over, new_run};
-use novamind_session::{Configuration, DayReport, DrawnPart, Follows, KeyedDraws, Refusal, Session, Xray};
+use novamind_insight::{DrawnPart, Follows, Inspect, KeyedDraws};
+use novamind_session::{Configuration, DayReport, Refusal, Session, Xray};
 use novamind_tools::{Answer, DiscoveryAttempt};
 use novamind_world::identifiers::{Channel, Group};
 
@@ -100,13 +101,15 @@ impl PlayedLuck {
     /// Draws of the next day that leave no trace of their own in the world.
     fn note_draws(&mut self, session: &mut Session) -> Result<(), Refusal> {
         let day = session.day();
-        for KeyedDraws { group, follows, .. } in session.next_draws(DrawnPart::Renewals, Some(1))?.streams {
+        for KeyedDraws { group, follows, .. } in
+            session.inspect().next_draws(DrawnPart::Renewals, Some(1))?.streams
+        {
             if let (Some(group), Follows::FailedPayments { rate, .. }) = (group, follows) {
                 self.failed_payments.insert([group.index() as u32, day], bits([rate]));
             }
         }
         for part in [DrawnPart::Quality, DrawnPart::Service] {
-            for drawn in session.next_draws(part, Some(1))?.streams {
+            for drawn in session.inspect().next_draws(part, Some(1))?.streams {
                 match drawn.follows {
                     Follows::Noise(noise) => self.noise.insert([day + 1, 0], bits([noise])),
                     Follows::OutageAbove(chance) => self.outages.insert([day + 1, 0], bits([chance])),

@@ -6,12 +6,13 @@ use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
 use novamind_base::notation::json_number;
+use novamind_insight::{
+    Breakpoint, Condition, ConditionProblem, Inspect, Judged, LookBack, WhoWrites, Write, WrittenBy,
+};
 use novamind_report::xray::{
     AskedWords, breakpoints_in_words, look_back_in_words, stop_in_words, written_by,
 };
-use novamind_session::{
-    Breakpoint, Condition, ConditionProblem, Judged, LookBack, ReputationCause, WhoWrites, Write, WrittenBy,
-};
+use novamind_session::ReputationCause;
 
 impl Interpreter {
     /// `break`, `break CONDITION`, `break clear N|all`; `column` is where the rest begins.
@@ -21,12 +22,13 @@ impl Interpreter {
         }
         let rest = without_comment(rest);
         let shown = match rest.split_once(char::is_whitespace).unwrap_or((rest, "")) {
-            ("", _) => self.session.breakpoints().map(|set| {
-                let data = json!({ "breakpoints": as_list(set) });
-                Answer::done("break", breakpoints_in_words(set).join("\n"), data)
+            ("", _) => self.session.inspect().breakpoints().map(|set| {
+                let data = json!({ "breakpoints": as_list(&set) });
+                Answer::done("break", breakpoints_in_words(&set).join("\n"), data)
             }),
             ("clear", which) => {
-                let removed = self.session.clear_breakpoints(number_or_all(which.trim(), column + 6)?);
+                let removed =
+                    self.session.inspect().clear_breakpoints(number_or_all(which.trim(), column + 6)?);
                 removed.map(|removed| {
                     let lines: Vec<String> = removed
                         .iter()
@@ -37,14 +39,17 @@ impl Interpreter {
                     Answer::done("break", text, json!({ "removed": as_list(&removed) }))
                 })
             }
-            _ => self.session.set_breakpoint(condition(rest, column)?).map(|own| {
-                let next = match self.session.ended() {
-                    None => "run DAYS stops there".to_owned(),
-                    Some(_) => format!("back {} says since when it is true or false", own.number),
-                };
-                let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
-                Answer::done("break", text, as_data(&own))
-            }),
+            _ => {
+                let set = self.session.inspect().set_breakpoint(condition(rest, column)?);
+                set.map(|own| {
+                    let next = match self.session.ended() {
+                        None => "run DAYS stops there".to_owned(),
+                        Some(_) => format!("back {} says since when it is true or false", own.number),
+                    };
+                    let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
+                    Answer::done("break", text, as_data(&own))
+                })
+            }
         };
         Ok(shown.unwrap_or_else(|refusal| Answer::refused("break", refusal)))
     }
@@ -63,12 +68,13 @@ impl Interpreter {
         if number.len() < without_comment(rest).len() {
             let begins = column + number.chars().count() + "until".len();
             let condition = condition(until, begins)?;
-            if let Err(refusal) = self.session.set_breakpoint(condition) {
+            if let Err(refusal) = self.session.inspect().set_breakpoint(condition) {
                 return Ok(Answer::refused("run", refusal));
             }
         }
-        let set = self.session.breakpoints().map_or(0, <[Breakpoint]>::len);
-        Ok(match self.session.run_until_breakpoint(days, &mut |_| {}) {
+        let set = self.session.inspect().breakpoints().map_or(0, |set| set.len());
+        let run = self.session.inspect().run_until_breakpoint(days, &mut |_| {});
+        Ok(match run {
             Ok(run) => {
                 let day = self.session.day();
                 let mut data = run.week.as_json();
@@ -99,9 +105,9 @@ impl Interpreter {
         }
         let rest = without_comment(rest);
         let found = match (rest, rest.parse::<u32>()) {
-            ("", _) => self.session.look_back_from(None),
-            (_, Ok(number)) => self.session.look_back_from(Some(number)),
-            _ => self.session.look_back(condition(rest, column)?).map(|own| vec![own]),
+            ("", _) => self.session.inspect().look_back_from(None),
+            (_, Ok(number)) => self.session.inspect().look_back_from(Some(number)),
+            _ => self.session.inspect().look_back(condition(rest, column)?).map(|own| vec![own]),
         };
         Ok(match found {
             Ok(found) if found.is_empty() => {

@@ -8,11 +8,11 @@ use super::{Interpreter, problem};
 use novamind_base::nearest;
 use novamind_base::notation::price_to_cents;
 use novamind_database::text::aligned;
+use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
 use novamind_report::curve::{
     basis_in_words, columns, outcome_in_words, plan_in_words, quality, remarks, rows,
 };
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
 
 const USAGE: &str = "name a group, and a price with a quality or neither: curve S1, curve S1 30 0.4";
 
@@ -22,7 +22,7 @@ type Asked = (Group, Option<(f64, f64)>);
 impl Interpreter {
     pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
         let (group, product) = asked(arguments)?;
-        Ok(match self.session.curve_explorer(group) {
+        Ok(match CurveExplorer::of(&mut self.session, group) {
             Ok(own) => answer(&own, product),
             Err(refusal) => Answer::refused("curve", refusal),
         })

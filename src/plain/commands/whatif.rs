@@ -8,15 +8,16 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, Phase, count, problem};
 use novamind_database::text::aligned;
+use novamind_insight::{
+    BranchComparison, BranchFigures, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions,
+    branches_of, folder_of_causes, look_at_what_if, unless_stopped,
+};
 use novamind_report::whatif::{
     bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
     name, table,
 };
 use novamind_session::record::LeavingCause;
-use novamind_session::{
-    BranchComparison, BranchFigures, DecisionEdit, Futures, Interface, PastDecision, Refusal, Session,
-    WhatIf, branches_of, unless_stopped,
-};
+use novamind_session::{Interface, Refusal, Session};
 
 /// Futures that are drawn where no number is named.
 const FUTURES: u32 = 20;
@@ -40,7 +41,7 @@ impl Interpreter {
     /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
     pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
         // Nothing is read of what is asked for before it is clear that it may be answered.
-        if let Err(refusal) = self.session.folder_of_causes() {
+        if let Err(refusal) = folder_of_causes(&self.session) {
             return Ok(Answer::refused("whatif", refusal));
         }
         if let Ok(week) = words.parse() {
@@ -75,7 +76,7 @@ impl Interpreter {
     }
 
     fn what_if_of_run(&mut self) -> Result<&mut WhatIf, Refusal> {
-        let folder = self.session.folder_of_causes()?;
+        let folder = folder_of_causes(&self.session)?;
         self.branches_kept.of(folder)
     }
 
@@ -113,7 +114,7 @@ impl Interpreter {
         let stop = self.watch.enter_stoppable();
         let go_on = |_, _| unless_stopped(&stop);
         let Question { from, until, futures, alternatives } = question;
-        let is_recorded = self.session.look_at_what_if(*from);
+        let is_recorded = look_at_what_if(&mut self.session, *from);
         let answer = self.what_if_of_run().and_then(|own| {
             own.tell_hidden(is_recorded);
             let found = own.answer((*from, *until), alternatives, *futures, &go_on)?;
@@ -176,7 +177,7 @@ impl Interpreter {
         let mode = self.session.manifest().mode.of_branch();
         let stop = self.watch.enter_stoppable();
         let mut go_on = |_| unless_stopped(&stop);
-        let adopted = self.session.branch_with_decisions(week, decided, mode, &mut go_on);
+        let adopted = branch_with_decisions(&self.session, week, decided, mode, &mut go_on);
         self.watch.enter(Phase::Working);
         let adopted = match adopted {
             Ok(adopted) => adopted,
@@ -224,7 +225,7 @@ impl Interpreter {
         };
         let tree = branches_of(runs, id);
         let lines: Vec<String> = tree.iter().map(|kin| kin_line(kin, id)).collect();
-        let one = |kin: &novamind_session::Kin| {
+        let one = |kin: &novamind_insight::Kin| {
             json!({
                 "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.left_in_week,
                 "first_change": kin.first_change,

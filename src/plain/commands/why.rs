@@ -6,13 +6,14 @@ use super::super::answers::Answer;
 use super::super::grammar::Problem;
 use super::Interpreter;
 use novamind_database::text::aligned;
+use novamind_insight::{ConditionProblem, WeekQuestion, Why, begin_why, folder_of_causes, unless_stopped};
 use novamind_report::why::{equation, heading, lines};
+use novamind_session::Refusal;
 use novamind_session::identifiers::Group;
-use novamind_session::{ConditionProblem, Refusal, WeekQuestion, Why, unless_stopped};
 
 impl Interpreter {
     pub(super) fn why(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.folder_of_causes() {
+        if let Err(refusal) = folder_of_causes(&self.session) {
             return Ok(Answer::refused("why", refusal));
         }
         let asked: WeekQuestion = words.parse().map_err(|problem: ConditionProblem| Problem {
@@ -21,7 +22,7 @@ impl Interpreter {
         })?;
         self.note_look(&format!("why {words}"), &[]);
         let stop = self.watch.enter_stoppable();
-        let folder = self.session.begin_why(&asked);
+        let folder = begin_why(&mut self.session, &asked);
         let answer =
             folder.and_then(|folder| self.causes_kept.of(folder)?.why(asked, &|_| unless_stopped(&stop)));
         self.watch.enter(super::Phase::Working);

@@ -13,9 +13,10 @@ use super::{Interpreter, problem, usage};
 use data::{company_as_data, customer_as_data, leads_as_data};
 use novamind_base::nearest;
 use novamind_database::text::table;
+use novamind_insight::{Inspect, LeadFactor, Lens};
 use novamind_report::xray::{company_in_words, customer_in_words, leads_in_words};
 use novamind_session::identifiers::Group;
-use novamind_session::{LeadFactor, Lens, Refusal, rows_as_json};
+use novamind_session::{Refusal, rows_as_json};
 
 /// What can be shown.
 const VIEWS: [&str; 9] =
@@ -60,7 +61,8 @@ impl Interpreter {
 
     /// `xray sql [DAY] STATEMENT`
     pub(super) fn hidden_tables(&mut self, rest: &str, column: usize) -> Answer {
-        let asked = self.session.xray_interrupt().and_then(|interrupt| {
+        let interrupt = self.session.inspect().xray_interrupt();
+        let asked = interrupt.and_then(|interrupt| {
             let (day, sql) = match day_and_statement(rest) {
                 Ok(asked) => asked,
                 Err(text) => return Ok(Err(Problem { text: text.to_owned(), column })),
@@ -68,7 +70,7 @@ impl Interpreter {
             // What is stopped from here on is this query, though it has not begun.
             let ticket = interrupt.ticket();
             self.watch.enter_query(interrupt);
-            self.session.xray_query_as(ticket, sql, day).map(Ok)
+            self.session.inspect().xray_query_as(ticket, sql, day).map(Ok)
         });
         self.watch.enter(Phase::Working);
         match asked {
@@ -83,7 +85,7 @@ impl Interpreter {
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
         let plain: Vec<&Argument> = arguments.iter().filter(|own| own.key.is_none()).collect();
         let (group, day) = group_and_day("leads", &plain)?;
-        Ok(self.session.lead_equations(group, day).map(|days| {
+        Ok(self.session.inspect().lead_equations(group, day).map(|days| {
             let data = days.last().map_or(Value::Null, |own| leads_as_data(own, &held));
             Answer::done("xray", leads_in_words(&days, &held).join("\n"), data)
         }))
@@ -96,8 +98,8 @@ impl Interpreter {
         }
         let numbers: Vec<u32> = arguments.iter().map(whole_number).collect::<Result<_, _>>()?;
         let shown = match numbers[..] {
-            [customer] => self.session.lens(customer, None),
-            [customer, day] => self.session.lens(customer, Some(day)),
+            [customer] => self.session.inspect().lens(customer, None),
+            [customer, day] => self.session.inspect().lens(customer, Some(day)),
             _ => return Err(problem(arguments, "name a customer, and a day or none: lens 4711 151")),
         };
         Ok(match shown {

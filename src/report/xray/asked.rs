@@ -7,10 +7,8 @@ use super::{days_in_words, found_in_words, writes_in_words};
 use crate::parameters::{changed_in_words, set_in_words};
 use novamind_base::nearest;
 use novamind_base::notation::written::{Argument, Problem, Reader};
-use novamind_session::{
-    ChangedParameter, ChangedParameters, Condition, ConditionProblem, Difference, Judged, Refusal, Session,
-    WhoWrites, WriteTarget,
-};
+use novamind_insight::{Condition, ConditionProblem, Difference, Inspect, Judged, WhoWrites, WriteTarget};
+use novamind_session::{ChangedParameter, ChangedParameters, Refusal, Session};
 
 const USAGE_OF_DIFF: &str = "name two days: diff 83 84";
 const USAGE_OF_SET: &str =
@@ -164,11 +162,15 @@ impl AskedWords {
     pub fn answer(&self, session: &mut Session) -> Result<WordsFound, Refusal> {
         let today = session.day();
         match self {
-            AskedWords::Find(condition) => {
-                session.find_days(*condition).map(|found| WordsFound::Days(*condition, found, today))
+            AskedWords::Find(condition) => session
+                .inspect()
+                .find_days(*condition)
+                .map(|found| WordsFound::Days(*condition, found, today)),
+            AskedWords::Who(target, day) => {
+                session.inspect().who_writes(*target, *day).map(WordsFound::Writes)
             }
-            AskedWords::Who(target, day) => session.who_writes(*target, *day).map(WordsFound::Writes),
             AskedWords::Diff(one, other) => session
+                .inspect()
                 .difference_of_days(*one, *other)
                 .map(|found| WordsFound::Difference(*one, *other, found)),
             AskedWords::Parameters => session.changed_parameters().map(WordsFound::Parameters),

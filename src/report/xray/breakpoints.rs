@@ -3,7 +3,7 @@
 use super::settled;
 use crate::words::count;
 use novamind_base::notation::point_number;
-use novamind_session::{
+use novamind_insight::{
     Breakpoint, Condition, Direction, Hit, Judged, LookBack, Relation, RunUntil, TrueBefore,
 };
 

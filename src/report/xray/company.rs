@@ -1,8 +1,9 @@
 //! A company from within, in words.
 
 use super::{settled, table};
+use novamind_insight::{CompanyDay, CompanyLens};
+use novamind_session::CompanyAnswer;
 use novamind_session::identifiers::Plan;
-use novamind_session::{CompanyAnswer, CompanyDay, CompanyLens};
 
 /// Its open threads on the day that is shown: what it perceives, what it accepts, what it would answer.
 pub fn company_in_words(lens: &CompanyLens) -> Vec<String> {

@@ -1,8 +1,9 @@
 //! An individual from within, in words: what it decided and why, term by term.
 
 use super::{settled, table};
+use novamind_insight::{CustomerLens, DayOutcome, FirstDecision, Term, TurningTerm, Weighed};
+use novamind_session::EndCause;
 use novamind_session::identifiers::Plan;
-use novamind_session::{CustomerLens, DayOutcome, EndCause, FirstDecision, Term, TurningTerm, Weighed};
 
 /// How the line begins that lists satisfaction.
 pub const SATISFACTION: &str = "satisfaction:";

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::table;
 use novamind_base::notation::grouped;
-use novamind_session::{CustomerDifference, Difference, RunDifference};
+use novamind_insight::{CustomerDifference, Difference, RunDifference};
 
 /// Figures that are told; a state has some hundred.
 const FIGURES_TOLD: usize = 40;

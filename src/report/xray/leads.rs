@@ -1,7 +1,7 @@
 //! The equation of a group's leads, in words.
 
 use super::settled;
-use novamind_session::{LeadEquation, LeadFactor};
+use novamind_insight::{LeadEquation, LeadFactor};
 
 /// Place of the line that tells of a factor among the words of an equation.
 pub fn line_of_factor(factor: LeadFactor) -> usize {

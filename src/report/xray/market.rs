@@ -1,7 +1,7 @@
 //! Rivals and drift, in words.
 
 use super::{settled, table};
-use novamind_session::{DriftState, GroupDrifted, NextRivalMove, RivalState};
+use novamind_insight::{DriftState, GroupDrifted, NextRivalMove, RivalState};
 
 /// Moves that are listed.
 const LISTED_MOVES: usize = 10;

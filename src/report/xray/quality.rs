@@ -1,8 +1,8 @@
 //! What is delivered to a group on each plan, in words.
 
 use super::{settled, table};
+use novamind_insight::{PlanDelivered, QualityEquation, SharedGains};
 use novamind_session::identifiers::Plan;
-use novamind_session::{PlanDelivered, QualityEquation, SharedGains};
 
 /// The equation of each plan, where the shared quality comes from, and what the market expects.
 pub fn quality_in_words(own: &QualityEquation) -> Vec<String> {

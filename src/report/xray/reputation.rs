@@ -1,8 +1,9 @@
 //! What moved the reputation of a group, in words.
 
 use super::{evenings_in_words, settled, table};
+use novamind_insight::{Departures, LeastChanges, OwnChange, ReputationEquation};
+use novamind_session::Spill;
 use novamind_session::identifiers::Group;
-use novamind_session::{Departures, LeastChanges, OwnChange, ReputationEquation, Spill};
 
 /// The reputation of a group: before, every term, after; and what was dropped.
 pub fn reputation_in_words(own: &ReputationEquation) -> Vec<String> {

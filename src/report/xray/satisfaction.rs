@@ -1,7 +1,7 @@
 //! What moved the satisfaction of a group, in words.
 
 use super::{evenings_in_words, settled, table};
-use novamind_session::{MoodTerm, SatisfactionEquation};
+use novamind_insight::{MoodTerm, SatisfactionEquation};
 
 /// The mean before, each term, the mean after, and what came of it by the evening.
 pub fn satisfaction_in_words(own: &SatisfactionEquation) -> Vec<String> {

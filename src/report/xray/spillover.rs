@@ -2,8 +2,9 @@
 
 use super::reputation::{dropped_in_words, small};
 use super::{settled, table};
+use novamind_insight::Spillover;
+use novamind_session::Spill;
 use novamind_session::identifiers::Group;
-use novamind_session::{Spill, Spillover};
 
 /// Marks of a heat map, from the smallest share of the largest spill to the largest.
 pub const HEAT: [&str; 4] = ["░", "▒", "▓", "█"];

@@ -1,7 +1,7 @@
 //! The next draws of a part, in words.
 
 use super::{settled, table};
-use novamind_session::{Follows, KeyedDraws, NextDraws};
+use novamind_insight::{Follows, KeyedDraws, NextDraws};
 
 /// Draws of a stream that stand in one row.
 const SHOWN_DRAWS: usize = 8;

@@ -3,7 +3,8 @@
 use super::{settled, table};
 use crate::words::{category_name, whole};
 use novamind_base::notation::{cents, grouped};
-use novamind_session::{EndCause, ReputationCause, WhoWrites, Write, WriteTarget, WrittenBy};
+use novamind_insight::{WhoWrites, Write, WriteTarget, WrittenBy};
+use novamind_session::{EndCause, ReputationCause};
 
 /// The figure before and after the day, and each write with its amount and what the figure was after it.
 pub fn writes_in_words(own: &WhoWrites) -> Vec<String> {

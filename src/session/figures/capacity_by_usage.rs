@@ -9,7 +9,7 @@ const UTILISATION: f64 = 0.8;
 
 /// A rule by which the capacity follows usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum UsageRule {
+pub enum UsageRule {
     /// The smallest tier that serves the busiest day of the week before without overload; the largest where none does. Nothing
     /// moves before the first week.
     BusiestDay,
@@ -20,7 +20,7 @@ pub(crate) enum UsageRule {
 
 impl UsageRule {
     /// The tier that the rule sets after a week, given the one in force.
-    pub(crate) fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
+    pub fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
         match self {
             UsageRule::BusiestDay => {
                 before.map_or(now, |week| covering(week.busiest_day as f64, now, params))
@@ -48,7 +48,7 @@ impl Session {
     }
 
     /// The capacity tier that a rule sets now.
-    pub(crate) fn tier_by(&self, rule: UsageRule) -> u8 {
+    pub fn tier_by(&self, rule: UsageRule) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
         rule.tier(now, self.history.weeks.last(), &self.simulation.params)
     }

@@ -3,7 +3,7 @@
 use super::week::WeekFigures;
 
 /// Churn of some days: their cancellations, as a share of the subscribers before the first of them. None without subscribers.
-pub(crate) fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
+pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
     (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
 }
 

@@ -74,7 +74,7 @@ impl GroupWeek {
 }
 
 /// Adds a day to the figures of its week.
-pub(crate) fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
+pub fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
     let came: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
     for arrival in came.values() {

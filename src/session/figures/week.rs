@@ -93,13 +93,7 @@ impl WeekFigures {
     }
 
     /// Counts a day that was simulated: its figures, what happened on it, and the money that calls moved before it.
-    pub(crate) fn count(
-        &mut self,
-        figures: &DayFigures,
-        facts: &Facts,
-        called: &[LedgerEntry],
-        params: &Params,
-    ) {
+    pub fn count(&mut self, figures: &DayFigures, facts: &Facts, called: &[LedgerEntry], params: &Params) {
         self.add(figures);
         let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
         self.booked.add(Category::LeadAcquisitionCost, -leads);

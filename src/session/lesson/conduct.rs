@@ -66,7 +66,7 @@ impl Session {
     }
 
     /// Whole weeks that have passed.
-    pub(crate) fn weeks_passed(&self) -> u32 {
+    pub fn weeks_passed(&self) -> u32 {
         self.simulation.world.day / self.simulation.params.run.days_per_week
     }
 

@@ -12,13 +12,12 @@ use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 use super::reference::{PartPlay, play_part_watched};
 use super::standing::LessonStanding;
-use crate::counterfactual::companies::highest_named;
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::WeekFigures;
+use crate::figures::week_figure::WeekFigure;
 use crate::state::{AnswersCompanies, Session};
-use crate::why::WeekFigure;
 use novamind_record::trajectory::record::Ended;
-use novamind_tools::{Refusal, ToolId};
+use novamind_tools::{Refusal, ToolId, highest_named};
 use novamind_voice::CompanyNames;
 use novamind_world::params::Params;
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::definition::LessonPlan;
 use super::soundness::unsound;
+use crate::figures::week_figure::FigureUnit;
 use crate::lesson::definition::MeasuredFigure;
 use crate::lesson::measurement::NumberSource;
-use crate::why::FigureUnit;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;

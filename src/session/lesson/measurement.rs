@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::figures::week::WeekFigures;
-use crate::why::{FigureUnit, WeekFigure};
+use crate::figures::week_figure::{FigureUnit, WeekFigure};
 
 /// What is measured over some weeks.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@ use novamind_record::trajectory::Record;
 
 /// Whether the last part of the lesson that a run belongs to is over: in this run, or in another one that the same person has
 /// in the folder of runs. True of runs that belong to no lesson; false where the lesson that is kept with the run is another.
-pub(crate) fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
+pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     let Some(stamp) = &manifest.lesson else { return true };
     let Some(folder) = folder else { return false };
     let lesson = Lesson::of_run(folder, &stamp.name).ok().filter(|lesson| lesson.digest == stamp.digest);

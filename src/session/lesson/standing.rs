@@ -79,7 +79,7 @@ impl LessonStanding {
     ///
     /// # Errors
     /// `not_in_this_lesson`.
-    pub(crate) fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
+    pub fn refuse_tool(&self, tool: ToolId) -> Result<(), Refusal> {
         if self.own_part().moves_capacity() && tool == ToolId::SetCapacityTier {
             let message = "capacity follows usage by itself in this lesson";
             return Err(Refusal::new("not_in_this_lesson", message));
@@ -98,7 +98,7 @@ impl LessonStanding {
     ///
     /// # Errors
     /// `guess_first`.
-    pub(crate) fn refuse_before_guess(&self, weeks: u32) -> Result<(), Refusal> {
+    pub fn refuse_before_guess(&self, weeks: u32) -> Result<(), Refusal> {
         let step = self.own_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
         let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
         match guess {

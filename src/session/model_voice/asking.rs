@@ -49,6 +49,11 @@ impl Session {
             .collect()
     }
 
+    /// Takes posts that are written again as they were judged before.
+    pub fn inherit_scores(&mut self, judged: Vec<JudgedPost>) {
+        self.voice.inherited = judged;
+    }
+
     fn inherited_scores(&self, at: usize) -> Option<JudgedPost> {
         let post = self.simulation.world.market.social.own.get(at)?;
         let said = self.voice.inherited.iter().rev().find(|judged| is_of(judged, post))?;

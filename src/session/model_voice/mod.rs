@@ -9,8 +9,8 @@ mod endpoint;
 pub(crate) mod joining;
 pub(crate) mod scores;
 pub(crate) mod speaker;
-#[cfg(all(test, feature = "server"))]
-mod stub;
+#[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
+pub(crate) mod stub;
 mod telling_again;
 #[cfg(all(test, feature = "server"))]
 mod tests;

@@ -14,7 +14,7 @@ use novamind_voice::model::settings::ModelSettings;
 
 /// How it answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Manner {
+pub enum Manner {
     /// As it is asked.
     Well,
     /// Well, after three seconds.
@@ -28,7 +28,7 @@ pub(super) enum Manner {
 }
 
 /// The model; it is gone when this is dropped.
-pub(super) struct Stub {
+pub struct Stub {
     port: u16,
     asked: Arc<Mutex<Vec<Value>>>,
     stopped: Arc<AtomicBool>,
@@ -36,7 +36,8 @@ pub(super) struct Stub {
 }
 
 impl Stub {
-    pub(super) fn start(manner: Manner) -> Stub {
+    /// A model that answers so, on a port of its own.
+    pub fn start(manner: Manner) -> Stub {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
         let (asked, stopped) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
@@ -54,7 +55,7 @@ impl Stub {
     }
 
     /// A configuration that names it, with these switches.
-    pub(super) fn named(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
+    pub fn named(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
         let settings = ModelSettings {
             endpoint: format!("http://127.0.0.1:{}/v1", self.port),
             model: "stub".to_owned(),
@@ -67,7 +68,7 @@ impl Stub {
     }
 
     /// What it was asked.
-    pub(super) fn asked(&self) -> Vec<Value> {
+    pub fn asked(&self) -> Vec<Value> {
         self.asked.lock().expect("nobody panicked").clone()
     }
 }

@@ -6,12 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use super::stub::{Manner, Stub};
-use crate::counterfactual::branch::counterfactual_with_hashes;
-use crate::counterfactual::edits::Edits;
-use crate::counterfactual::kept_state::KeptState;
-use crate::counterfactual::script::{Move, moves};
 use crate::create::{NewRun, Storage, StudyEntry};
-use crate::playback::{Origin, read};
 use crate::resume::open::Access;
 use crate::resume::verify::verify;
 use crate::state::Session;
@@ -142,25 +137,6 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
 }
 
 #[test]
-fn without_an_edit_every_state_of_the_run_is_reached_again() {
-    let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let (session, _) = played(runs.path(), &stub.named(true, true, 30));
-    drop(stub);
-    let (Origin { manifest, params, .. }, trajectory) = read(&folder_of(&session)).expect("a run");
-    let script = moves(&trajectory.lines);
-    let start = KeptState::opening(&manifest, params);
-    let outcome = counterfactual_with_hashes(&start, &script, &Edits::default(), 21).expect("not stopped");
-    let reached: Vec<String> = outcome.states.into_iter().map(|(_, (hash, _))| hash).collect();
-    let recorded = script.iter().filter_map(|step| match step {
-        Move::Days(days) => Some(days.state_hash.clone()),
-        Move::Call(_) | Move::Parameter(_) => None,
-    });
-    assert_eq!(reached, recorded.collect::<Vec<_>>());
-    assert_eq!(reached.last(), Some(&session.state_hash().0));
-}
-
-#[test]
 fn a_branch_takes_over_what_was_said() {
     let runs = tempfile::tempdir().expect("a folder");
     let stub = Stub::start(Manner::Well);
@@ -173,14 +149,6 @@ fn a_branch_takes_over_what_was_said() {
     assert_eq!(branch.manifest().voice, session.manifest().voice);
     verify(&folder_of(&branch)).expect("it replays");
     drop(branch);
-    // A branch that keeps its decisions makes the post again, and it is taken as it was.
-    let on = &mut |_| std::ops::ControlFlow::Continue(());
-    let kept = session.branch_with_decisions(1, &[], Mode::Sandbox, on).expect("a branch").session;
-    assert_eq!(kept.state_hash(), session.state_hash());
-    let own = folder_of(&kept);
-    assert!(said(&own).iter().any(|said| matches!(said, VoiceAnswer::Scores(_))));
-    drop(kept);
-    verify(&own).expect("it replays");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use novamind_world::events::Facts;
 use novamind_world::state::{PartHash, combined_hash};
 
 /// Hash of the state and of the week's facts, with the hash of each part by its name.
-pub(crate) type StateHash = (String, BTreeMap<String, String>);
+pub type StateHash = (String, BTreeMap<String, String>);
 
 /// Hash of a state with these parts and of the week's facts.
 pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {

@@ -20,7 +20,7 @@ use novamind_world::random::Streams;
 
 /// Everything that was written so far, and why the player's posts were taken as they were.
 #[derive(Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Feed {
+pub struct Feed {
     writer: Writer,
     /// Posts of others as the player sees them, in the order of their numbers.
     #[serde(with = "kept_posts")]

@@ -11,7 +11,7 @@ use novamind_world::params::PostJudge;
 
 impl Simulation {
     /// Lets the readers judge what the player posted before today.
-    pub(crate) fn judge_own_posts(&mut self, entries: Entries<'_>) {
+    pub fn judge_own_posts(&mut self, entries: Entries<'_>) {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;
         }

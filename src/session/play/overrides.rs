@@ -13,20 +13,20 @@ use novamind_world::params::{ParameterError, Params};
 
 /// A parameter that is set to another value.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ParameterChange {
+pub struct ParameterChange {
     /// Line that sets it.
-    pub(crate) seq: u64,
+    pub seq: u64,
     /// Full key.
-    pub(crate) key: String,
+    pub key: String,
     /// Value from then on.
-    pub(crate) value: Value,
+    pub value: Value,
     /// First day that is simulated with it; none: it acts at once.
-    pub(crate) from_day: Option<u32>,
+    pub from_day: Option<u32>,
 }
 
 impl ParameterChange {
     /// The change that a line tells; none if its value is nothing that a parameter can be.
-    pub(crate) fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
+    pub fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
         let value = value_of_json(&line.new)?;
         Some(ParameterChange { seq, key: line.key.clone(), value, from_day: line.from_day })
     }
@@ -42,7 +42,7 @@ struct WaitingChange {
 
 /// What has become of the parameters of a run since it began.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Overrides {
+pub struct Overrides {
     /// Whether any was set.
     is_used: bool,
     /// Changes that wait, by their day, those of a day in the order of their lines.
@@ -50,19 +50,20 @@ pub(crate) struct Overrides {
 }
 
 /// Parameters after a change was taken in.
-pub(crate) struct Taken {
+pub struct Taken {
     /// Those in force now.
-    pub(crate) now: Arc<Params>,
+    pub now: Arc<Params>,
     /// Those in force once the change acts.
-    pub(crate) changed: Arc<Params>,
+    pub changed: Arc<Params>,
 }
 
 /// Why a change is not possible.
 #[derive(Debug)]
-pub(crate) struct Unfit {
+pub struct Unfit {
     /// The later day on which values would contradict each other; none: it is the change itself.
-    pub(crate) day: Option<u32>,
-    pub(crate) error: ParameterError,
+    pub day: Option<u32>,
+    /// What is wrong.
+    pub error: ParameterError,
 }
 
 impl Overrides {
@@ -72,7 +73,7 @@ impl Overrides {
     }
 
     /// Changes that wait for their day.
-    pub(crate) fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
+    pub fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
         self.waiting.iter().map(|own| &own.change)
     }
 
@@ -80,7 +81,7 @@ impl Overrides {
     ///
     /// # Errors
     /// The value is not allowed, or contradicts another now or on a later day. Nothing has changed then.
-    pub(crate) fn take(&mut self, now: &Arc<Params>, change: ParameterChange) -> Result<Taken, Unfit> {
+    pub fn take(&mut self, now: &Arc<Params>, change: ParameterChange) -> Result<Taken, Unfit> {
         let (mut now, mut later): (_, Vec<ParameterChange>) =
             (now.clone(), self.waiting().cloned().collect());
         let own = change.seq;
@@ -117,7 +118,7 @@ impl Overrides {
     }
 
     /// The same changes over other parameters, but for some lines; what does not fit them is left out.
-    pub(crate) fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
+    pub fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
         let mut own = Overrides { is_used: self.is_used, waiting: Vec::new() };
         for change in self.waiting().filter(|change| !dropped.contains(&change.seq)) {
             let _ = own.take(now, change.clone());
@@ -144,7 +145,7 @@ fn with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, Parame
 }
 
 /// A value of JSON as parameters have it; none where they have nothing like it.
-pub(crate) fn value_of_json(value: &Json) -> Option<Value> {
+pub fn value_of_json(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
         Json::Bool(own) => Value::Boolean(*own),
@@ -162,7 +163,7 @@ pub(crate) fn value_of_json(value: &Json) -> Option<Value> {
 }
 
 /// A value of a parameter as JSON, whole numbers without a decimal point.
-pub(crate) fn json_of_value(value: &Value) -> Json {
+pub fn json_of_value(value: &Value) -> Json {
     match value {
         Value::String(text) => Json::from(text.as_str()),
         Value::Integer(number) => Json::from(*number),

@@ -202,11 +202,13 @@ fn in_words(error: &ParameterError) -> String {
     format!("{}: {}", error.key, error.problem)
 }
 
-pub(crate) fn unknown(error: ParameterError) -> Refusal {
+/// There is no such parameter.
+pub fn unknown(error: ParameterError) -> Refusal {
     Refusal::at(error.key, "parameter_unknown", error.problem)
 }
 
-pub(crate) fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
+/// A parameter may not have this value.
+pub fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
     let message = match day {
         None => error.problem,
         Some(day) => format!("{}, from day {day} on, for which it was set before", error.problem),

@@ -14,7 +14,7 @@ use novamind_world::events::Facts;
 /// The rows that follow from what has happened. A run that is played without a database has none: then nothing is
 /// written, and statements are refused.
 #[derive(Default)]
-pub(crate) struct Projection {
+pub struct Projection {
     projector: Option<Projector>,
     /// The database of a run that has ended, as it stands on the disk: nothing is written any more.
     finished: Option<Location>,
@@ -34,7 +34,7 @@ impl Projection {
     }
 
     /// Where entries go.
-    pub(crate) fn entries(&self) -> Entries<'_> {
+    pub fn entries(&self) -> Entries<'_> {
         Entries(self.projector.as_ref())
     }
 
@@ -101,7 +101,7 @@ impl Projection {
 
 /// Where entries go, for whatever thread makes them.
 #[derive(Clone, Copy)]
-pub(crate) struct Entries<'a>(Option<&'a Projector>);
+pub struct Entries<'a>(Option<&'a Projector>);
 
 impl Entries<'_> {
     /// Hands an entry over; it is made only if there is a database.

@@ -17,6 +17,7 @@ use crate::model_voice::scores::RecordedScores;
 use novamind_base::notation::grouped;
 use novamind_database::Entry;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::JudgedPost;
 use novamind_tools::Refusal;
 use novamind_voice::CompanyNames;
 use novamind_world::command::{Command, ResolvedCommand};
@@ -30,22 +31,25 @@ use novamind_world::random::Streams;
 use novamind_world::state::World;
 
 /// The company, its words, and how far it has come.
-pub(crate) struct Simulation {
-    pub(crate) params: Arc<Params>,
+pub struct Simulation {
+    /// Parameters in force.
+    pub params: Arc<Params>,
     /// What was set of them since the run began.
-    pub(crate) overrides: Overrides,
-    pub(crate) streams: Streams,
-    pub(crate) world: World,
+    pub overrides: Overrides,
+    /// The streams of chance.
+    pub streams: Streams,
+    /// The company and its market.
+    pub world: World,
     /// Facts of the last day or call.
-    pub(crate) facts: Arc<Facts>,
+    pub facts: Arc<Facts>,
     /// Those of the day before it, which are filled again once nobody reads them.
     facts_before: Arc<Facts>,
     /// How the leads of the last day came about.
     pub(crate) trace: DayTrace,
     /// What companies are called.
-    pub(crate) names: CompanyNames,
+    pub names: CompanyNames,
     /// What people wrote in public, in words.
-    pub(crate) feed: Feed,
+    pub feed: Feed,
     /// What a language model made of the player's posts.
     pub(crate) scores: RecordedScores,
     /// Hashes of this week's facts.
@@ -56,7 +60,7 @@ pub(crate) struct Simulation {
 
 impl Simulation {
     /// The company of a run on day 0.
-    pub(crate) fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
+    pub fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
         Simulation::of(manifest, params, (world, facts))
@@ -81,7 +85,7 @@ impl Simulation {
     }
 
     /// A company at some moment of a run, and what was written in public until then.
-    pub(crate) fn at(
+    pub fn at(
         (params, overrides): (Arc<Params>, Overrides),
         (streams, names): (Streams, CompanyNames),
         world: World,
@@ -103,23 +107,33 @@ impl Simulation {
         }
     }
 
+    /// Takes in what a language model made of the player's posts.
+    pub fn take_scores(&mut self, judged: &[JudgedPost]) {
+        judged.iter().for_each(|own| self.scores.take_in(own.clone()));
+    }
+
+    /// Begins the hashes of the facts of a new week.
+    pub fn close_facts(&mut self) {
+        self.facts_chain.close();
+    }
+
     /// Active subscribers with an open issue.
-    pub(crate) fn open_issues(&self) -> u32 {
+    pub fn open_issues(&self) -> u32 {
         self.world.customers.blocks().map(|(_, block)| block.open_issues()).sum()
     }
 
     /// Hash of the whole state with one hash per part, by name.
-    pub(crate) fn state_hash(&self) -> StateHash {
+    pub fn state_hash(&self) -> StateHash {
         state_hash(self.world.part_hashes(), self.facts_chain.hash())
     }
 
     /// A command with its draws made; nothing happens.
-    pub(crate) fn resolve(&self, command: Command) -> ResolvedCommand {
+    pub fn resolve(&self, command: Command) -> ResolvedCommand {
         self.world.resolve(command, &self.params, &self.streams)
     }
 
     /// Does what a command does.
-    pub(crate) fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
+    pub fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
         self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
         self.watch.called(&self.facts);
     }
@@ -133,7 +147,7 @@ impl Simulation {
     }
 
     /// Goes on with other parameters.
-    pub(crate) fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
+    pub fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
         if !Arc::ptr_eq(&self.params, &params) {
             entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
             self.params = params;
@@ -144,7 +158,7 @@ impl Simulation {
     ///
     /// # Errors
     /// `too_many_leads`.
-    pub(crate) fn refuse_crowded_day(&self) -> Result<(), Refusal> {
+    pub fn refuse_crowded_day(&self) -> Result<(), Refusal> {
         let (world, day) = (&self.world, self.world.day + 1);
         let due = self.overrides.due_on(day).unwrap_or(&self.params);
         let told = match room_for_next_day(world, due, &self.streams) {
@@ -166,7 +180,7 @@ impl Simulation {
 
     /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,
     /// with its notices.
-    pub(crate) fn simulate_day(
+    pub fn simulate_day(
         &mut self,
         held: &Held,
         entries: Entries<'_>,
@@ -188,24 +202,19 @@ impl Simulation {
     }
 
     /// What follows from a call, with its notices and the settings family that it left if it set one.
-    pub(crate) fn follow_call(
-        &mut self,
-        entries: Entries<'_>,
-        notices: Vec<String>,
-        settings: Option<Value>,
-    ) {
+    pub fn follow_call(&mut self, entries: Entries<'_>, notices: Vec<String>, settings: Option<Value>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, Some(notices), settings);
     }
 
     /// What follows from the last day of some, if there was any, with its notices.
-    pub(crate) fn follow_last_day(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) {
+    pub fn follow_last_day(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, last_day, None);
     }
 
     /// The same; meanwhile the state is hashed.
-    pub(crate) fn end_days(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) -> StateHash {
+    pub fn end_days(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.follow(facts, last_day, None));

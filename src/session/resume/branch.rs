@@ -29,7 +29,7 @@ impl Session {
     ///
     /// # Errors
     /// As for [`Session::branch`].
-    pub(crate) fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
+    pub fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
         if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
@@ -59,7 +59,8 @@ impl Session {
     }
 }
 
-pub(crate) fn not_saved(error: RunError) -> Refusal {
+/// What says that the disk refuses.
+pub fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }
 

@@ -42,7 +42,7 @@ impl Session {
         other.replay(&path, &read, seen, Some(database), &mut |_| {})?;
         other.projection.wait()?;
         self.projection = other.projection;
-        self.hidden_tables = None;
+        self.companion.databases += 1;
         Ok(())
     }
 }

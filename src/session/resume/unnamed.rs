@@ -16,7 +16,7 @@ use novamind_record::trajectory::record::Branch;
 use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 
 /// The folder of a branch without a name; it goes with this, unless the branch was named.
-pub(crate) struct UnnamedBranch {
+pub struct UnnamedBranch {
     folder: PathBuf,
     /// Where it will lie.
     named: PathBuf,
@@ -54,7 +54,7 @@ impl UnnamedBranch {
     ///
     /// # Errors
     /// It cannot be opened.
-    pub(crate) fn open(&self) -> Result<Session, RunError> {
+    pub fn open(&self) -> Result<Session, RunError> {
         Session::open(&self.folder, Access::Write, true)
     }
 
@@ -62,7 +62,7 @@ impl UnnamedBranch {
     ///
     /// # Errors
     /// The disk refuses, or it cannot be opened; then there is no branch.
-    pub(crate) fn name(self) -> Result<Session, RunError> {
+    pub fn name(self) -> Result<Session, RunError> {
         let UnnamedBranch { folder, named } = &self;
         std::fs::rename(folder, named).map_err(RunError::io(named))?;
         let opened = named

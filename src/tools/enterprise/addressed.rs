@@ -30,6 +30,16 @@ pub fn readdressed(
     is_left.then_some(args)
 }
 
+/// The highest number of a customer that a call names.
+pub fn highest_named(tool: ToolId, args: &Value) -> Option<u32> {
+    let mut highest = None;
+    readdressed(tool, args, &mut |customer| {
+        highest = highest.max(Some(customer));
+        Some(customer)
+    });
+    highest
+}
+
 /// Puts another company into an element; false where nobody stands for the one it names.
 fn readdress(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
     let named = match element {

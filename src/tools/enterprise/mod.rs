@@ -5,7 +5,7 @@ mod reading;
 mod reject_enterprise_deal;
 mod send_enterprise_deal;
 
-pub use addressed::readdressed;
+pub use addressed::{highest_named, readdressed};
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
 pub use send_enterprise_deal::SendEnterpriseDeal;
 

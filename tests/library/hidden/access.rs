@@ -3,6 +3,7 @@
 use std::fs;
 
 use novamind::database::hidden_tables;
+use novamind::insight::Inspect;
 use novamind::session::{Access, Activity, Mode, Record, Session, Trajectory, lines_afterwards, verify};
 
 use super::{hidden, open_wide, run_in, whole};
@@ -36,9 +37,10 @@ fn asking_changes_no_hash_and_each_statement_is_a_line() {
     for sql in &statements {
         hidden(&mut asked, sql);
     }
-    let refused = asked.xray_query("SELECT c_mx FROM hidden.customers", Some(3)).expect_err("no column");
+    let refused =
+        asked.inspect().xray_query("SELECT c_mx FROM hidden.customers", Some(3)).expect_err("no column");
     assert!(refused.message.contains("did you mean c_max"), "{refused}");
-    let refused = asked.xray_query("SELECT 1", Some(15)).expect_err("no day");
+    let refused = asked.inspect().xray_query("SELECT 1", Some(15)).expect_err("no day");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
     assert!(world() == before, "nothing of it is in the file");
     for session in [&mut asked, &mut alone] {
@@ -70,10 +72,10 @@ fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() 
         let asked =
             ["SELECT * FROM hidden.groups", "SELECT 1", "", "nonsense", "SELECT * FROM hidden.nothing"];
         for (sql, day) in asked.into_iter().zip([None, Some(3), Some(9000), None, Some(1)]) {
-            let refused = session.xray_query(sql, day).expect_err("hidden").to_string();
+            let refused = session.inspect().xray_query(sql, day).expect_err("hidden").to_string();
             assert_eq!(refused, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }
-        assert!(session.xray_interrupt().is_err());
+        assert!(session.inspect().xray_interrupt().is_err());
         assert_eq!(lines(), before, "nothing was looked at, so nothing is recorded");
         session.end().expect("it ends");
         drop(session);

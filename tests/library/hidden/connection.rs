@@ -1,5 +1,6 @@
 //! What the connection of the x-ray answers, refuses and leaves as it was.
 
+use novamind::insight::Inspect;
 use novamind::session::{Cell, Mode};
 
 use super::{hidden, open_wide, run_in, whole};
@@ -41,7 +42,7 @@ fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
         ("sql_write", "SELECT load_extension('x') FROM hidden.groups"),
         ("sql_empty", "-- nothing"),
     ] {
-        let refused = session.xray_query(sql, None).expect_err(sql);
+        let refused = session.inspect().xray_query(sql, None).expect_err(sql);
         assert_eq!(refused.code, code, "{sql}: {refused}");
     }
     assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), count);
@@ -71,7 +72,7 @@ fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
     );
     let many = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) \
                 SELECT x FROM n, hidden.pmi WHERE day = 1";
-    let rows = session.xray_query(many, None).expect("rows");
+    let rows = session.inspect().xray_query(many, None).expect("rows");
     assert!(rows.truncated && rows.rows.len() == 5000, "the limits are those of any query");
 }
 
@@ -81,10 +82,11 @@ fn a_statement_that_is_stopped_leaves_the_tables_as_they_were() {
     let mut session = run_in(folder.path(), Mode::Debug, 60);
     open_wide(&mut session);
     weeks(&mut session, 2);
-    let interrupt = session.xray_interrupt().expect("a debug run");
+    let interrupt = session.inspect().xray_interrupt().expect("a debug run");
     let ticket = interrupt.ticket();
     interrupt.stop();
-    let refused = session.xray_query_as(ticket, "SELECT * FROM hidden.groups", None).expect_err("stopped");
+    let refused =
+        session.inspect().xray_query_as(ticket, "SELECT * FROM hidden.groups", None).expect_err("stopped");
     assert_eq!((refused.code, refused.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), [[whole(14 * 26)]]);
 }
@@ -104,7 +106,7 @@ fn the_run_goes_on_and_other_threads_ask_while_the_tables_are_open() {
                 let answer = connection.ask("SELECT max(day) FROM ledger", limits);
                 (connection, answer)
             });
-            let own = session.xray_query("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
+            let own = session.inspect().xray_query("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
             assert!(own.is_ok(), "{own:?}");
             other.join().expect("a thread")
         });

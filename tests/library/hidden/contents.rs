@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use novamind::session::{Cell, CompanyAnswer, DayReport, Lens, Mode, Session, Via};
+use novamind::insight::{Inspect, Lens};
+use novamind::session::{Cell, CompanyAnswer, DayReport, Mode, Session, Via};
 use novamind::world::identifiers::{Channel, Group, Plan};
 use novamind::world::market::economy::Dimension;
 
@@ -180,7 +181,7 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
     week(&mut session);
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
-        let rows = session.xray_query(SUBSCRIBERS, Some(*day)).expect("a look").rows;
+        let rows = session.inspect().xray_query(SUBSCRIBERS, Some(*day)).expect("a look").rows;
         // A query brings so many rows at most.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
         for (own, expected) in rows.iter().zip(expected) {
@@ -206,7 +207,7 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
     assert!(differ > 0, "late answers cost relationship");
     let day = session.day();
     week(&mut session);
-    assert_eq!(session.xray_query(relationships, Some(day)).expect("a look").rows, before);
+    assert_eq!(session.inspect().xray_query(relationships, Some(day)).expect("a look").rows, before);
 }
 
 #[test]
@@ -232,7 +233,7 @@ fn threads_are_as_the_lens_shows_them() {
             Cell::Integer(number) => number as u32,
             ref other => panic!("{other:?}"),
         };
-        let Lens::Company(lens) = session.lens(number(2), Some(number(0))).expect("a look") else {
+        let Lens::Company(lens) = session.inspect().lens(number(2), Some(number(0))).expect("a look") else {
             panic!("a company")
         };
         let own = lens.shown().find(|own| own.thread == number(1)).expect("its thread");

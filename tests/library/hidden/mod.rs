@@ -8,6 +8,7 @@ mod page;
 
 use std::path::Path;
 
+use novamind::insight::Inspect;
 use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Storage, Via};
 use serde_json::json;
 
@@ -59,7 +60,7 @@ fn make_offers(session: &mut Session) {
 
 #[track_caller]
 fn hidden(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
-    session.xray_query(sql, None).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
+    session.inspect().xray_query(sql, None).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
 fn cell(value: impl Into<Option<f64>>) -> Cell {

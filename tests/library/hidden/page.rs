@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use novamind::database::{Column, Table, hidden_tables};
+use novamind::insight::Inspect;
 use novamind::session::{Cell, Mode};
 
 use super::{open_wide, run_in};
@@ -49,7 +50,10 @@ fn columns_of_hidden_tables_in_documents_are_those_that_exist() {
     open_wide(&mut session);
     weeks(&mut session, 3);
     for table in hidden_tables() {
-        let rows = session.xray_query(&format!("SELECT * FROM {} LIMIT 50", table.name), None).expect("rows");
+        let rows = session
+            .inspect()
+            .xray_query(&format!("SELECT * FROM {} LIMIT 50", table.name), None)
+            .expect("rows");
         let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         assert_eq!(rows.columns, names, "{}", table.name);
         assert!(!rows.rows.is_empty(), "{}", table.name);

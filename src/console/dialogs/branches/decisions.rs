@@ -4,7 +4,7 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use crate::action::Action;
-use novamind_session::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
+use novamind_insight::{DecisionEdit, FORMS, MOST_ALTERNATIVES, PastDecision};
 use novamind_tui::canvas::{Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;

@@ -5,7 +5,8 @@ use serde_json::json;
 use super::*;
 use crate::keys::Keys;
 use crate::test_kit::{company, dialog_picture, in_dialog};
-use novamind_session::{DecisionEdit, PastCall, PastDecision, ToolId};
+use novamind_insight::{DecisionEdit, PastCall, PastDecision};
+use novamind_session::ToolId;
 
 const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 

@@ -7,11 +7,11 @@ use crate::action::Action;
 use crate::context::Look;
 use crate::dialogs::Dialog;
 use novamind_base::notation::{dollars, price_to_cents};
+use novamind_insight::{CurvePoint, PlanPoint, SAMPLED_LEADS};
 use novamind_report::curve::{
     basis_in_words, outcome_in_few_words, outcome_in_words, plan_in_words, quality,
 };
 use novamind_session::identifiers::Plan;
-use novamind_session::{CurvePoint, PlanPoint, SAMPLED_LEADS};
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -3,12 +3,13 @@
 use super::*;
 use crate::keys::Keys;
 use crate::test_kit::{dialog_picture, in_dialog, played};
+use novamind_insight::CurveExplorer;
 use novamind_worker::company::Company;
 
 fn explored(group: &str) -> (CurvePage, Company) {
     let mut session = played(1);
     let group = Group::parse(group).expect("a group");
-    let found = session.curve_explorer(group).map(Arc::new);
+    let found = CurveExplorer::of(&mut session, group).map(Arc::new);
     let company = Company::of(&session);
     let mut page = CurvePage::new(group);
     let keys = Keys::shipped();

@@ -20,7 +20,7 @@ use crate::context::{Figure, Look};
 use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
-use novamind_session::WeekQuantity;
+use novamind_insight::WeekQuantity;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::Company;

@@ -2,7 +2,7 @@
 
 use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
-use novamind_session::TrueGroup;
+use novamind_insight::TrueGroup;
 use novamind_session::identifiers::Group;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Cell;

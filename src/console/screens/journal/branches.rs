@@ -10,7 +10,7 @@ use crate::context::{Figure, Look};
 use novamind_base::notation::short_dollars;
 use novamind_report::first_change_in_words;
 use novamind_report::whatif::kin_line;
-use novamind_session::Kin;
+use novamind_insight::Kin;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -16,7 +16,7 @@ use crate::context::{Figure, Look};
 use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
-use novamind_session::Kin;
+use novamind_insight::Kin;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Editor, Table};

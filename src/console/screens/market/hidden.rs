@@ -6,7 +6,7 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_base::notation::grouped;
-use novamind_session::{HiddenValues, NextRivalMove};
+use novamind_insight::{HiddenValues, NextRivalMove};
 
 /// Rivals: what they could copy, and their next move.
 pub fn of_rivals(hidden: &HiddenValues) -> Vec<String> {

@@ -26,7 +26,7 @@ use crate::action::Action;
 use crate::effect::Effect;
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_session::{Breakpoint, DrawnPart, LeadFactor};
+use novamind_insight::{Breakpoint, DrawnPart, LeadFactor};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::scroll::Scroll;

@@ -11,7 +11,7 @@ use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
 use novamind_base::notation::capital;
-use novamind_session::LeadFactor;
+use novamind_insight::LeadFactor;
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;

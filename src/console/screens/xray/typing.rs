@@ -5,7 +5,7 @@ use super::view::{Choices, View};
 use novamind_base::nearest;
 use novamind_report::xray::AskedWords;
 use novamind_session::identifiers::Group;
-use novamind_session::{Condition, ConditionProblem, DrawnPart, LeadFactor};
+use novamind_insight::{Condition, ConditionProblem, DrawnPart, LeadFactor};
 use novamind_tui::widgets::Field;
 
 /// What is expected.

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use novamind_session::identifiers::Plan;
-use novamind_session::{
+use novamind_insight::{
     CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, PlanTerms, Weighed,
 };
+use novamind_session::identifiers::Plan;
 
 pub(super) fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
     let factors = LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(own.factor(factor))));

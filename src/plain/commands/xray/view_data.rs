@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{
+use novamind_insight::{
     Departures, DriftState, Follows, GroupDrifted, KeyedDraws, MoodTerm, NextDraws, NextRivalMove, OwnChange,
-    PlanDelivered, QualityEquation, ReputationEquation, RivalEvent, RivalState, SatisfactionEquation, Spill,
-    Spillover,
+    PlanDelivered, QualityEquation, ReputationEquation, RivalState, SatisfactionEquation, Spillover,
 };
+use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{RivalEvent, Spill};
 
 pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
     let plan = |plan: Plan| {

@@ -11,12 +11,13 @@ use super::view_data::{
 };
 use super::{group_and_day, whole_number};
 use novamind_base::nearest;
+use novamind_insight::{DrawnPart, Inspect};
 use novamind_report::xray::{
     drift_in_words, quality_in_words, reputation_in_words, rivals_in_words, satisfaction_in_words,
     spillover_in_words, streams_in_words,
 };
+use novamind_session::Refusal;
 use novamind_session::identifiers::Group;
-use novamind_session::{DrawnPart, Refusal};
 
 /// What a view answers, or why it cannot be asked.
 type Viewed = Result<Result<Answer, Refusal>, Problem>;
@@ -34,45 +35,45 @@ impl Interpreter {
     /// `xray quality GROUP [DAY]`
     pub(super) fn quality(&mut self, arguments: &[Argument]) -> Viewed {
         let (group, day) = of_group("quality", arguments)?;
-        Ok(shown(self.session.quality_equation(group, day), quality_in_words, quality_as_data))
+        Ok(shown(self.session.inspect().quality_equation(group, day), quality_in_words, quality_as_data))
     }
 
     /// `xray satisfaction GROUP [DAY]`
     pub(super) fn satisfaction(&mut self, arguments: &[Argument]) -> Viewed {
         let (group, day) = of_group("satisfaction", arguments)?;
-        let seen = self.session.satisfaction_equation(group, day);
+        let seen = self.session.inspect().satisfaction_equation(group, day);
         Ok(shown(seen, satisfaction_in_words, satisfaction_as_data))
     }
 
     /// `xray reputation GROUP [DAY]`
     pub(super) fn reputation(&mut self, arguments: &[Argument]) -> Viewed {
         let (group, day) = of_group("reputation", arguments)?;
-        let seen = self.session.reputation_equation(group, day);
+        let seen = self.session.inspect().reputation_equation(group, day);
         Ok(shown(seen, reputation_in_words, reputation_as_data))
     }
 
     /// `xray spillover [DAY]`
     pub(super) fn spillover(&mut self, arguments: &[Argument]) -> Viewed {
         let day = day_alone("spillover", arguments)?;
-        Ok(shown(self.session.spillover(day), spillover_in_words, spillover_as_data))
+        Ok(shown(self.session.inspect().spillover(day), spillover_in_words, spillover_as_data))
     }
 
     /// `xray rivals [DAY]`
     pub(super) fn rivals(&mut self, arguments: &[Argument]) -> Viewed {
         let day = day_alone("rivals", arguments)?;
-        Ok(shown(self.session.rival_state(day), rivals_in_words, rivals_as_data))
+        Ok(shown(self.session.inspect().rival_state(day), rivals_in_words, rivals_as_data))
     }
 
     /// `xray drift [DAY]`
     pub(super) fn drift(&mut self, arguments: &[Argument]) -> Viewed {
         let day = day_alone("drift", arguments)?;
-        Ok(shown(self.session.drift_state(day), drift_in_words, drift_as_data))
+        Ok(shown(self.session.inspect().drift_state(day), drift_in_words, drift_as_data))
     }
 
     /// `xray streams PART [N]`
     pub(super) fn streams(&mut self, arguments: &[Argument]) -> Viewed {
         let (part, count) = part_and_count(arguments)?;
-        Ok(shown(self.session.next_draws(part, count), streams_in_words, streams_as_data))
+        Ok(shown(self.session.inspect().next_draws(part, count), streams_in_words, streams_as_data))
     }
 }
 

@@ -1,0 +1,150 @@
+//! A recorded run, as far as its days can be simulated again.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::branch::counterfactual;
+use super::edits::Edits;
+use super::kept_state::KeptState;
+use super::script::{Move, between, moves};
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_session::{Origin, is_lesson_over, read_recorded as read};
+
+/// Moments that are kept in memory besides the first: a moment is as large as its company.
+const KEPT: usize = 4;
+
+/// The moves of a run, and moments from which they can be made again.
+pub(crate) struct Past {
+    /// The file they were read from.
+    path: PathBuf,
+    /// How long it was then, in bytes.
+    length: u64,
+    /// What the run is.
+    pub(crate) manifest: Manifest,
+    /// Everything that moved it on.
+    moves: Vec<Move>,
+    /// Whether it is over, and the lesson that it belongs to with it.
+    pub(crate) ended: bool,
+    /// Moments by day.
+    kept: BTreeMap<u32, Arc<KeptState>>,
+}
+
+impl Past {
+    /// The past of the run in a folder, or of a trajectory file.
+    ///
+    /// # Errors
+    /// It is missing, damaged or of another version.
+    pub(crate) fn read(path: &Path) -> Result<Past, RunError> {
+        let (Origin { path, manifest, params, .. }, trajectory) = read(path)?;
+        let length = trajectory.length;
+        let ended = trajectory.end().is_some() && is_lesson_over(path.parent(), &manifest);
+        let opening = Arc::new(KeptState::opening(&manifest, params));
+        Ok(Past {
+            path,
+            length,
+            manifest,
+            moves: moves(&trajectory.lines),
+            ended,
+            kept: BTreeMap::from([(0, opening)]),
+        })
+    }
+
+    /// Takes in what has been recorded since; moments that lead to it are kept.
+    ///
+    /// # Errors
+    /// As [`Past::read`].
+    pub(crate) fn renew(&mut self) -> Result<(), RunError> {
+        let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
+        if length == self.length {
+            return Ok(());
+        }
+        let now = Past::read(&self.path)?;
+        let kept =
+            if now.moves.starts_with(&self.moves) { std::mem::take(&mut self.kept) } else { BTreeMap::new() };
+        *self = Past { kept: if kept.is_empty() { now.kept } else { kept }, ..now };
+        Ok(())
+    }
+
+    /// The moves that follow a day and lead no further than another.
+    pub(crate) fn between(&self, from: u32, until: u32) -> &[Move] {
+        between(&self.moves, from, until)
+    }
+
+    /// The last day that was simulated.
+    pub(crate) fn last_day(&self) -> u32 {
+        self.last_end(u32::MAX)
+    }
+
+    /// Days of a week.
+    pub(crate) fn days_per_week(&self) -> u32 {
+        self.kept[&0].params.run.days_per_week
+    }
+
+    /// Whether days of the record end on a day.
+    pub(crate) fn ends_on(&self, day: u32) -> bool {
+        day == 0 || self.moves.iter().any(|step| matches!(step, Move::Days(days) if days.until == day))
+    }
+
+    /// The last day up to another on which days of the record end.
+    pub(crate) fn last_end(&self, until: u32) -> u32 {
+        let ends = self.moves.iter().filter_map(|step| match step {
+            Move::Days(days) => Some(days.until),
+            Move::Call(_) | Move::Parameter(_) => None,
+        });
+        ends.take_while(|day| *day <= until).last().unwrap_or(0)
+    }
+
+    /// The run at the end of a day on which days of the record end, simulated from the nearest moment before it that is
+    /// kept. None if it was stopped: `progress` is told each day.
+    ///
+    /// # Errors
+    /// The record does not lead to the state it names.
+    pub(crate) fn moment(
+        &mut self,
+        day: u32,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Option<Arc<KeptState>>, RunError> {
+        let (from, nearest) = self.kept.range(..=day).next_back().expect("day 0 is always kept");
+        if *from == day {
+            return Ok(Some(nearest.clone()));
+        }
+        let way = between(&self.moves, *from, day);
+        let Some(outcome) = counterfactual(nearest, way, &Edits::default(), day, progress) else {
+            return Ok(None);
+        };
+        self.compare(day, &outcome.end)?;
+        let moment = Arc::new(outcome.end);
+        if self.kept.len() > KEPT {
+            let oldest = self.kept.keys().copied().nth(1);
+            oldest.and_then(|day| self.kept.remove(&day));
+        }
+        self.kept.insert(day, moment.clone());
+        Ok(Some(moment))
+    }
+
+    /// Whether a moment is the one that the record names on a day.
+    ///
+    /// # Errors
+    /// It is another.
+    pub(crate) fn compare(&self, day: u32, reached: &KeptState) -> Result<(), RunError> {
+        let recorded = self.moves.iter().find_map(|step| match step {
+            Move::Days(days) if days.until == day => Some(&days.parts),
+            _ => None,
+        });
+        let own = reached.world.part_hashes();
+        let differs = own.iter().find(|own| {
+            let known = recorded.and_then(|parts| parts.get(own.part));
+            known.is_none_or(|known| own.hash.to_hex()[..16] != **known)
+        });
+        let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
+        Err(RunError::NotPossible(format!(
+            "{}: simulated again, day {day} is not the one on record (different: {}). Nothing was changed; \
+             `novamind verify` names the line",
+            self.path.display(),
+            differs.part
+        )))
+    }
+}

@@ -1,0 +1,46 @@
+//! A company that tests play, to simulate its days again.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_session::{NewRun, Session, Storage};
+
+/// Weeks that are played before a change.
+pub(crate) const WEEKS: u32 = 7;
+
+/// A company that has customers, plays some weeks, and then one under a change.
+pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
+    let new = NewRun {
+        seed: Some(seed),
+        days: Some(120),
+        mode,
+        cash: Some(50_000_000.0),
+        storage: Storage::Runs(runs.to_owned()),
+        projection: false,
+        sync_calls: false,
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"A": 2, "B": 3, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60_000, "B": 250_000, "C": 1_200_000})),
+        ("set_daily_spend", json!({"operations": 400, "development": 2000})),
+        ("set_targeted_ad_spend", json!({"search_ads": {"S1": 9000, "S2": 9000}, "linkedin": {"S3": 6000}})),
+        ("set_capacity_tier", json!({"capacity_tier": 2})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    for week in 0..=WEEKS {
+        if let (true, Some((tool, arguments))) = (week == WEEKS, &change) {
+            session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+    session
+}

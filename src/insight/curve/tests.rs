@@ -1,0 +1,144 @@
+//! The explorer agrees with the simulator, shows the truth only where looking inside is allowed, and nothing hidden elsewhere.
+
+use serde_json::json;
+
+use super::explorer::{CurveBasis, CurveExplorer};
+use crate::curve::access::CurveLook;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_session::{NewRun, Session, Storage};
+use novamind_world::identifiers::{ByPlan, Group};
+
+fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        mode,
+        participant: (mode == Mode::Baseline).then(|| "P01".to_owned()),
+        overrides: overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect(),
+        storage: Storage::Memory,
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_usage_quotas", json!({"A": 60, "B": 300, "C": 1200})),
+    ] {
+        session.call(tool, &arguments, Via::Script).expect("a setting");
+    }
+    session
+}
+
+fn s1() -> Group {
+    Group::parse("S1").expect("a group")
+}
+
+fn explorer(session: &mut Session, group: &str) -> CurveExplorer {
+    CurveExplorer::of(session, Group::parse(group).expect("a group")).expect("an explorer")
+}
+
+/// Everything that can be read off an explorer.
+fn shown(own: &CurveExplorer) -> String {
+    let asked: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
+        .iter()
+        .map(|(price, quality)| own.outcome_of(*price, *quality))
+        .collect();
+    format!("{:?} {:?} {:?} {asked:?}", own.basis, own.points, own.outcome(&own.plans))
+}
+
+/// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
+#[test]
+fn the_truth_is_within_two_points_of_the_conversions_of_the_simulator() {
+    let mut session = run(Mode::Debug, &[]);
+    let own = explorer(&mut session, "S1");
+    assert_eq!(own.basis, CurveBasis::Truth { day: 0 });
+    for (price, simulated) in [
+        (12.0, [0.37, 0.83, 0.96]),
+        (20.0, [0.18, 0.69, 0.80]),
+        (30.0, [0.06, 0.51, 0.69]),
+        (40.0, [0.02, 0.35, 0.56]),
+    ] {
+        for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
+            let told = own.outcome_of(price, quality);
+            let off = told.conversion.likely - conversion;
+            assert!(off.abs() <= 0.02, "${price} at {quality}: {off}");
+            assert_eq!(told.conversion.least, told.conversion.most);
+            let revenue = told.revenue_per_lead.expect("individuals").likely;
+            assert!((revenue - price * told.conversion.likely).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn nothing_that_studies_do_not_tell_moves_what_an_unfinished_run_shows() {
+    let hidden = [
+        ("group.S1.c_max_std", "1"),
+        ("group.S1.q_min_std", "0.3"),
+        ("group.S1.q_range_mean", "0.95"),
+        ("group.S1.q_range_std", "0.001"),
+        ("group.S1.usage_demand_std", "1"),
+        ("participation.curve_gain", "2"),
+        ("customer_generation.steepness_left_offset", "3"),
+        ("customer_generation.c_max_min", "1"),
+        ("quality.initial_decision_noise_min", "0.2"),
+    ];
+    for (key, value) in hidden {
+        let own = explorer(&mut run(Mode::Lesson, &[(key, value)]), "S1");
+        assert_eq!(shown(&own), shown(&explorer(&mut run(Mode::Lesson, &[]), "S1")), "{key}");
+        // In a debug run the same parameter is seen, so it would be seen if it were used.
+        let truth = explorer(&mut run(Mode::Debug, &[(key, value)]), "S1");
+        let usual = explorer(&mut run(Mode::Debug, &[]), "S1");
+        let alike = key == "group.S1.usage_demand_std";
+        assert!(alike || shown(&truth) != shown(&usual), "{key}");
+    }
+}
+
+#[test]
+fn unfinished_runs_show_estimates_with_ends_and_over_ones_the_truth() {
+    for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
+        let mut session = run(mode, &[]);
+        let own = explorer(&mut session, "S1");
+        assert_eq!(own.basis, CurveBasis::Estimates { level: 1, noise: 0.65, as_of: 0 });
+        let told = own.outcome(&own.plans);
+        assert!(
+            told.conversion.least <= told.conversion.likely && told.conversion.likely <= told.conversion.most
+        );
+        assert!(told.conversion.least < told.conversion.most);
+        let wide = own.points.iter().all(|point| {
+            let (least, most) = point.median_between;
+            least <= point.median && point.median <= most && point.tenth <= point.median
+        });
+        assert!(wide);
+        let unknown = Group::parse("D_S05").expect("a group");
+        let refused = CurveExplorer::of(&mut session, unknown).expect_err("not found yet");
+        assert_eq!(refused.code, "group_not_discovered");
+        assert_eq!(CurveLook::begin(&mut session, s1(), 0).expect_err("hidden").code, "not_in_this_mode");
+    }
+}
+
+#[test]
+fn plans_are_asked_about_as_they_stand_and_otherwise() {
+    let mut session = run(Mode::Debug, &[]);
+    let own = explorer(&mut session, "S1");
+    let now = own.outcome(&own.plans);
+    let takers: f64 = now.takers.expect("individuals").iter().sum();
+    assert!((takers - now.conversion.likely).abs() < 1e-12);
+    let dearer = ByPlan(own.plans.0.map(|plan| super::explorer::PlanPoint { list: 3.0 * plan.list, ..plan }));
+    assert!(own.outcome(&dearer).conversion.likely < now.conversion.likely);
+    let better =
+        ByPlan(own.plans.0.map(|plan| super::explorer::PlanPoint { quality: plan.quality + 0.3, ..plan }));
+    assert!(own.outcome(&better).conversion.likely > now.conversion.likely);
+    let companies = explorer(&mut session, "E1");
+    let told = companies.outcome(&companies.plans);
+    assert_eq!((told.revenue_per_lead, told.takers), (None, None));
+}
+
+#[test]
+fn prices_reach_beyond_the_plans_and_the_curve_rises() {
+    let own = explorer(&mut run(Mode::Debug, &[]), "S1");
+    let last = own.points.last().expect("points");
+    assert!(last.price >= 1.2 * 55.0 && last.price % 10.0 == 0.0, "{}", last.price);
+    assert!(own.points.windows(2).all(|pair| pair[0].median <= pair[1].median));
+    assert!(last.ninetieth.is_infinite(), "a tenth of the budgets lie below");
+    assert_eq!(super::example::example_curve().len(), 51);
+}

@@ -1,0 +1,86 @@
+//! What a language model said of posts is taken as it was where their run is simulated again.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::branch_with_decisions;
+use crate::counterfactual::branch::counterfactual_with_hashes;
+use crate::counterfactual::edits::Edits;
+use crate::counterfactual::kept_state::KeptState;
+use crate::counterfactual::script::{Move, moves};
+use novamind_session::record::{Record, VoiceAnswer};
+use novamind_session::{
+    Configuration, Manner, Mode, NewRun, Origin, Session, Storage, Stub, Trajectory, Via, read_recorded,
+    verify,
+};
+
+/// Three weeks of a company that has customers, with a post before the second.
+fn played(runs: &Path, configuration: &Configuration) -> Session {
+    let new = NewRun {
+        seed: Some(7),
+        days: Some(60),
+        mode: Mode::Sandbox,
+        storage: Storage::Runs(runs.to_owned()),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, configuration).expect("a run");
+    let call = |session: &mut Session, tool: &str, arguments| {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    };
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"B": 2, "C": 4})),
+        ("set_usage_quotas", json!({"A": 60_000, "B": 250_000, "C": 1_200_000})),
+        ("set_daily_spend", json!({"operations": 200, "development": 200})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 2000}}})),
+    ] {
+        call(&mut session, tool, arguments);
+    }
+    for week in 0..3 {
+        if week == 1 {
+            let text = "We doubled the quota of plan B today and cut its price by 20%.";
+            call(&mut session, "post_social_media", json!({ "content": text }));
+        }
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+    session
+}
+
+#[test]
+fn without_an_edit_every_state_of_the_run_is_reached_again() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let stub = Stub::start(Manner::Well);
+    let session = played(runs.path(), &stub.named(true, true, 30));
+    drop(stub);
+    let folder = session.folder().expect("a folder");
+    let (Origin { manifest, params, .. }, trajectory) = read_recorded(folder).expect("a run");
+    let script = moves(&trajectory.lines);
+    let start = KeptState::opening(&manifest, params);
+    let outcome = counterfactual_with_hashes(&start, &script, &Edits::default(), 21).expect("not stopped");
+    let reached: Vec<String> = outcome.states.into_iter().map(|(_, (hash, _))| hash).collect();
+    let recorded = script.iter().filter_map(|step| match step {
+        Move::Days(days) => Some(days.state_hash.clone()),
+        Move::Call(_) | Move::Parameter(_) => None,
+    });
+    assert_eq!(reached, recorded.collect::<Vec<_>>());
+    assert_eq!(reached.last(), Some(&session.state_hash().0));
+}
+
+#[test]
+fn a_branch_that_keeps_its_decisions_takes_over_what_was_said() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let stub = Stub::start(Manner::Well);
+    let session = played(runs.path(), &stub.named(true, true, 30));
+    drop(stub);
+    // The post is made again.
+    let on = &mut |_| std::ops::ControlFlow::Continue(());
+    let kept = branch_with_decisions(&session, 1, &[], Mode::Sandbox, on).expect("a branch").session;
+    assert_eq!(kept.state_hash(), session.state_hash());
+    let own = kept.folder().expect("a folder").to_owned();
+    let lines = Trajectory::read(&own.join("trajectory.jsonl")).expect("a trajectory").lines;
+    assert!(lines.iter().any(|line| matches!(line.record, Record::Voice(VoiceAnswer::Scores(_)))));
+    drop(kept);
+    verify(&own).expect("it replays");
+}

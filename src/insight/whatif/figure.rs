@@ -1,0 +1,110 @@
+//! Which figures branches are compared by.
+
+use crate::counterfactual::branch::BranchOutcome;
+use novamind_session::{FigureUnit, WeekFigures};
+use novamind_world::events::DayFigures;
+
+/// Days of which leavers are counted against those who were there before.
+const CHURN_DAYS: usize = 30;
+
+/// A figure at the end of a week.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BranchFigure {
+    /// Cash, dollars.
+    Cash,
+    /// Monthly recurring revenue, dollars.
+    RecurringRevenue,
+    /// Active subscriptions of individuals.
+    Subscribers,
+    /// Seats of active companies.
+    Seats,
+    /// Individuals who left in the last 30 days, of those who were there before: a share; not a number without any.
+    Churn,
+    /// Leads of individuals in the week.
+    Leads,
+    /// Individuals who signed up in the week.
+    NewSubscribers,
+    /// Individuals who cancelled in the week.
+    Cancellations,
+    /// Mean satisfaction of individuals, on its scale; hidden from a player whose run goes on.
+    Satisfaction,
+}
+
+/// Values of all figures at the end of a week.
+pub(super) type Values = [f64; BranchFigure::ALL.len()];
+
+impl BranchFigure {
+    /// All figures, in the order in which they are shown.
+    pub const ALL: [BranchFigure; 9] = [
+        BranchFigure::Cash,
+        BranchFigure::RecurringRevenue,
+        BranchFigure::Subscribers,
+        BranchFigure::Seats,
+        BranchFigure::Churn,
+        BranchFigure::Leads,
+        BranchFigure::NewSubscribers,
+        BranchFigure::Cancellations,
+        BranchFigure::Satisfaction,
+    ];
+
+    /// Name in lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            BranchFigure::Cash => "cash",
+            BranchFigure::RecurringRevenue => "recurring revenue",
+            BranchFigure::Subscribers => "subscribers",
+            BranchFigure::Seats => "enterprise seats",
+            BranchFigure::Churn => "churn of 30 days",
+            BranchFigure::Leads => "individual leads a week",
+            BranchFigure::NewSubscribers => "new subscribers a week",
+            BranchFigure::Cancellations => "cancellations a week",
+            BranchFigure::Satisfaction => "satisfaction",
+        }
+    }
+
+    /// Name in data.
+    pub fn id(self) -> String {
+        self.name().replace(' ', "_")
+    }
+
+    /// Unit of its values.
+    pub fn unit(self) -> FigureUnit {
+        match self {
+            BranchFigure::Cash | BranchFigure::RecurringRevenue => FigureUnit::Dollars,
+            BranchFigure::Churn => FigureUnit::Share,
+            BranchFigure::Satisfaction => FigureUnit::Level,
+            _ => FigureUnit::Count,
+        }
+    }
+
+    /// Whether nobody may see it whose run goes on, outside of debug runs.
+    pub(super) fn is_hidden(self) -> bool {
+        self == BranchFigure::Satisfaction
+    }
+}
+
+/// The figures at the end of each week of a branch. `earlier` holds the days before its first.
+pub(super) fn values(earlier: &[DayFigures], outcome: &BranchOutcome) -> Vec<Values> {
+    let days: Vec<&DayFigures> = earlier.iter().chain(&outcome.days).collect();
+    let churn = |last_day: u32| {
+        let last = days.iter().rposition(|day| day.day == last_day).unwrap_or(0);
+        let Some(before) = (last + 1).checked_sub(CHURN_DAYS + 1) else { return f64::NAN };
+        let left: u32 = days[before + 1..=last].iter().map(|day| day.cancellations).sum();
+        f64::from(left) / f64::from(days[before].individual_subscribers)
+    };
+    let weeks = outcome.weeks.iter().zip(&outcome.satisfaction);
+    let value = |(week, satisfaction): (&WeekFigures, &f64)| {
+        BranchFigure::ALL.map(|figure| match figure {
+            BranchFigure::Cash => week.cash,
+            BranchFigure::RecurringRevenue => week.recurring_revenue,
+            BranchFigure::Subscribers => week.individual_subscribers.into(),
+            BranchFigure::Seats => week.enterprise_seats.into(),
+            BranchFigure::Churn => churn(week.day),
+            BranchFigure::Leads => week.new_individual_leads.into(),
+            BranchFigure::NewSubscribers => week.new_individual_subscribers.into(),
+            BranchFigure::Cancellations => week.cancellations.into(),
+            BranchFigure::Satisfaction => *satisfaction,
+        })
+    };
+    weeks.map(value).collect()
+}

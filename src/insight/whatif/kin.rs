@@ -1,0 +1,145 @@
+//! The tree of branches of a run: where each left, what was changed first, where it stands now.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use novamind_record::folder::derived::manifest_of;
+use novamind_record::folder::runs::{RunSummary, list_runs, run_folder};
+use novamind_record::trajectory::record::Parent;
+use novamind_record::trajectory::{Line, Record, Trajectory};
+use novamind_session::week_of;
+
+/// A run in the tree.
+#[derive(Debug, Clone)]
+pub struct Kin {
+    /// The run as it stands.
+    pub run: RunSummary,
+    /// How many branches lie between it and the run at the root: 0 for that one.
+    pub depth: usize,
+    /// Week at whose start it left its parent; none for the root.
+    pub left_in_week: Option<u32>,
+    /// The first decision that it, or its parent, made alone; none if there is none.
+    pub first_change: Option<FirstChange>,
+}
+
+/// Where a branch came from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BranchOrigin {
+    /// The run that it left.
+    pub run: String,
+    /// Week at whose start it left.
+    pub week: u32,
+    /// The first decision that it, or its parent, made alone; none if there is none, or if the parent cannot be read.
+    pub first_change: Option<FirstChange>,
+}
+
+/// A decision by which a branch first parted from its parent.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FirstChange {
+    /// Decision day.
+    pub day: u32,
+    /// Tool, or parameter.
+    pub what: String,
+    /// Whether the parent decided it, and the branch leaves it out.
+    pub is_left_out: bool,
+}
+
+/// Where the run in a folder came from; none if it is no branch, or cannot be read.
+pub fn origin_of(folder: &Path) -> Option<BranchOrigin> {
+    let parent = manifest_of(folder).ok()?.parent?;
+    let (week, first_change) = parting(folder, &parent)?;
+    Some(BranchOrigin { run: parent.run, week, first_change })
+}
+
+/// Week in which the run in a folder left its parent, and the first decision that only one of them made.
+fn parting(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)> {
+    let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
+    let own = lines(folder)?;
+    let at = own.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
+    let week = week_of(own[at].day) + 1;
+    let parents = lines(&folder.with_file_name(&parent.run));
+    let change = parents.and_then(|parents| first_change(&own[at..], &parents, parent.seq));
+    Some((week, change))
+}
+
+/// The first decision of a branch that its parent did not make on that day, or the other way round, until the day to which both
+/// have come.
+fn first_change(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
+    let one = |line: &Line| decision(line).map(|(what, how)| (line.day, what.to_owned(), how));
+    let mine: Vec<_> = own.iter().filter_map(one).collect();
+    let theirs: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
+    let until = own.last()?.day;
+    let of = |(day, what, _): &(u32, String, Value), is_left_out| FirstChange {
+        day: *day,
+        what: what.clone(),
+        is_left_out,
+    };
+    let new = mine.iter().find(|one| !theirs.contains(one)).map(|one| of(one, false));
+    // On the day to which the branch has come it still can be decided.
+    let left_out = theirs.iter().find(|one| one.0 < until && !mine.contains(one)).map(|one| of(one, true));
+    match (new, left_out) {
+        (Some(new), Some(left_out)) if left_out.day < new.day => Some(left_out),
+        (new, left_out) => new.or(left_out),
+    }
+}
+
+/// What a line decides: tool or parameter, with arguments or value.
+fn decision(line: &Line) -> Option<(&str, Value)> {
+    if let Record::Override(setting) = &line.record {
+        return Some((&setting.key, setting.new.clone()));
+    }
+    let (call, _) = line.record.accepted_call()?;
+    call.tool.known()?.spec().kind.acts().then(|| (call.tool.name(), call.args.clone()))
+}
+
+/// The tree in which a run of a folder of runs stands, its root first, each run before its branches. Runs that cannot be read
+/// are left out.
+pub fn branches_of(runs: &Path, id: &str) -> Vec<Kin> {
+    // A copy of a folder is the same run once more.
+    let once = list_runs(runs).into_iter().flatten().filter(|run| run.copy_of.is_none());
+    let all: Vec<Node> = once.filter_map(|run| node(runs, run)).collect();
+    let parent_of = |id: &str| {
+        let own = all.iter().find(|node| node.run.id == id)?;
+        let parent = own.parent.as_ref()?;
+        all.iter().any(|node| node.run.id == parent.run).then(|| parent.run.clone())
+    };
+    let mut root = id.to_owned();
+    // A chain of parents is no longer than there are runs, whatever the files say.
+    for _ in 0..all.len() {
+        match parent_of(&root) {
+            Some(parent) => root = parent,
+            None => break,
+        }
+    }
+    let mut tree = Vec::new();
+    grow(runs, &all, &root, 0, &mut tree);
+    tree
+}
+
+struct Node {
+    run: RunSummary,
+    parent: Option<Parent>,
+}
+
+fn node(runs: &Path, run: RunSummary) -> Option<Node> {
+    let manifest = manifest_of(&run_folder(runs, &run.id)).ok()?;
+    Some(Node { run, parent: manifest.parent })
+}
+
+fn grow(runs: &Path, all: &[Node], id: &str, depth: usize, tree: &mut Vec<Kin>) {
+    let Some(own) = all.iter().find(|node| node.run.id == id) else { return };
+    if tree.iter().any(|known| known.run.id == id) {
+        return;
+    }
+    let lines = own.parent.as_ref().and_then(|parent| parting(&run_folder(runs, &own.run.id), parent));
+    let (left_in_week, first_change) = lines.map_or((None, None), |(week, change)| (Some(week), change));
+    tree.push(Kin { run: own.run.clone(), depth, left_in_week, first_change });
+    let mut branches: Vec<&Node> =
+        all.iter().filter(|node| node.parent.as_ref().is_some_and(|parent| parent.run == id)).collect();
+    branches.sort_by(|one, other| one.run.created.cmp(&other.run.created));
+    for branch in branches {
+        grow(runs, all, &branch.run.id, depth + 1, tree);
+    }
+}

@@ -1,0 +1,138 @@
+//! A what-if in a lesson goes on as the lesson does: its capacity moves by itself, and its step is the last that is told.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::*;
+use crate::branch_with_decisions;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Via;
+use novamind_session::engine::UsageRule;
+use novamind_session::{Lesson, LessonEntry, NewRun, Storage};
+
+/// A company that grows out of its servers; what moves them is the lesson.
+const PLAN: &str = r#"
+title = "More and more"
+minutes = 5
+learning_goal = "You find out who rents the servers."
+
+[[part]]
+title = "Only"
+seed = 7
+capacity = "follows usage"
+
+[[part.start]]
+week = 0
+calls = [
+  'set_prices {"A": 12, "B": 25, "C": 55}',
+  'set_model_tiers {"A": 1, "B": 2, "C": 4}',
+  'set_usage_quotas {"A": 60000, "B": 250000, "C": 1200000}',
+  'set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 500}}}',
+]
+
+[[part.step]]
+title = "Wait"
+text = "Wait."
+weeks = 10
+hints = ["Wait."]
+
+[[part.step]]
+title = "Again"
+text = "Wait once more."
+weeks = 4
+hints = ["Wait."]
+
+[[pitfall]]
+name = "none"
+figure = "cash"
+below = 0.5
+say = "Nothing is left."
+
+[good]
+text = "Nothing."
+
+[bad]
+text = "Nothing either."
+pitfall = "none"
+"#;
+
+const MORE: &str = r#"in 1 set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 6000}}}"#;
+
+fn begun(folder: &Path, runs: &str) -> Session {
+    let path = folder.join("more.toml");
+    std::fs::write(&path, PLAN).expect("a file");
+    std::fs::write(folder.join("more.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
+    let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
+    let new = NewRun {
+        mode: Mode::Lesson,
+        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        storage: Storage::Runs(folder.join(runs)),
+        ..NewRun::default()
+    };
+    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+}
+
+fn weeks(session: &mut Session, count: u32) {
+    for _ in 0..count {
+        let forecasts = session.naive_forecasts();
+        session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
+    }
+}
+
+fn compared(session: &Session, until: u32, alternatives: &[&str]) -> Result<BranchComparison, Refusal> {
+    let alternatives: Vec<Vec<DecisionEdit>> =
+        alternatives.iter().map(|edit| vec![edit.parse().expect(edit)]).collect();
+    let mut own = WhatIf::read(session.folder().expect("a folder")).expect("a what-if");
+    let go_on = |_: usize, _: usize| ControlFlow::Continue(());
+    Ok(own.compare(1, Some(until), &alternatives, &go_on)?.expect("it is not stopped"))
+}
+
+fn cash(session: &Session) -> Vec<f64> {
+    session.weeks().iter().map(|week| week.cash).collect()
+}
+
+fn curve(branch: &BranchFigures) -> Vec<f64> {
+    branch.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect()
+}
+
+#[test]
+fn the_capacity_follows_usage_in_every_branch_as_it_does_in_the_lesson() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begun(folder.path(), "waited");
+    weeks(&mut session, 4);
+    let ahead = compared(&session, 10, &[MORE]).expect("an answer");
+    weeks(&mut session, 6);
+    let mut other = begun(folder.path(), "decided");
+    let more = serde_json::json!({"targeted_spend": {"content_marketing": {"S1": 6000}}});
+    other.call("set_targeted_ad_spend", &more, Via::Plain).expect("as by hand");
+    let mut is_distinguished = false;
+    for _ in 0..10 {
+        weeks(&mut other, 1);
+        is_distinguished |= other.tier_by(UsageRule::BusiestDay) != other.tier_by(UsageRule::StepByStep);
+    }
+    assert!(is_distinguished, "another rule would lead elsewhere");
+    let tier = |session: &Session| session.settings().core.capacity_tier;
+    assert!(tier(&other) > tier(&session), "the lesson rents more where more is used");
+    let [was, decided] = &ahead.branches[..] else { panic!("{:?}", ahead.branches) };
+    assert_eq!(curve(was), cash(&session), "weeks that are still to come go as they do");
+    assert_eq!(curve(decided), cash(&other), "and so does what is decided otherwise");
+    let adopted =
+        branch_with_decisions(&session, 1, &[MORE.parse().expect(MORE)], Mode::Sandbox, &mut |_| {
+            ControlFlow::Continue(())
+        })
+        .expect("a branch");
+    assert_eq!(cash(&adopted.session), cash(&other));
+}
+
+#[test]
+fn what_the_next_step_may_ask_for_is_not_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = begun(folder.path(), "runs");
+    weeks(&mut session, 2);
+    let refused = compared(&session, 11, &[MORE]).expect_err("it is another step");
+    assert_eq!(refused.code, "week_unknown");
+    assert!(refused.message.contains("the step of the lesson, 10"), "{refused}");
+    weeks(&mut session, 8);
+    compared(&session, 14, &[MORE]).expect("it is this step");
+}

@@ -1,0 +1,194 @@
+//! What is asked: a figure, of the company or of a group, and a week.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::xray::breakpoint::grammar::{ConditionProblem, Words, why_not};
+use crate::xray::breakpoint::measure::NoQuantity;
+use novamind_base::nearest;
+use novamind_session::{FigureUnit, SimulatedWeek, WeekFigure};
+use novamind_world::identifiers::Group;
+
+/// A figure of a week, of the company or of a group.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WeekQuantity {
+    figure: WeekFigure,
+    group: Option<Group>,
+}
+
+impl WeekQuantity {
+    /// A figure of the company; none where it is one of groups only.
+    pub fn of_company(figure: WeekFigure) -> Option<WeekQuantity> {
+        WeekQuantity::new(figure, None).ok()
+    }
+
+    /// A figure of a group; none where it is one of the company only.
+    pub fn of_group(figure: WeekFigure, group: Group) -> Option<WeekQuantity> {
+        WeekQuantity::new(figure, Some(group)).ok()
+    }
+
+    fn new(figure: WeekFigure, group: Option<Group>) -> Result<WeekQuantity, NoQuantity> {
+        match group {
+            Some(_) if !figure.is_of_group() => Err(NoQuantity::OfCompany),
+            None if !figure.is_of_company() => Err(NoQuantity::OfGroup),
+            _ => Ok(WeekQuantity { figure, group }),
+        }
+    }
+
+    /// The figure.
+    pub fn figure(&self) -> WeekFigure {
+        self.figure
+    }
+
+    /// The group; none for the company.
+    pub fn group(&self) -> Option<Group> {
+        self.group
+    }
+
+    /// Name in sentences: `churn of S1`, `cash change`.
+    pub fn name(&self) -> String {
+        match self.group {
+            Some(group) => format!("{} of {group}", self.figure.name()),
+            None => self.figure.name().to_owned(),
+        }
+    }
+
+    /// What it is counted in.
+    pub fn unit(&self) -> FigureUnit {
+        self.figure.unit()
+    }
+
+    /// Whether no player may see it whose run goes on, outside of debug runs.
+    pub fn is_hidden(&self) -> bool {
+        self.figure.is_hidden()
+    }
+
+    /// Its value in a week; not a number where it has none.
+    pub(super) fn of(&self, week: &SimulatedWeek) -> f64 {
+        let value = match self.group {
+            Some(group) => self.figure.of_group().map(|read| read(&week.groups[group])),
+            None => self.figure.of_company().map(|read| read(week)),
+        };
+        value.unwrap_or(f64::NAN)
+    }
+}
+
+/// `churn(S1)`, `cash_change`.
+impl fmt::Display for WeekQuantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let id = self.figure.id();
+        match self.group {
+            Some(group) => write!(formatter, "{id}({group})"),
+            None => formatter.write_str(&id),
+        }
+    }
+}
+
+/// A question: why a figure changed in a week.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WeekQuestion {
+    /// The figure.
+    pub quantity: WeekQuantity,
+    /// The week; none for the last one.
+    pub week: Option<u32>,
+}
+
+impl FromStr for WeekQuestion {
+    type Err = ConditionProblem;
+
+    /// `churn(S1) 44`, `new subscribers`. Words of a name may be joined by blanks, dashes or underscores.
+    fn from_str(text: &str) -> Result<WeekQuestion, ConditionProblem> {
+        let (name, rest) = text.split_at(end_of_name(text));
+        let figure = figure_called(name)?;
+        let before = name.chars().count();
+        let further =
+            |problem: ConditionProblem| ConditionProblem { column: before + problem.column, ..problem };
+        let mut words = Words::of(rest);
+        let group = words.group().map_err(further)?;
+        let week = words.whole_number().map_err(further)?;
+        words.end().map_err(further)?;
+        let quantity = WeekQuantity::new(figure, group)
+            .map_err(|no| ConditionProblem { message: why_not(&figure.id(), no), column: 1 })?;
+        Ok(WeekQuestion { quantity, week })
+    }
+}
+
+/// Where a name ends: before a bracket, or before a last word that begins like a number.
+fn end_of_name(text: &str) -> usize {
+    let week = || {
+        let (name, last) = text.trim_end().rsplit_once(char::is_whitespace)?;
+        last.starts_with(|first: char| first.is_ascii_digit()).then_some(name.len())
+    };
+    text.find('(').or_else(week).unwrap_or(text.len())
+}
+
+fn figure_called(name: &str) -> Result<WeekFigure, ConditionProblem> {
+    let problem = |message: String| Err(ConditionProblem { message, column: 1 });
+    let words = name.trim().to_lowercase().replace(['_', '-'], " ");
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    let ids: Vec<String> = WeekFigure::ALL.iter().map(|figure| figure.id()).collect();
+    if words.is_empty() {
+        return problem(format!("why needs a figure: {}", ids.join(", ")));
+    }
+    let called = |figure: &&WeekFigure| figure.name().eq_ignore_ascii_case(&words);
+    if let Some(found) = WeekFigure::ALL.iter().find(called).copied().or_else(|| WeekFigure::named(&words)) {
+        return Ok(found);
+    }
+    let near = nearest(&words.replace(' ', "_"), ids.iter().map(String::as_str));
+    problem(match near.is_empty() {
+        true => format!("there is no figure {words}; the figures are {}", ids.join(", ")),
+        false => format!("there is no figure {words}; did you mean {}?", near.join(" or ")),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<(String, Option<u32>), (String, usize)> {
+        let read = text.parse::<WeekQuestion>();
+        read.map(|asked| (asked.quantity.to_string(), asked.week))
+            .map_err(|problem| (problem.message, problem.column))
+    }
+
+    #[test]
+    fn a_question_names_a_figure_and_may_name_a_group_and_a_week() {
+        for (text, id, week) in [
+            ("cancellations", "cancellations", None),
+            ("new subscribers 12", "new_subscribers", Some(12)),
+            ("New_Subscribers  3", "new_subscribers", Some(3)),
+            ("churn(S1) 44", "churn(S1)", Some(44)),
+            ("new-subscribers ( s2 )7 ", "new_subscribers(S2)", Some(7)),
+            ("reputation(E1)", "reputation(E1)", None),
+            ("r&d 5", "R&D", Some(5)),
+            ("cash", "cash_change", None),
+        ] {
+            assert_eq!(read(text), Ok((id.to_owned(), week)), "{text}");
+        }
+        for figure in WeekFigure::ALL {
+            let text = if figure.is_of_company() { figure.id() } else { format!("{}(S1)", figure.id()) };
+            assert_eq!(read(&text), Ok((text.clone(), None)));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_asked_is_said_with_what_can() {
+        for (text, message, column) in [
+            ("cancelations", "there is no figure cancelations; did you mean cancellations", 1),
+            ("chrun(S1)", "there is no figure chrun; did you mean churn", 1),
+            ("", "why needs a figure: cash_change, recurring_revenue", 1),
+            ("zzzz", "there is no figure zzzz; the figures are cash_change", 1),
+            ("usage 4x", "a whole number is expected, not 4x", 7),
+            ("usage 99999999999", "a whole number is expected, not 99999999999", 7),
+            ("churn(S1) 4 5", "5 is one word too many", 13),
+            ("churn(S12)", "S12 is not a group; did you mean S1", 7),
+            ("churn(S1", "a closing bracket is missing", 9),
+            ("churn()", "a group is missing", 7),
+            ("reputation 3", "reputation is a figure of a group; write for instance reputation(S1)", 1),
+            ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
+        ] {
+            let (said, at) = read(text).expect_err("a problem");
+            assert!(said.starts_with(message) && at == column, "{text}: {said} at {at}");
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! When a condition was true, over the days of a run that are over.
+
+use super::condition::{Condition, Judged};
+use crate::xray::inspector::Inspector;
+use novamind_tools::Refusal;
+
+/// How a condition stands today, and when that was otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LookBack {
+    /// The condition.
+    pub condition: Condition,
+    /// How it stands on the last day.
+    pub today: Judged,
+    /// The last day on which it was true.
+    pub last_true: Option<Judged>,
+    /// The last day on which it was false.
+    pub last_false: Option<Judged>,
+}
+
+impl LookBack {
+    /// The day since which it is what it is today.
+    pub fn since(&self) -> u32 {
+        let other = if self.today.is_true { self.last_false } else { self.last_true };
+        other.map_or(1, |other| other.day + 1)
+    }
+}
+
+impl Inspector<'_> {
+    /// Since when a condition is true or false. The look is recorded.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
+    pub fn look_back(&mut self, condition: Condition) -> Result<LookBack, Refusal> {
+        let all = self.judged_days("back", condition)?;
+        let last = |is_true: bool| all.iter().rev().find(|own| own.is_true == is_true).copied();
+        let today = *all.last().ok_or_else(|| Refusal::new("not_readable", "no day could be seen again"))?;
+        Ok(LookBack { condition, today, last_true: last(true), last_false: last(false) })
+    }
+
+    /// As [`Inspector::look_back`], for each breakpoint that is set, or the one with a number.
+    ///
+    /// # Errors
+    /// The same; `breakpoint_unknown`.
+    pub fn look_back_from(&mut self, number: Option<u32>) -> Result<Vec<LookBack>, Refusal> {
+        let set = self.breakpoints()?;
+        let chosen: Vec<Condition> = set
+            .iter()
+            .filter(|own| number.is_none_or(|number| own.number == number))
+            .map(|own| own.condition)
+            .collect();
+        if let Some(number) = number.filter(|_| chosen.is_empty()) {
+            return Err(self.unknown_breakpoint(number));
+        }
+        chosen.into_iter().map(|condition| self.look_back(condition)).collect()
+    }
+
+    /// The days on which a condition became true, and those on which its figure began so. The look is recorded.
+    ///
+    /// # Errors
+    /// As [`Inspector::look_back`].
+    pub fn find_days(&mut self, condition: Condition) -> Result<Vec<Judged>, Refusal> {
+        let all = self.judged_days("find", condition)?;
+        Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
+    }
+
+    /// How a condition stood on each day.
+    fn judged_days(&mut self, what: &str, condition: Condition) -> Result<Vec<Judged>, Refusal> {
+        let look = self.run.begin_look(what, &condition.to_string(), None)?;
+        let today = look.day();
+        let series = self.measured_up_to(&look)?;
+        Ok(series.read(|days| (1..=today).map(|day| condition.judged(days, day)).collect()))
+    }
+}

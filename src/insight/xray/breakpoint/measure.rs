@@ -1,0 +1,201 @@
+//! Figures of a day that a condition can be about: of the company, or of a group.
+
+use std::fmt;
+
+use super::series::MeasuredDay;
+use novamind_session::MeasuredGroup;
+use novamind_session::engine::churn;
+use novamind_world::identifiers::Group;
+
+/// How a figure goes with time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasureKind {
+    /// How things stand at the end of a day.
+    State,
+    /// What happened on a day; over several days their sum.
+    Flow,
+    /// The share of something that happened, over so many days if no other number is named.
+    Share(u32),
+}
+
+// Of a share, what it is a share of is found with it; this is what happened.
+type OfCompany = Option<fn(&MeasuredDay) -> f64>;
+type OfGroup = Option<fn(&MeasuredGroup) -> Option<f64>>;
+
+macro_rules! measures {
+    ($($measure:ident = $id:literal, $kind:expr, $company:expr, $group:expr;)*) => {
+        /// A figure of a day.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(missing_docs)] // Each is described by its name.
+        pub enum Measure { $($measure),* }
+
+        impl Measure {
+            /// All of them.
+            pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
+
+            /// Its name in conditions and data.
+            pub fn id(self) -> &'static str {
+                match self { $(Measure::$measure => $id),* }
+            }
+
+            /// How it goes with time.
+            pub fn kind(self) -> MeasureKind {
+                match self { $(Measure::$measure => $kind),* }
+            }
+
+            fn of_company(self) -> OfCompany {
+                match self { $(Measure::$measure => $company),* }
+            }
+
+            fn of_group(self) -> OfGroup {
+                match self { $(Measure::$measure => $group),* }
+            }
+        }
+    };
+}
+
+measures! {
+    Cash = "cash", MeasureKind::State, Some(|day| day.figures.cash), None;
+    RecurringRevenue = "recurring_revenue", MeasureKind::State, Some(|day| day.figures.mrr), None;
+    Payments = "payments", MeasureKind::Flow, Some(|day| day.figures.payments_received), None;
+    RunningCosts = "running_costs", MeasureKind::Flow, Some(|day| day.figures.total_costs), None;
+    Subscribers = "subscribers", MeasureKind::State,
+        Some(|day| day.figures.individual_subscribers.into()), Some(|own| Some(own.subscribers.into()));
+    Seats = "seats", MeasureKind::State, Some(|day| day.figures.enterprise_seats.into()), None;
+    Leads = "leads", MeasureKind::Flow,
+        Some(|day| day.figures.new_leads.into()), Some(|own| Some(own.leads.into()));
+    IndividualLeads = "individual_leads", MeasureKind::Flow,
+        Some(|day| day.figures.new_individual_leads.into()), None;
+    NewSubscribers = "new_subscribers", MeasureKind::Flow,
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+    NewSeats = "new_seats", MeasureKind::Flow, Some(|day| day.figures.new_enterprise_seats.into()), None;
+    Conversion = "conversion", MeasureKind::Share(7),
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+    Cancellations = "cancellations", MeasureKind::Flow,
+        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+    Churn = "churn", MeasureKind::Share(30),
+        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+    Upgrades = "upgrades", MeasureKind::Flow, Some(|day| day.figures.upgrades.into()), None;
+    Downgrades = "downgrades", MeasureKind::Flow, Some(|day| day.figures.downgrades.into()), None;
+    Usage = "usage", MeasureKind::Flow,
+        Some(|day| day.figures.total_usage as f64), Some(|own| Some(own.usage as f64));
+    Overload = "overload", MeasureKind::State, Some(|day| day.figures.overload), None;
+    Downtime = "downtime_minutes", MeasureKind::Flow,
+        Some(|day| day.figures.downtime_minutes.into()), None;
+    OpenIssues = "open_issues", MeasureKind::State,
+        Some(|day| day.open_issues().into()), Some(|own| Some(own.open_issues.into()));
+    Reputation = "reputation", MeasureKind::State, None, Some(|own| Some(own.reputation));
+    Satisfaction = "satisfaction", MeasureKind::State, None, Some(|own| own.satisfaction);
+    Relationship = "relationship", MeasureKind::State, None, Some(|own| own.relationship);
+}
+
+/// Why a figure cannot be asked for like this.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NoQuantity {
+    /// It is one of the whole company.
+    OfCompany,
+    /// It is one of a group.
+    OfGroup,
+    /// It is how things stand on a day: it has no sum over days.
+    OfADay,
+    /// No number of days that can be.
+    Days,
+}
+
+/// A figure of the company or of a group, over a number of days up to the one that is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quantity {
+    measure: Measure,
+    group: Option<Group>,
+    days: u32,
+}
+
+impl Quantity {
+    /// Most days of a sum or a share.
+    pub const MOST_DAYS: u32 = 1000;
+
+    /// A figure; `days` is a number from 1 to [`Quantity::MOST_DAYS`], where it is named.
+    pub(crate) fn new(
+        measure: Measure,
+        group: Option<Group>,
+        days: Option<u32>,
+    ) -> Result<Quantity, NoQuantity> {
+        match group {
+            Some(_) if measure.of_group().is_none() => return Err(NoQuantity::OfCompany),
+            None if measure.of_company().is_none() => return Err(NoQuantity::OfGroup),
+            _ => {}
+        }
+        let days = match (measure.kind(), days) {
+            (MeasureKind::State, Some(_)) => return Err(NoQuantity::OfADay),
+            (_, Some(days)) if !(1..=Quantity::MOST_DAYS).contains(&days) => return Err(NoQuantity::Days),
+            (_, Some(days)) => days,
+            (MeasureKind::Share(usual), None) => usual,
+            (MeasureKind::State | MeasureKind::Flow, None) => 1,
+        };
+        Ok(Quantity { measure, group, days })
+    }
+
+    /// The figure.
+    pub fn measure(&self) -> Measure {
+        self.measure
+    }
+
+    /// The group; none for the company.
+    pub fn group(&self) -> Option<Group> {
+        self.group
+    }
+
+    /// The number of days that it adds up or divides; 1 where it is read on a day.
+    pub fn days(&self) -> u32 {
+        self.days
+    }
+
+    /// Its days, where they are named: ` over 7`.
+    pub fn span(&self) -> String {
+        match (self.measure.kind(), self.days) {
+            (MeasureKind::State, _) | (MeasureKind::Flow, 1) => String::new(),
+            (_, days) => format!(" over {days}"),
+        }
+    }
+
+    /// Its value on a day of some days, day 1 first; none while there are too few days, or where it divides by nothing.
+    pub(crate) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let value = match self.measure {
+            Measure::Churn => {
+                let beginning = day.checked_sub(self.days)?;
+                let before = self.read(Measure::Subscribers, days, beginning)?;
+                churn(self.sum(self.measure, days, day)?, before)?
+            }
+            Measure::Conversion => {
+                let leads = if self.group.is_some() { Measure::Leads } else { Measure::IndividualLeads };
+                self.sum(self.measure, days, day)? / self.sum(leads, days, day)?
+            }
+            measure if measure.kind() == MeasureKind::State => self.read(measure, days, day)?,
+            measure => self.sum(measure, days, day)?,
+        };
+        value.is_finite().then_some(value)
+    }
+
+    fn sum(&self, measure: Measure, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let first = (day + 1).checked_sub(self.days)?;
+        (first..=day).map(|day| self.read(measure, days, day)).sum()
+    }
+
+    fn read(&self, measure: Measure, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let own = days.get(day.checked_sub(1)? as usize)?;
+        match self.group {
+            Some(group) => measure.of_group()?(&own.groups[group]),
+            None => Some(measure.of_company()?(own)),
+        }
+    }
+}
+
+/// `churn(S1)`, `cash`.
+impl fmt::Display for Quantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.group {
+            Some(group) => write!(formatter, "{}({group})", self.measure.id()),
+            None => formatter.write_str(self.measure.id()),
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! What is kept of a day that was watched.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::company_day::{CompanyDay, company_day};
+use super::quality_equation::QualityDay;
+use super::reputation_equation::ReputationDay;
+use super::satisfaction_equation::{MoodSums, MoodsByBlock, SatisfactionDay};
+use novamind_session::engine::mood_of;
+use novamind_world::context::DayContext;
+use novamind_world::customers::Customers;
+use novamind_world::customers::columns::Block;
+use novamind_world::day::watch::DayWatch;
+use novamind_world::enterprise::{Enterprise, Negotiation, Thread};
+use novamind_world::events::{Facts, Reading, Sender, Snapshot};
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::Market;
+use novamind_world::market::arrivals::{Arrivals, lead_context};
+use novamind_world::market::competitors::{Event, severity};
+use novamind_world::market::drift::DriftTotals;
+use novamind_world::market::economy::Dimension;
+use novamind_world::market::leads::{LeadFactors, word_of_mouth};
+use novamind_world::market::reputation::ReputationWrite;
+use novamind_world::morning::Morning;
+use novamind_world::params::Params;
+use novamind_world::retention::satisfaction::Mood;
+use novamind_world::state::World;
+
+/// A day, as far as groups and the market go.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HiddenDay {
+    /// Which groups were known.
+    pub(crate) known: ByGroup<bool>,
+    /// Factors of the leads.
+    pub(crate) leads: ByGroup<LeadFactors>,
+    /// Leads by word of mouth before the factors, by the group whose subscribers bring them.
+    pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
+    /// Leads that came.
+    pub(crate) came: ByGroup<u32>,
+    /// What quality was made of.
+    pub(crate) quality: QualityDay,
+    /// What moved satisfaction.
+    pub(crate) satisfaction: ByGroup<SatisfactionDay>,
+    /// What moved reputations.
+    pub(crate) reputation: ReputationDay,
+    /// What rivals could copy in the evening.
+    pub(crate) banks: Banks,
+    /// Threads of the morning in which somebody was still to answer, where they are kept.
+    pub(crate) threads: Vec<CompanyDay>,
+    /// The groups in the evening.
+    pub(crate) groups: ByGroup<GroupEvening>,
+    /// The market in the evening.
+    pub(crate) market: MarketEvening,
+}
+
+/// Improvements, and how much of them no rival has copied.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Banks {
+    /// Quality gained for everybody.
+    pub(crate) shared_bonus: f64,
+    /// What is left of it to be copied.
+    pub(crate) shared: f64,
+    /// Quality gained for single groups.
+    pub(crate) group_bonus: ByGroup<f64>,
+    /// What is left of that.
+    pub(crate) own: ByGroup<f64>,
+}
+
+/// A group once a day is over.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct GroupEvening {
+    /// What the company knows of it, 0 before it is found.
+    pub(crate) info_level: u32,
+    /// Active subscriptions.
+    pub(crate) active: u32,
+    /// Reputation.
+    pub(crate) reputation: f64,
+    /// Mean satisfaction and relationship of the active ones; none without any.
+    pub(crate) mood: Option<(f64, f64)>,
+    /// Active ones with an open issue.
+    pub(crate) open_issues: u32,
+    /// Product quality before the multiplier of the model.
+    pub(crate) product_quality: f64,
+    /// Mean budget of customers who come, with what the market has added.
+    pub(crate) budget: f64,
+    /// Mean quality floor of customers who come, with what the market has added.
+    pub(crate) quality_floor: f64,
+    /// What its market holds; without a limit at 0.
+    pub(crate) market_cap: f64,
+    /// Factor of the economy on budgets.
+    pub(crate) willingness_to_pay: f64,
+    /// Factor of the economy on the speed of replies.
+    pub(crate) deal_velocity: f64,
+    /// Factor of the economy on the drift of seats.
+    pub(crate) seat_count: f64,
+}
+
+/// The market once a day is over.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MarketEvening {
+    /// What it has added to curves since day 0.
+    pub(crate) drift: DriftTotals,
+    /// The event of the rivals on this day, with its severity.
+    pub(crate) event: Option<(Event, &'static str)>,
+    /// The index.
+    pub(crate) pmi: f64,
+    /// Its newest measurement, and whether it is published.
+    pub(crate) measured: Option<(Reading, bool)>,
+}
+
+/// Keeps every day that is simulated.
+#[derive(Debug, Default)]
+pub(crate) struct Diary {
+    /// Whether threads are kept as well: every company that negotiates judges every plan, every day.
+    keeps_threads: bool,
+    pages: Mutex<Pages>,
+}
+
+#[derive(Debug, Default)]
+struct Pages {
+    /// Days that are over, day 1 first.
+    days: Vec<HiddenDay>,
+    /// The day that is simulated.
+    today: HiddenDay,
+    /// What satisfaction moved by, block by block.
+    moods: MoodsByBlock,
+    /// What development has gained for everybody so far.
+    development: f64,
+}
+
+impl Diary {
+    /// An empty one that keeps threads as well.
+    pub(crate) fn with_threads() -> Diary {
+        Diary { keeps_threads: true, ..Diary::default() }
+    }
+
+    /// Whether it keeps threads.
+    pub(crate) fn keeps_threads(&self) -> bool {
+        self.keeps_threads
+    }
+
+    /// Looks at a day that is over, from 1.
+    pub(crate) fn read<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
+        self.pages().days.get(day.checked_sub(1)? as usize).map(look)
+    }
+
+    /// A day that is over, from 1.
+    pub(crate) fn day(&self, day: u32) -> Option<HiddenDay> {
+        self.read(day, HiddenDay::clone)
+    }
+
+    /// Hands over the threads of a day: there are many, so they are kept in one place only.
+    pub(crate) fn take_threads(&self, day: u32) -> Vec<CompanyDay> {
+        let at = day.checked_sub(1).map(|at| at as usize);
+        let mut pages = self.pages();
+        at.and_then(|at| pages.days.get_mut(at))
+            .map(|day| std::mem::take(&mut day.threads))
+            .unwrap_or_default()
+    }
+
+    fn pages(&self) -> MutexGuard<'_, Pages> {
+        self.pages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl DayWatch for Diary {
+    fn morning_came(&self, world: &World, morning: &Morning, params: &Params) {
+        let pages = &mut *self.pages();
+        pages.today.quality = QualityDay::of(world, morning, params, &mut pages.development);
+        pages.today.reputation = ReputationDay::in_the_morning(&world.market.reputation);
+    }
+
+    fn before_moods(&self, group: Group, block: &Block, day: &DayContext<'_>) {
+        let Some(first) = block.n.first() else { return };
+        let sums = MoodSums::of(group, block, day);
+        self.pages().moods.insert((group, *first), sums);
+    }
+
+    fn reputation_moved(&self, write: &ReputationWrite<'_>) {
+        self.pages().today.reputation.count(write);
+    }
+
+    fn reputation_settled(&self, moods: &ByGroup<Mood>, market: &Market, params: &Params) {
+        self.pages().today.reputation.settle(moods, market, params);
+    }
+
+    fn before_negotiations(&self, enterprise: &Enterprise, customers: &Customers, talks: &Negotiation<'_>) {
+        if !self.keeps_threads {
+            return;
+        }
+        let reappearing = talks.day.params.fidelity.reappearing_threads;
+        let threads = enterprise.threads.iter().filter(|thread| awaits_somebody(thread, reappearing));
+        let seen = threads.filter_map(|thread| company_day(thread, enterprise, customers, talks));
+        self.pages().today.threads = seen.collect();
+    }
+
+    fn leads_expected(
+        &self,
+        arrivals: &Arrivals<'_>,
+        subscribers: &ByGroup<u32>,
+        factors: &ByGroup<LeadFactors>,
+    ) {
+        let context = lead_context(arrivals, subscribers);
+        let known = ByGroup::from_fn(|group| arrivals.market.is_known(group));
+        let mut pages = self.pages();
+        pages.today.word_of_mouth = ByGroup::from_fn(|group| match known[group] {
+            true => word_of_mouth(group, &context).collect(),
+            false => Vec::new(),
+        });
+        (pages.today.known, pages.today.leads) = (known, *factors);
+        pages.today.quality.service_penalty = arrivals.day.service_penalty;
+    }
+
+    fn day_over(&self, world: &World, params: &Params, facts: &Facts) {
+        let mut pages = self.pages();
+        facts.arrivals.iter().for_each(|arrival| pages.today.came[arrival.group] += 1);
+        let mut left = ByGroup::default();
+        facts.endings.iter().for_each(|ending| left[ending.group] += 1);
+        let moods = std::mem::take(&mut pages.moods);
+        let weight = params.satisfaction.satisfaction_ema_alpha;
+        let mut today = std::mem::take(&mut pages.today);
+        today.satisfaction = SatisfactionDay::by_group(&moods, &left, weight);
+        today.banks = Banks {
+            shared_bonus: world.product.shared_bonus,
+            shared: world.product.shared_bank,
+            group_bonus: world.product.group_bonus,
+            own: world.product.group_bank,
+        };
+        today.groups = ByGroup::from_fn(|group| group_evening(group, world, params));
+        today.market = market_evening(world, params);
+        pages.days.push(today);
+    }
+}
+
+/// Whether something can still come of a thread: it is open, or dead and the company's answer is under way. One that is dead
+/// and only repeats its loss is not.
+fn awaits_somebody(thread: &Thread, reappearing: bool) -> bool {
+    thread.is_open() || thread.live(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
+}
+
+fn group_evening(group: Group, world: &World, params: &Params) -> GroupEvening {
+    let (market, product) = (&world.market, &world.product);
+    let blocks = || world.customers.groups[group].blocks.iter();
+    let taken = Snapshot::take(group, world.day, &market.drift, params);
+    let multiplier = |dimension| market.economy.multiplier(group, dimension, params);
+    GroupEvening {
+        info_level: market.knowledge[group].level.into(),
+        active: world.customers.groups[group].active(),
+        reputation: market.reputation.of(group),
+        mood: mood_of(world, group),
+        open_issues: blocks().map(Block::open_issues).sum(),
+        product_quality: product.quality(group, params),
+        budget: taken.c_max,
+        quality_floor: taken.q_min,
+        market_cap: taken.market_cap,
+        willingness_to_pay: multiplier(Dimension::WillingnessToPay),
+        deal_velocity: multiplier(Dimension::DealVelocity),
+        seat_count: multiplier(Dimension::SeatCount),
+    }
+}
+
+fn market_evening(world: &World, params: &Params) -> MarketEvening {
+    let market = &world.market;
+    let newest = market.competitors.last().filter(|event| event.day == world.day);
+    let measured = market.economy.measured().map(|reading| {
+        let published = market.economy.published.as_ref();
+        (*reading, published.is_some_and(|published| published.measured_day == reading.measured_day))
+    });
+    MarketEvening {
+        drift: market.drift.clone(),
+        event: newest.map(|event| (*event, severity(event.boost, &params.competitor).id())),
+        pmi: market.economy.pmi,
+        measured,
+    }
+}

@@ -1,0 +1,270 @@
+//! A look: hidden state is seen through one, and there is none that was not allowed and recorded.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::last_day::Xray;
+use super::shadow::Shadow;
+use crate::play::advance::DayReport;
+use crate::play::week::Week;
+use crate::state::Session;
+use novamind_database::{QueryConnection, Scope};
+use novamind_record::trajectory::record::{Activity, XrayLook};
+use novamind_record::trajectory::{Durability, Record};
+use novamind_tools::Refusal;
+use novamind_world::customers::FIRST_CUSTOMER;
+use novamind_world::day::watch::{DayWatch, Unwatched};
+use novamind_world::events::Facts;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+use novamind_world::state::World;
+
+/// A look inside that was allowed and recorded.
+#[derive(Debug)]
+pub struct Look {
+    day: u32,
+}
+
+impl Look {
+    /// The day that it shows.
+    pub fn day(&self) -> u32 {
+        self.day
+    }
+
+    /// The hidden state of the run as it stands.
+    pub fn inside<'a>(&self, run: &'a Session) -> Xray<'a> {
+        Xray::new(run)
+    }
+
+    /// The run again, before its first line and watched.
+    ///
+    /// # Errors
+    /// `not_possible`: the run has no folder; `not_readable`.
+    pub fn shadow(&self, run: &Session, watch: Arc<dyn DayWatch>) -> Result<Shadow, Refusal> {
+        Shadow::of(run, watch)
+    }
+
+    /// Shows somebody the days of the run up to one of them, and at most to the end of its week.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub fn watch_up_to(&self, run: &Session, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
+        watch_up_to(run, day, watch)
+    }
+
+    /// The world on the evening of a day that is over.
+    ///
+    /// # Errors
+    /// `not_possible`, `not_readable`.
+    pub fn world_on(&self, run: &Session, day: u32) -> Result<World, Refusal> {
+        let evening = Arc::new(Evening { day, world: Mutex::default() });
+        watch_up_to(run, day, evening.clone())?;
+        let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
+        world.ok_or_else(|| Refusal::new("not_readable", format!("the record does not lead to day {day}")))
+    }
+}
+
+fn watch_up_to(run: &Session, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
+    Shadow::of(run, watch)?.lead(run, |reached| reached < day, &mut |_| {})
+}
+
+/// Days that run while somebody watches them.
+pub struct WatchedDays<'a> {
+    /// How many.
+    pub days: u32,
+    /// Who watches them.
+    pub watch: Arc<dyn DayWatch>,
+    /// Whether the days that are over are shown to it first.
+    pub shows_past: bool,
+    /// Whether to go on after a day.
+    pub goes_on: &'a dyn Fn(u32) -> bool,
+    /// What is recorded afterwards: what was looked for, and which ones.
+    pub looks: (&'a str, Vec<String>),
+}
+
+impl Session {
+    /// Begins a look at a day, the last one if none is named: it is refused, or recorded before anything is shown.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
+    pub fn begin_look(&mut self, what: &str, which: &str, day: Option<u32>) -> Result<Look, Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        self.record_look_inside(what, which, day)
+    }
+
+    /// Begins a look at the run as it stands, on whatever day that is.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `read_only`, `not_saved`.
+    pub fn begin_look_at(&mut self, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
+        self.refuse_to_look_inside()?;
+        self.record_look_inside(what, which, shown_day)
+    }
+
+    /// Begins a look at a customer on a day, the last one if none is named. Its group, its number in the group and the day on
+    /// which it came.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, also where it came later, `customer_not_found`, `read_only`, `not_saved`.
+    pub fn begin_look_at_customer(
+        &mut self,
+        customer: u32,
+        day: Option<u32>,
+    ) -> Result<(Look, (Group, u32), u32), Refusal> {
+        self.refuse_to_look_inside()?;
+        let day = self.day_to_show(day)?;
+        let customers = &self.simulation.world.customers;
+        let Some(found) = customers.find(customer) else {
+            let message = match customers.next_customer {
+                FIRST_CUSTOMER => "nobody has come yet".to_owned(),
+                next => format!(
+                    "there is no customer {customer}; choose one from {FIRST_CUSTOMER} to {}",
+                    next - 1
+                ),
+            };
+            return Err(Refusal::at("customer_id", "customer_not_found", message));
+        };
+        let arrival = customers.numbers.arrival_day(customer).unwrap_or(0);
+        if arrival > day {
+            let message = format!("customer {customer} came on day {arrival}, after day {day}");
+            return Err(Refusal::at("day", "day_unknown", message));
+        }
+        Ok((self.record_look_inside("customer", &customer.to_string(), day)?, found, arrival))
+    }
+
+    /// Records a look, before anything is shown.
+    ///
+    /// # Errors
+    /// `read_only` where the run has nothing that writes it, `not_saved`.
+    fn record_look_inside(&mut self, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
+        if !self.records_looks() {
+            let message = "a look is recorded, and this run is open read-only; open it as for play";
+            return Err(Refusal::new("read_only", message));
+        }
+        let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
+        let line = Record::Activity(Activity::Xray(look));
+        let appended = self.append(&line, Durability::Synced);
+        appended.map_err(|error| Refusal::new("not_saved", error.to_string()))?;
+        Ok(Look { day: shown_day })
+    }
+
+    /// The day that is asked for; the last one if none is.
+    ///
+    /// # Errors
+    /// `day_unknown`: it has not been simulated.
+    pub fn day_to_show(&self, day: Option<u32>) -> Result<u32, Refusal> {
+        let last = self.day();
+        let refused = |message: String| Err(Refusal::at("day", "day_unknown", message));
+        match day.unwrap_or(last) {
+            _ if last == 0 => refused("no day has run yet".to_owned()),
+            day if (1..=last).contains(&day) => Ok(day),
+            day => refused(format!("there is no day {day}; choose a day from 1 to {last}")),
+        }
+    }
+
+    /// A connection that knows the hidden tables, which are empty on it, to a database that is complete.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`; the run has no database.
+    pub fn open_hidden_connection(&mut self) -> Result<QueryConnection, Refusal> {
+        self.refuse_to_look_inside()?;
+        self.complete_database()?;
+        self.projection.open_connection(Scope::Hidden)
+    }
+
+    /// Simulates days of a debug run while somebody watches, at least one; that they go on says as much as that they stop, so
+    /// each thing that was looked for is a look of the last day. Without any, nobody watches.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
+    pub fn step_watched(
+        &mut self,
+        watched: WatchedDays<'_>,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        self.refuse_to_look_inside()?;
+        self.refuse_to_step()?;
+        let WatchedDays { days, watch, shows_past, goes_on, looks: (what, which) } = watched;
+        let until = self.day().saturating_add(days.max(1));
+        if which.is_empty() {
+            return self.step_on(until, &|_| true, progress);
+        }
+        if shows_past {
+            watch_up_to(self, self.day(), watch.clone())?;
+        }
+        self.simulation.watch = watch;
+        let week = self.step_on(until, goes_on, progress);
+        self.simulation.watch = Arc::new(Unwatched);
+        let week = week?;
+        for which in which {
+            self.record_look_inside(what, &which, self.day())?;
+        }
+        Ok(week)
+    }
+
+    /// Steps over as many weeks as it takes to a day, as long as it is to go on.
+    fn step_on(
+        &mut self,
+        until: u32,
+        goes_on: &dyn Fn(u32) -> bool,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<Week, Refusal> {
+        let mut notices = Vec::new();
+        loop {
+            let mut week = self.step_while(goes_on, until - self.day(), progress)?;
+            notices.append(&mut week.notices);
+            if self.day() >= until || week.ended.is_some() || week.remark.is_some() || !goes_on(self.day()) {
+                return Ok(Week { notices, ..week });
+            }
+        }
+    }
+}
+
+/// Keeps the world as one day leaves it.
+struct Evening {
+    day: u32,
+    world: Mutex<Option<World>>,
+}
+
+impl DayWatch for Evening {
+    fn day_over(&self, world: &World, _: &Params, _: &Facts) {
+        if world.day == self.day {
+            *self.world.lock().unwrap_or_else(PoisonError::into_inner) = Some(world.clone());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::create::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::folder::mode::Mode;
+    use novamind_record::rules::{ResultsShown, SessionRules};
+    use novamind_record::stamp::StudyStamp;
+
+    #[test]
+    fn a_run_of_which_its_study_shows_no_results_stays_closed_once_it_is_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let storage = Storage::Runs(folder.path().to_owned());
+        let new = NewRun { mode: Mode::Baseline, days: Some(28), storage, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let forecasts = session.naive_forecasts();
+        session.advance("wait", &forecasts, crate::Via::Script, &mut |_| {}).expect("a week");
+        session.end().expect("it ends");
+        let sql = "SELECT count(*) FROM hidden.groups";
+        for (practice, results, is_shown) in [
+            (false, ResultsShown::Own, true),
+            (true, ResultsShown::Own, false),
+            (false, ResultsShown::None, false),
+        ] {
+            session.manifest.study = Some(StudyStamp::pilot(practice));
+            session.manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
+            let look = session.begin_look("sql", sql, None).map_err(|refusal| refusal.code);
+            let asked = session.open_hidden_connection().map(drop).map_err(|refusal| refusal.code);
+            assert_eq!(asked, look.map(drop), "{practice} {results:?}");
+            assert_eq!(asked.is_ok(), is_shown, "{practice} {results:?}");
+            assert!(is_shown || asked == Err("not_in_this_mode"));
+        }
+    }
+}

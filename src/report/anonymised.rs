@@ -119,7 +119,7 @@ impl Anonymiser {
         let mut described = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
         for (name, columns) in headings() {
             let kept: Vec<Heading> =
-                columns.into_iter().filter(|own| !self.leaves_out(name, own.name)).collect();
+                columns.into_iter().filter(|own| !self.leaves_out(name, &own.name)).collect();
             described.extend(kept.iter().map(|own| described_column(name, own)));
             made.push((name.to_owned(), self.table(name, &kept, all(name)?)?));
         }
@@ -137,7 +137,7 @@ impl Anonymiser {
     /// # Errors
     /// The first that is none, or that joins the tables.
     pub fn check_left_out(&self) -> Result<(), String> {
-        let known = |name: &str| headings().iter().any(|(_, own)| own.iter().any(|own| own.name == name));
+        let known = |name: &str| headings().iter().any(|(_, own)| own.iter().any(|own| own.name == *name));
         for name in &self.without {
             if NEEDED.contains(&name.as_str()) {
                 return Err(format!("{name} cannot be left out: it joins the tables"));
@@ -181,7 +181,7 @@ impl Anonymiser {
         columns: &[Heading],
         rows: &[Vec<String>],
     ) -> Result<Vec<Vec<String>>, String> {
-        let places = columns.iter().map(|own| place(rows, own.name)).collect::<Result<Vec<_>, _>>()?;
+        let places = columns.iter().map(|own| place(rows, &own.name)).collect::<Result<Vec<_>, _>>()?;
         let mut made = Vec::new();
         for row in &rows[1..] {
             let known: BTreeMap<&str, &str> =
@@ -203,7 +203,7 @@ impl Anonymiser {
 
     fn cell(&self, table: &str, column: &Heading, cell: &str, row: &BTreeMap<&str, &str>) -> String {
         let kind = row.get("kind").copied().unwrap_or_default();
-        match (table, column.name) {
+        match (table, &*column.name) {
             _ if cell.is_empty() => String::new(),
             (_, "participant") => self.label(cell),
             (_, "run" | "parent") => self.run(cell),
@@ -281,12 +281,12 @@ fn original(last_hash: &str) -> String {
     blake3::hash(last_hash.as_bytes()).to_hex().to_string()
 }
 
-fn new_name(column: &Heading) -> &'static str {
-    if column.name == "last_hash" { "original" } else { column.name }
+fn new_name(column: &Heading) -> &str {
+    if column.name == "last_hash" { "original" } else { &column.name }
 }
 
 fn described_column(table: &str, column: &Heading) -> Vec<String> {
-    let (unit, meaning) = match (column.unit, column.name) {
+    let (unit, meaning) = match (column.unit, &*column.name) {
         ("RFC 3339", _) if table == "visits" => {
             ("seconds", format!("{}, as seconds since somebody first came under the label", column.meaning))
         }

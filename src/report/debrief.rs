@@ -11,7 +11,7 @@ use novamind_glossary::{Term, terms};
 use novamind_session::{
     CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, Ended,
     FigureUnit, FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve,
-    ToolId, WeekFigure,
+    SettingContrast, ToolId, WeekFigure,
 };
 
 /// Most settings of a tool that are named one by one.
@@ -126,17 +126,22 @@ pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
 /// What one tool did in both plays.
 fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String {
     let said = match &decision.difference {
-        DecisionContrast::Settings(all) => {
-            let one = |(name, own, good): &(String, Value, Value)| {
-                format!("{name} {}, the good play {}", written(own), written(good))
+        DecisionContrast::Settings { settings } => {
+            let one = |setting: &SettingContrast| {
+                format!(
+                    "{} {}, the good play {}",
+                    setting.name,
+                    written(&setting.own),
+                    written(&setting.good)
+                )
             };
-            let more = match all.len().saturating_sub(MOST_SETTINGS) {
+            let more = match settings.len().saturating_sub(MOST_SETTINGS) {
                 0 => String::new(),
                 more => format!("; {more} more"),
             };
-            all.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
+            settings.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
-        DecisionContrast::Calls(own, good) => {
+        DecisionContrast::Calls { own, good } => {
             let told = |calls| calls_in_words(decision.tool, calls, names);
             format!("{}; the good play: {}", told(own), told(good))
         }

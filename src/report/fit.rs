@@ -1,6 +1,8 @@
 //! Fit: what a group is known to want beside what the plans offer it. Studies give the means of a group within an error,
 //! so a figure of ours lies below, inside or above the range of the truth; what is missing is said as far as that goes.
 
+use serde::Serialize;
+
 use super::words::{range, whole};
 use novamind_base::notation::{cents, dollars, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
@@ -10,7 +12,7 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings
 const RECENT: usize = 4;
 
 /// Least and greatest truth behind an estimate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TruthRange {
     /// Least.
     pub least: f64,

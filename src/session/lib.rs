@@ -60,7 +60,7 @@ pub use lesson::debrief::{
     Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
     PlayedPart, ReferenceCurve,
 };
-pub use lesson::decisions::{DecisionContrast, PartedDecision};
+pub use lesson::decisions::{DecisionContrast, PartedDecision, SettingContrast};
 pub use lesson::definition::{
     CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
     LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked,

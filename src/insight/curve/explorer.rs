@@ -1,5 +1,7 @@
 //! A group's curve, the plans as they stand, and what leads would make of other ones.
 
+use serde::Serialize;
+
 use std::fmt;
 use std::sync::Arc;
 
@@ -20,7 +22,8 @@ const STEPS: usize = 60;
 const SHARES: [f64; 3] = [0.1, 0.5, 0.9];
 
 /// What the curve is drawn from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CurveBasis {
     /// The traits of the group, with what the market has added to them up to a day.
     Truth {
@@ -65,7 +68,7 @@ pub struct CurvePoint {
 }
 
 /// A figure, and its ends over the groups that fit the estimates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Expected {
     /// If the estimates are right.
     pub likely: f64,

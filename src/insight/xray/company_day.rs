@@ -1,5 +1,7 @@
 //! A thread as the company sees it on a morning: what it would accept, and what it would answer.
 
+use serde::Serialize;
+
 use novamind_world::customers::Customers;
 use novamind_world::customers::columns::Subscriber;
 use novamind_world::enterprise::letters::{late_days, late_penalty};
@@ -10,7 +12,7 @@ use novamind_world::events::{Offering, Sender, ThreadKind};
 use novamind_world::identifiers::{ByPlan, Group};
 
 /// A plan, as a company judges it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JudgedPlan {
     /// Quality as it perceives it today.
     pub quality: f64,
@@ -21,6 +23,7 @@ pub struct JudgedPlan {
     /// Whether it accepts every price, as the quality is beyond all that it can require.
     pub accepts_any_price: bool,
     /// The price that it would name in its next turn, dollars a month and seat; 0: it would fall silent.
+    #[serde(rename = "would_name")]
     pub counter: f64,
 }
 

@@ -1,5 +1,7 @@
 //! What the product delivers to a group on each plan, term by term.
 
+use serde::Serialize;
+
 use novamind_world::identifiers::{ByGroup, ByPlan, Group};
 use novamind_world::market::drift::{DriftTotals, Expectation};
 use novamind_world::morning::Morning;
@@ -11,7 +13,7 @@ use novamind_world::settings::Settings;
 use novamind_world::state::World;
 
 /// Where the quality that was gained for everybody comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SharedGains {
     /// What the run began with.
     pub opening: f64,

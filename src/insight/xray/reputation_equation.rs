@@ -1,5 +1,7 @@
 //! What moved the reputation of a group on a day, and how the change of each group spilled over to the others.
 
+use serde::Serialize;
+
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::Market;
 use novamind_world::market::reputation::{
@@ -9,7 +11,7 @@ use novamind_world::params::Params;
 use novamind_world::retention::satisfaction::Mood;
 
 /// Departures of a day and what they took.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Departures {
     /// How many did harm; lost companies count for each of their threads.
     pub count: u32,

@@ -1,5 +1,7 @@
 //! A decision of an individual, term by term, and the terms without which it would have come out otherwise.
 
+use serde::Serialize;
+
 use novamind_world::customers::curve::{Curve, required_quality};
 use novamind_world::identifiers::{ByPlan, Plan};
 use novamind_world::params::Params;
@@ -7,11 +9,12 @@ use novamind_world::product::quality::Experience;
 use novamind_world::retention::weighing::Weighing;
 
 /// A plan, as an individual sees it on a billing day.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct PlanTerms {
     /// Price after the ongoing discount, dollars a month.
     pub price: f64,
     /// The terms of its perceived quality.
+    #[serde(flatten)]
     pub experience: Experience,
     /// Perceived quality.
     pub quality: f64,

@@ -7,7 +7,6 @@ use super::super::grammar::Problem;
 use super::Interpreter;
 use super::breakpoints::{judged_as_data, writes_as_data};
 use novamind_report::xray::{AskedWords, WordsFound, difference_as_data};
-use novamind_session::ChangedParameter;
 
 impl Interpreter {
     /// Answers what is asked. Nothing is read of it before it is clear that it may be asked.
@@ -36,19 +35,8 @@ fn as_data(found: &WordsFound) -> Value {
         WordsFound::Difference(one, other, found) => {
             json!({ "days": [one, other], "difference": difference_as_data(found) })
         }
-        WordsFound::Parameters(changed) => {
-            let list = |all: &[ChangedParameter]| all.iter().map(set_as_data).collect::<Vec<Value>>();
-            json!({
-                "scenario": changed.scenario,
-                "in_force": list(&changed.in_force),
-                "waiting": list(&changed.waiting),
-            })
-        }
+        WordsFound::Parameters(changed) => json!(changed),
         WordsFound::Parameter(key, value) => json!({ "key": key, "value": value }),
-        WordsFound::Set(set, _) => set_as_data(set),
+        WordsFound::Set(set, _) => json!(set),
     }
-}
-
-fn set_as_data(own: &ChangedParameter) -> Value {
-    json!({ "key": own.key, "old": own.old, "new": own.new, "from_day": own.from_day })
 }

@@ -42,15 +42,7 @@ impl Interpreter {
             .chain(self.study(preview.tool, arguments))
             .chain(self.margins(preview.tool, arguments));
         lines.extend(notes.map(|note| format!("  {note}")));
-        let data = json!({
-            "tool": preview.tool,
-            "cost_now": preview.cost_now,
-            "cost_per_day": preview.cost_per_day,
-            "effect_day": preview.effect_day,
-            "changes": preview.changes,
-            "research": preview.research,
-        });
-        Answer::done("check", lines.join("\n"), data)
+        Answer::done("check", lines.join("\n"), json!(preview))
     }
 
     /// What a capacity tier holds beside the busiest day of the last week.

@@ -8,7 +8,7 @@ use super::{Interpreter, problem};
 use novamind_base::nearest;
 use novamind_base::notation::price_to_cents;
 use novamind_database::text::aligned;
-use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, SAMPLED_LEADS};
+use novamind_insight::{CurveExplorer, CurveOutcome, CurvePoint, SAMPLED_LEADS};
 use novamind_report::curve::{
     basis_in_words, columns, outcome_in_words, plan_in_words, quality, remarks, rows,
 };
@@ -82,12 +82,6 @@ fn answer(own: &CurveExplorer, product: Option<(f64, f64)>) -> Answer {
 }
 
 fn as_data(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutcome) -> Value {
-    let basis = match own.basis {
-        CurveBasis::Truth { day } => json!({ "kind": "truth", "day": day }),
-        CurveBasis::Estimates { level, noise, as_of } => {
-            json!({ "kind": "estimates", "level": level, "noise": noise, "as_of": as_of })
-        }
-    };
     let point = |own: &CurvePoint| {
         let (least, most) = own.median_between;
         json!({
@@ -100,15 +94,14 @@ fn as_data(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutc
         let taken = outcome.takers.filter(|_| product.is_none()).map(|all| all[plan]);
         json!({ "plan": plan.id(), "list_price": point.list, "quality": point.quality, "quota": point.quota, "taken_by": taken })
     };
-    let expected = |own: &Expected| json!({ "likely": own.likely, "least": own.least, "most": own.most });
     json!({
-        "group": own.group.id(),
-        "basis": basis,
+        "group": own.group,
+        "basis": own.basis,
         "asked": product.map(|(price, quality)| json!({ "price": price, "quality": quality })),
         "curve": own.points.iter().map(point).collect::<Vec<_>>(),
         "plans": Plan::ALL.map(plan),
-        "conversion": expected(&outcome.conversion),
-        "revenue_per_lead": outcome.revenue_per_lead.as_ref().map(expected),
+        "conversion": outcome.conversion,
+        "revenue_per_lead": outcome.revenue_per_lead,
         "leads": SAMPLED_LEADS,
     })
 }

@@ -8,7 +8,7 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use novamind_base::nearest;
 use novamind_base::notation::{cents, dollars, grouped};
-use novamind_report::fit::{Concern, Fit, LeadFlow, PlanFit, TruthRange, fits};
+use novamind_report::fit::{Concern, Fit, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
 use novamind_report::lead_costs::{AdSpell, PairCost, pair_costs};
 use novamind_report::research::projects_with_means;
@@ -97,7 +97,6 @@ pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) ->
 }
 
 fn fit_as_data(fit: &Fit) -> Value {
-    let ends = |range: TruthRange| json!({ "least": range.least, "most": range.most });
     let plan = |own: &PlanFit| {
         let missing = |concern: &Concern| (concern.id().to_owned(), json!(fit.missing(own.plan, *concern)));
         let missing: serde_json::Map<String, Value> = Concern::ALL.iter().map(missing).collect();
@@ -117,9 +116,9 @@ fn fit_as_data(fit: &Fit) -> Value {
         "noise": fit.noise,
         "as_of": fit.as_of,
         "age_days": fit.age,
-        "floor": ends(fit.floor),
-        "budget": ends(fit.budget),
-        "usage": ends(fit.usage),
+        "floor": fit.floor,
+        "budget": fit.budget,
+        "usage": fit.usage,
         "plans": Plan::ALL.map(|own| plan(&fit.plans[own])),
         "last_week": fit.last_week.map(flow_as_data),
         "last_4_weeks": flow_as_data(fit.recent),

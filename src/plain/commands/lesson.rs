@@ -8,10 +8,7 @@ use super::{Interpreter, problem};
 use novamind_report::debrief::in_words;
 use novamind_report::lesson::{page_in_words, typed_guess};
 use novamind_rules::answers_to_companies;
-use novamind_session::{
-    Debrief, DecisionComparison, DecisionContrast, GoalPage, LessonPage, LessonQuestion, PartedDecision,
-    ReferenceCurve, Refusal, Session,
-};
+use novamind_session::{Debrief, DecisionComparison, LessonPage, Refusal, Session};
 
 impl Interpreter {
     /// `lesson`, `lesson next`
@@ -110,8 +107,6 @@ fn no_lesson() -> Refusal {
 }
 
 fn as_data(page: &LessonPage) -> Value {
-    let goals: Vec<Value> = page.goals.iter().map(goal_as_data).collect();
-    let question = page.question.as_ref().map(question_as_data);
     json!({
         "title": page.title,
         "part": page.part,
@@ -121,8 +116,8 @@ fn as_data(page: &LessonPage) -> Value {
         "text": page.text,
         "weeks": { "passed": page.weeks.0, "of": page.weeks.1 },
         "try": page.try_number,
-        "question": question,
-        "goals": goals,
+        "question": page.question,
+        "goals": page.goals,
         "hints": page.hints,
         "hints_in_all": page.hints_in_all,
         "pitfalls": page.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
@@ -131,39 +126,11 @@ fn as_data(page: &LessonPage) -> Value {
     })
 }
 
-fn goal_as_data(goal: &GoalPage) -> Value {
-    json!({ "text": goal.text, "value": goal.value, "bound": goal.bound, "met": goal.met })
-}
-
-fn question_as_data(question: &LessonQuestion) -> Value {
-    json!({
-        "text": question.text,
-        "choices": question.choices,
-        "unit": question.unit,
-        "guess": question.guess,
-        "outcome": question.outcome,
-    })
-}
-
 fn debrief_as_data(own: &Debrief) -> Value {
-    let curve = |curve: &ReferenceCurve| json!({ "text": curve.text, "cash_by_day": curve.cash_by_day });
-    let steps = own.steps.iter().map(|step| {
-        json!({
-            "title": step.title,
-            "tries": step.tries,
-            "hints": { "used": step.hints.0, "of": step.hints.1 },
-            "question": step.question.as_ref().map(question_as_data),
-            "goals": step.goals.iter().map(goal_as_data).collect::<Vec<Value>>(),
-        })
-    });
     let parting = match &own.comparison {
         DecisionComparison::Parted(parting) => {
-            let effect = parting
-                .effect
-                .simulated()
-                .map(|effect| json!({ "day": effect.day, "own": effect.own, "with": effect.with }));
-            let decisions: Vec<Value> = parting.decisions.iter().map(decision_as_data).collect();
-            json!({ "week": parting.week, "day": parting.day, "decisions": decisions, "effect": effect })
+            let effect = parting.effect.simulated();
+            json!({ "week": parting.week, "day": parting.day, "decisions": parting.decisions, "effect": effect })
         }
         DecisionComparison::Same | DecisionComparison::Nothing | DecisionComparison::Unknown => Value::Null,
     };
@@ -172,24 +139,12 @@ fn debrief_as_data(own: &Debrief) -> Value {
         "part": own.part,
         "seed": own.seed,
         "own": own.own,
-        "good": own.good.as_ref().map(curve),
-        "bad": own.bad.as_ref().map(curve),
+        "good": own.good,
+        "bad": own.bad,
         "same_decisions": matches!(own.comparison, DecisionComparison::Same),
         "parting": parting,
-        "steps": steps.collect::<Vec<Value>>(),
+        "steps": own.steps,
         "pitfalls": own.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
         "text": own.text,
     })
-}
-
-fn decision_as_data(decision: &PartedDecision) -> Value {
-    match &decision.difference {
-        DecisionContrast::Settings(all) => {
-            let one = |(name, own, good): &(String, Value, Value)| json!({ "name": name, "own": own, "good": good });
-            json!({ "tool": decision.tool.name(), "settings": all.iter().map(one).collect::<Vec<Value>>() })
-        }
-        DecisionContrast::Calls(own, good) => {
-            json!({ "tool": decision.tool.name(), "own": own, "good": good })
-        }
-    }
 }

@@ -1,73 +1,43 @@
 //! `events.csv`: a row for each line of a run, and of what was done after its end.
 
 use super::answers::value_in_words;
-use super::place::{PLACE, Placed, with_place};
-use super::{Heading, flag, heading, number, word};
+use super::column::{Column, columns};
+use super::place::{LineRow, Placed, with_place};
+use super::{flag, number, word};
 use novamind_base::notation::json_number;
 use novamind_session::record::{Call, DialogStep, Draft, Outcome, Presence, Start, VoiceAnswer};
 use novamind_session::{Activity, Record, Reversal};
 
-const OWN: [Heading; 8] = [
-    heading("afterwards", "0 or 1", "1: the line stands in afterwards.jsonl"),
-    heading("kind", "word", "kind of the line"),
-    heading(
-        "what",
-        "text",
-        "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: event; limit: \
-         which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; start: mode; override: key; voice: what was said; end: reason",
-    ),
-    heading(
-        "which",
-        "text",
-        "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: interface or cause; \
-         limit: event; question, answer: question; xray: group, customer, part or statement; query: error; note, memo: hash; start: scenario; branch: run; voice: post that was judged, or what failed",
-    ),
-    heading(
-        "value",
-        "text",
-        "call: accepted or code of the refusal; query: rows; draft, note, memo: length; limit: minutes; question: form; \
-         answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that was shown; voice: groups or posts",
-    ),
-    heading(
-        "for_ms",
-        "milliseconds",
-        "how long: view, dialog, draft, answer, query; call, voice: time it took; limit: active time used; clock: time it stood; \
-         session: time since the last key",
-    ),
-    heading("detail", "name=value", "what else the line says"),
-    heading(
-        "text",
-        "text",
-        "call: arguments; query: statement; advance: rationale; draft: text left; question: text shown; clock: reason; look: what it asked for",
-    ),
-];
-
 /// The columns.
-pub(super) const HEADINGS: [Heading; PLACE.len() + OWN.len()] = with_place(&OWN);
+pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, Event>>> {
+    with_place(columns! { row: LineRow<'a, Event>;
+        "afterwards", "0 or 1", "1: the line stands in afterwards.jsonl" => row.placed.is_afterwards;
+        "kind", "word", "kind of the line" => row.placed.line.record.kind();
+        "what", "text", "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: \
+         event; limit: which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; \
+         start: mode; override: key; voice: what was said; end: reason" => row.own.what;
+        "which", "text", "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: \
+         interface or cause; limit: event; question, answer: question; xray: group, customer, part or statement; query: error; \
+         note, memo: hash; start: scenario; branch: run; voice: post that was judged, or what failed" => row.own.which;
+        "value", "text", "call: accepted or code of the refusal; query: rows; draft, note, memo: length; limit: minutes; \
+         question: form; answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day that \
+         was shown; voice: groups or posts" => row.own.value;
+        "for_ms", "milliseconds", "how long: view, dialog, draft, answer, query; call, voice: time it took; limit: active time \
+         used; clock: time it stood; session: time since the last key" => row.own.for_ms;
+        "detail", "name=value", "what else the line says" => row.own.detail_in_words();
+        "text", "text", "call: arguments; query: statement; advance: rationale; draft: text left; question: text shown; clock: \
+         reason; look: what it asked for" => row.own.text;
+    })
+}
 
 /// The rows of a run.
-pub(super) fn rows(lines: &[Placed<'_>]) -> Vec<Vec<String>> {
-    let row = |placed: &Placed<'_>| {
-        let Event { what, which, value, for_ms, detail, text } = Event::of(&placed.line.record);
-        let detail: Vec<String> = detail.into_iter().map(|(name, value)| format!("{name}={value}")).collect();
-        let cells: [String; OWN.len()] = [
-            flag(placed.is_afterwards),
-            placed.line.record.kind().to_owned(),
-            what,
-            which,
-            value,
-            for_ms,
-            detail.join(";"),
-            text,
-        ];
-        placed.row(cells)
-    };
-    lines.iter().map(row).collect()
+pub(super) fn rows<'a>(lines: &'a [Placed<'a>]) -> impl Iterator<Item = LineRow<'a, Event>> {
+    lines.iter().map(|placed| LineRow { placed, own: Event::of(&placed.line.record) })
 }
 
 /// What a line says, in cells.
 #[derive(Default)]
-struct Event {
+pub(super) struct Event {
     what: String,
     which: String,
     value: String,
@@ -77,6 +47,10 @@ struct Event {
 }
 
 impl Event {
+    fn detail_in_words(&self) -> String {
+        self.detail.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(";")
+    }
+
     fn of(record: &Record) -> Event {
         let named = |what: &str, which: &str, value: String| Event {
             what: what.to_owned(),

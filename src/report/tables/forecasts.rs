@@ -1,62 +1,46 @@
 //! `forecasts.csv`: a row for each forecast that was filed.
 
-use super::{Heading, flag, heading, maybe, number};
+use super::column::{Column, columns};
 use crate::logbook::{Logbook, WeekLog};
 use novamind_session::ScoredForecast;
 
-/// The columns.
-pub(super) const HEADINGS: [Heading; 17] = [
-    heading("run", "name", "name of the run"),
-    heading("participant", "label", "who played"),
-    heading("week", "number", "number of the week before which it was filed, from 1"),
-    heading("decision_day", "day", "day on which it was filed"),
-    heading("inherited", "0 or 1", "1: filed in the run that this one branched from"),
-    heading("horizon_days", "days", "days ahead"),
-    heading("due_day", "day", "day whose cash it speaks of"),
-    heading("point", "dollars", "most likely cash"),
-    heading("lower", "dollars", "lower end of the 95 % interval"),
-    heading("upper", "dollars", "upper end of it"),
-    heading("filled_naively", "0 or 1", "1: the naive projection stands in it, whole or in part"),
-    heading(
-        "outcome",
-        "dollars",
-        "cash on that day; this and what follows is empty if the run did not reach it",
-    ),
-    heading("error", "share", "(point - outcome) / max(|outcome|, 1): positive where too much was expected"),
-    heading("absolute_error", "share", "its size"),
-    heading("covered", "0 or 1", "1: lower <= outcome <= upper"),
-    heading("verdict", "word", "where the outcome lies beside the interval: below, inside or above"),
-    heading("width", "share", "(upper - lower) / max(|outcome|, 1)"),
-];
-
-/// The rows of a run.
-pub(super) fn rows(book: &Logbook) -> Vec<Vec<String>> {
-    let weeks = book.weeks.iter();
-    let filed =
-        weeks.flat_map(|week| week.forecasts.iter().zip(&week.naive_forecasts).map(move |it| (week, it)));
-    filed.map(|(week, (scored, naive))| row(book, week, scored, *naive)).collect()
+/// A forecast, with its run and week.
+pub(super) struct FiledForecast<'a> {
+    book: &'a Logbook,
+    week: &'a WeekLog,
+    scored: &'a ScoredForecast,
+    naive: bool,
 }
 
-fn row(book: &Logbook, week: &WeekLog, scored: &ScoredForecast, naive: bool) -> Vec<String> {
-    let forecast = &scored.forecast;
-    let cells: [String; HEADINGS.len()] = [
-        book.run.clone(),
-        book.participant.clone().unwrap_or_default(),
-        week.week.to_string(),
-        week.decision_day.to_string(),
-        flag(week.inherited),
-        forecast.horizon_days.to_string(),
-        scored.due().to_string(),
-        number(forecast.point),
-        number(forecast.lower),
-        number(forecast.upper),
-        flag(naive),
-        maybe(scored.outcome),
-        maybe(scored.error()),
-        maybe(scored.error().map(f64::abs)),
-        scored.verdict().map(|_| flag(scored.is_inside())).unwrap_or_default(),
-        scored.verdict().map(|verdict| verdict.word().to_owned()).unwrap_or_default(),
-        maybe(scored.sharpness()),
-    ];
-    cells.to_vec()
+/// The columns.
+pub(super) fn columns<'a>() -> Vec<Column<FiledForecast<'a>>> {
+    columns! { row: FiledForecast<'a>;
+        "run", "name", "name of the run" => row.book.run;
+        "participant", "label", "who played" => row.book.participant;
+        "week", "number", "number of the week before which it was filed, from 1" => row.week.week;
+        "decision_day", "day", "day on which it was filed" => row.week.decision_day;
+        "inherited", "0 or 1", "1: filed in the run that this one branched from" => row.week.inherited;
+        "horizon_days", "days", "days ahead" => row.scored.forecast.horizon_days;
+        "due_day", "day", "day whose cash it speaks of" => row.scored.due();
+        "point", "dollars", "most likely cash" => row.scored.forecast.point;
+        "lower", "dollars", "lower end of the 95 % interval" => row.scored.forecast.lower;
+        "upper", "dollars", "upper end of it" => row.scored.forecast.upper;
+        "filled_naively", "0 or 1", "1: the naive projection stands in it, whole or in part" => row.naive;
+        "outcome", "dollars", "cash on that day; this and what follows is empty if the run did not reach it"
+            => row.scored.outcome;
+        "error", "share", "(point - outcome) / max(|outcome|, 1): positive where too much was expected" => row.scored.error();
+        "absolute_error", "share", "its size" => row.scored.error().map(f64::abs);
+        "covered", "0 or 1", "1: lower <= outcome <= upper" => row.scored.verdict().map(|_| row.scored.is_inside());
+        "verdict", "word", "where the outcome lies beside the interval: below, inside or above"
+            => row.scored.verdict().map(|verdict| verdict.word());
+        "width", "share", "(upper - lower) / max(|outcome|, 1)" => row.scored.sharpness();
+    }
+}
+
+/// The rows of a run.
+pub(super) fn rows(book: &Logbook) -> impl Iterator<Item = FiledForecast<'_>> {
+    book.weeks.iter().flat_map(move |week| {
+        let filed = week.forecasts.iter().zip(&week.naive_forecasts);
+        filed.map(move |(scored, naive)| FiledForecast { book, week, scored, naive: *naive })
+    })
 }

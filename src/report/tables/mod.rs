@@ -4,6 +4,7 @@
 //! Cells hold texts as people wrote them; [`novamind_base::notation::csv_cell`] makes them harmless when a file is written.
 
 mod answers;
+pub(crate) mod column;
 mod events;
 mod forecasts;
 mod notes;
@@ -13,66 +14,41 @@ mod runs;
 mod visits;
 mod weeks;
 
+use std::borrow::Borrow;
+
 use serde::Serialize;
 
-use super::logbook::{Logbook, WeekLog};
+use super::logbook::Logbook;
+use column::Column;
 use novamind_session::{ForecastScore, Line};
 use novamind_study::FoundVisit;
 
-pub use runs::RUNS;
-pub use weeks::WEEKS;
-
-/// What a column is called, and what its values mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Heading {
-    /// Name, as it stands in the first line.
-    pub name: &'static str,
-    /// Unit or kind of its values.
-    pub unit: &'static str,
-    /// What they mean.
-    pub meaning: &'static str,
-}
-
-const fn heading(name: &'static str, unit: &'static str, meaning: &'static str) -> Heading {
-    Heading { name, unit, meaning }
-}
-
-/// A column whose values are read from a logbook.
-#[derive(Debug, Clone, Copy)]
-pub struct Column<F> {
-    /// What it is called and means.
-    pub heading: Heading,
-    /// Where its values come from.
-    pub cell: F,
-}
-
-/// A column of the table of runs.
-pub type RunColumn = Column<fn(&Logbook) -> String>;
-
-/// A column of the table of weeks.
-pub type WeekColumn = Column<fn(&Logbook, &WeekLog) -> String>;
+pub use column::Heading;
 
 /// What only the console sees; empty of a run without a sitting there.
-fn in_console(run: &Logbook, value: impl ToString) -> String {
-    if run.sittings.in_console > 0 { value.to_string() } else { String::new() }
+fn in_console<T>(run: &Logbook, value: T) -> Option<T> {
+    (run.sittings.in_console > 0).then_some(value)
 }
 
 /// Views of screens, which the console has recorded since before lines told of sittings.
-fn seen(run: &Logbook, value: impl ToString) -> String {
-    if run.sittings.opened == 0 { value.to_string() } else { in_console(run, value) }
+fn seen<T>(run: &Logbook, value: T) -> Option<T> {
+    if run.sittings.opened == 0 { Some(value) } else { in_console(run, value) }
 }
 
 /// Columns by table, in the order of the tables.
 pub fn headings() -> Vec<(&'static str, Vec<Heading>)> {
+    fn of<Row>(columns: Vec<Column<Row>>) -> Vec<Heading> {
+        columns.into_iter().map(|column| column.heading).collect()
+    }
     vec![
-        ("runs", RUNS.iter().map(|column| column.heading).collect()),
-        ("weeks", WEEKS.iter().map(|column| column.heading).collect()),
-        ("forecasts", forecasts::HEADINGS.to_vec()),
-        ("queries", queries::HEADINGS.to_vec()),
-        ("events", events::HEADINGS.to_vec()),
-        ("answers", answers::HEADINGS.to_vec()),
-        ("notes", notes::HEADINGS.to_vec()),
-        ("visits", visits::HEADINGS.to_vec()),
+        ("runs", of(runs::columns())),
+        ("weeks", of(weeks::columns())),
+        ("forecasts", of(forecasts::columns())),
+        ("queries", of(queries::columns())),
+        ("events", of(events::columns())),
+        ("answers", of(answers::columns())),
+        ("notes", of(notes::columns())),
+        ("visits", of(visits::columns())),
     ]
 }
 
@@ -81,7 +57,7 @@ pub fn columns_table() -> Vec<Vec<String>> {
     let mut rows = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
     for (table, columns) in headings() {
         rows.extend(
-            columns.iter().map(|own| [table, own.name, own.unit, own.meaning].map(str::to_owned).to_vec()),
+            columns.iter().map(|own| [table, &own.name, own.unit, own.meaning].map(str::to_owned).to_vec()),
         );
     }
     rows
@@ -96,7 +72,7 @@ pub struct StudyTables {
 
 impl Default for StudyTables {
     fn default() -> Self {
-        let head = |columns: Vec<Heading>| columns.iter().map(|own| own.name.to_owned()).collect();
+        let head = |columns: Vec<Heading>| columns.into_iter().map(|own| own.name.into_owned()).collect();
         let tables = headings().into_iter().map(|(name, columns)| (name, vec![head(columns)]));
         StudyTables { tables: tables.collect() }
     }
@@ -106,29 +82,32 @@ impl StudyTables {
     /// Adds a run: its logbook, its lines, and those of what was done after its end.
     pub fn add(&mut self, book: &Logbook, lines: &[Line], afterwards: &[Line]) {
         let lines = place::placed(book, lines, afterwards);
-        self.extend("runs", [RUNS.iter().map(|column| (column.cell)(book)).collect()]);
-        let week = |week: &WeekLog| WEEKS.iter().map(|column| (column.cell)(book, week)).collect();
-        self.extend("weeks", book.weeks.iter().map(week));
-        self.extend("forecasts", forecasts::rows(book));
-        self.extend("queries", queries::rows(&lines));
-        self.extend("events", events::rows(&lines));
-        self.extend("answers", answers::rows(&lines));
-        self.extend("notes", notes::rows(&lines));
+        self.fill("runs", &runs::columns(), [book]);
+        self.fill(
+            "weeks",
+            &weeks::columns(),
+            book.weeks.iter().map(|week| weeks::WeekRow { run: book, week }),
+        );
+        self.fill("forecasts", &forecasts::columns(), forecasts::rows(book));
+        self.fill("queries", &queries::columns(), queries::rows(&lines));
+        self.fill("events", &events::columns(), events::rows(&lines));
+        self.fill("answers", &answers::columns(), answers::rows(&lines));
+        self.fill("notes", &notes::columns(), notes::rows(&lines));
     }
 
     /// Adds lines of lists of visits.
     pub fn add_visits(&mut self, visits: &[FoundVisit]) {
-        self.extend("visits", visits.iter().map(visits::row));
+        self.fill("visits", &visits::columns(), visits);
     }
 
     /// Adds a run that could not be read: its name and the reason, nothing else.
     pub fn add_unread(&mut self, run: &str, problem: &str) {
-        let cell = |column: &RunColumn| match column.heading.name {
+        let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),
             "problem" => problem.to_owned(),
             _ => String::new(),
         };
-        self.extend("runs", [RUNS.iter().map(cell).collect()]);
+        self.extend("runs", [runs::columns().into_iter().map(cell).collect()]);
     }
 
     /// Every table with its name and rows, the names of the columns first; that of the columns is the last.
@@ -136,6 +115,16 @@ impl StudyTables {
         let mut files = self.tables;
         files.push(("columns", columns_table()));
         files
+    }
+
+    fn fill<Row>(
+        &mut self,
+        name: &str,
+        columns: &[Column<Row>],
+        rows: impl IntoIterator<Item = impl Borrow<Row>>,
+    ) {
+        let cells = |row: &Row| columns.iter().map(|column| (column.cell)(row)).collect();
+        self.extend(name, rows.into_iter().map(|row| cells(row.borrow())));
     }
 
     fn extend(&mut self, name: &str, rows: impl IntoIterator<Item = Vec<String>>) {
@@ -146,19 +135,13 @@ impl StudyTables {
 }
 
 /// A number in the shortest form that reads back to the same one.
-fn number(value: impl Into<f64>) -> String {
-    let value: f64 = value.into();
+fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// A number that may not exist: an empty cell.
-fn maybe(value: Option<f64>) -> String {
-    value.map(number).unwrap_or_default()
-}
-
-/// A number with few decimals, for what is measured in seconds or as a mean.
-fn rounded(value: f64) -> String {
-    number((value * 1000.0).round() / 1000.0)
+/// Rounds to few decimals, for what is measured in seconds or as a mean.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
 }
 
 fn flag(is: bool) -> String {
@@ -180,7 +163,7 @@ fn score(scores: &[ForecastScore], horizon_days: u32) -> Option<&ForecastScore> 
 
 /// Names with numbers in one cell: `cash=12.5;overview=3`.
 fn pairs<N: AsRef<str>>(all: impl IntoIterator<Item = (N, f64)>) -> String {
-    let one = |(name, value): (N, f64)| format!("{}={}", name.as_ref(), rounded(value));
+    let one = |(name, value): (N, f64)| format!("{}={}", name.as_ref(), number(rounded(value)));
     all.into_iter().map(one).collect::<Vec<_>>().join(";")
 }
 
@@ -202,7 +185,7 @@ mod tests {
     #[test]
     fn names_are_there_once_and_every_column_is_explained() {
         for (table, columns) in headings() {
-            let names: BTreeSet<&str> = columns.iter().map(|column| column.name).collect();
+            let names: BTreeSet<&str> = columns.iter().map(|column| &*column.name).collect();
             assert_eq!(names.len(), columns.len(), "{table}");
             for Heading { name, unit, meaning } in columns {
                 assert!(!unit.is_empty() && meaning.len() > 5, "{table} {name}");

@@ -1,6 +1,7 @@
 //! Where a line stands: in which run, when, in which week, before or after the end.
 
-use super::{Heading, heading, rounded};
+use super::column::{Column, columns};
+use super::rounded;
 use crate::logbook::Logbook;
 use novamind_session::{Line, week_of};
 
@@ -15,30 +16,24 @@ pub(super) struct Placed<'a> {
     seconds: f64,
 }
 
-/// The columns that say it, the same in every table of lines.
-pub(super) const PLACE: [Heading; 7] = [
-    heading("run", "name", "name of the run"),
-    heading("participant", "label", "who played"),
-    heading("seq", "number", "number of the line in the trajectory, or in what was done after its end"),
-    heading("at", "RFC 3339", "when the line was written"),
-    heading("t", "seconds", "the same since the first line of the run, by the wall clock"),
-    heading(
-        "week",
-        "number",
-        "week that was being decided, from 1; of a closing line the week that it closes",
-    ),
-    heading("day", "day", "last simulated day"),
-];
+/// A row of a table of lines: a line with its place, and what else the table tells.
+pub(super) struct LineRow<'a, T> {
+    pub placed: &'a Placed<'a>,
+    pub own: T,
+}
 
-/// The columns of a table of lines: where they stand, and what else it tells.
-pub(super) const fn with_place<const ALL: usize>(own: &[Heading]) -> [Heading; ALL] {
-    let mut all = [PLACE[0]; ALL];
-    let mut at = 0;
-    while at < ALL {
-        all[at] = if at < PLACE.len() { PLACE[at] } else { own[at - PLACE.len()] };
-        at += 1;
-    }
-    all
+/// The columns of a table of lines: those of the place, the same in every such table, before its own.
+pub(super) fn with_place<'a, T>(own: Vec<Column<LineRow<'a, T>>>) -> Vec<Column<LineRow<'a, T>>> {
+    let place = columns! { row: LineRow<'a, T>;
+        "run", "name", "name of the run" => row.placed.run;
+        "participant", "label", "who played" => row.placed.participant;
+        "seq", "number", "number of the line in the trajectory, or in what was done after its end" => row.placed.line.seq;
+        "at", "RFC 3339", "when the line was written" => row.placed.line.at;
+        "t", "seconds", "the same since the first line of the run, by the wall clock" => rounded(row.placed.seconds);
+        "week", "number", "week that was being decided, from 1; of a closing line the week that it closes" => row.placed.week();
+        "day", "day", "last simulated day" => row.placed.line.day;
+    };
+    place.into_iter().chain(own).collect()
 }
 
 /// All lines of a run with their places.
@@ -60,19 +55,5 @@ impl Placed<'_> {
     pub fn week(&self) -> u32 {
         let is_closed = self.line.closes_days() || self.is_afterwards || self.line.record.kind() == "end";
         week_of(if is_closed { self.line.day } else { self.line.day + 1 })
-    }
-
-    /// Its row: the place, and more cells.
-    pub fn row<const MORE: usize>(&self, more: [String; MORE]) -> Vec<String> {
-        let place = [
-            self.run.to_owned(),
-            self.participant.to_owned(),
-            self.line.seq.to_string(),
-            self.line.at.clone(),
-            rounded(self.seconds),
-            self.week().to_string(),
-            self.line.day.to_string(),
-        ];
-        place.into_iter().chain(more).collect()
     }
 }

@@ -3,6 +3,8 @@
 //! All plays begin as the part does and go through the same doors, in memory. What was played is played once more, too: a
 //! difference is told only where that comes to the recorded cash of every day.
 
+use serde::{Serialize, Serializer};
+
 use std::thread;
 
 use super::decisions::{PartedDecision, WeekDecisions, parted};
@@ -80,7 +82,7 @@ impl Debrief {
 }
 
 /// A reference play.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceCurve {
     /// What it does, in words; none while a part of the lesson is to come, which they would give away.
     pub text: Option<String>,
@@ -149,7 +151,7 @@ impl DecisionEffect {
 }
 
 /// What the run would have come to with the decisions of the good play in one week, and all others as they were.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PartingEffect {
     /// The last day of both.
     pub day: u32,
@@ -158,22 +160,28 @@ pub struct PartingEffect {
     /// Cash with the decisions of the good play, dollars.
     pub with: f64,
     /// The same two of the figure that the part is judged by, where that is not cash.
+    #[serde(skip)]
     pub judged: Option<(f64, f64)>,
 }
 
 /// What was asked in a step, and what came of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DebriefStep {
     /// Its title.
     pub title: String,
     /// How often it was tried.
     pub tries: u32,
     /// Hints that were taken, and how many there are.
+    #[serde(serialize_with = "used_of")]
     pub hints: (usize, usize),
     /// The question, what was guessed and what came of it.
     pub question: Option<LessonQuestion>,
     /// What was to be reached.
     pub goals: Vec<GoalPage>,
+}
+
+fn used_of<S: Serializer>((used, of): &(usize, usize), serializer: S) -> Result<S::Ok, S::Error> {
+    serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
 impl Session {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::figures::journal::JournalEntry;
@@ -18,21 +19,42 @@ pub(super) struct WeekDecisions {
 }
 
 /// A tool with which something else was decided than in the good play.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PartedDecision {
     /// The tool.
     pub tool: ToolId,
     /// How.
+    #[serde(flatten)]
     pub difference: DecisionContrast,
 }
 
 /// How two plays differ in what one tool did.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum DecisionContrast {
-    /// Other settings hold: which, and their values in the own play and in the good one; null where there is none.
-    Settings(Vec<(String, Value, Value)>),
-    /// Other calls were made: the own ones, and those of the good play.
-    Calls(Vec<Value>, Vec<Value>),
+    /// Other settings hold.
+    Settings {
+        /// Those that differ.
+        settings: Vec<SettingContrast>,
+    },
+    /// Other calls were made.
+    Calls {
+        /// Arguments of the own calls.
+        own: Vec<Value>,
+        /// Arguments of the calls of the good play.
+        good: Vec<Value>,
+    },
+}
+
+/// A setting that differs between two plays.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SettingContrast {
+    /// Its name.
+    pub name: String,
+    /// Its value in the own play; null if it has none.
+    pub own: Value,
+    /// Its value in the good play; null if it has none.
+    pub good: Value,
 }
 
 impl WeekDecisions {
@@ -75,18 +97,22 @@ pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDec
         let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
         let value =
             |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
-        let differing: Vec<(String, Value, Value)> = names
+        let settings: Vec<SettingContrast> = names
             .into_iter()
-            .map(|name| (name.clone(), value(&own, name), value(&good, name)))
-            .filter(|(_, own, good)| !is_same(own, good))
+            .map(|name| SettingContrast {
+                name: name.clone(),
+                own: value(&own, name),
+                good: value(&good, name),
+            })
+            .filter(|setting| !is_same(&setting.own, &setting.good))
             .collect();
-        (!differing.is_empty())
-            .then_some(PartedDecision { tool: *tool, difference: DecisionContrast::Settings(differing) })
+        (!settings.is_empty())
+            .then_some(PartedDecision { tool: *tool, difference: DecisionContrast::Settings { settings } })
     });
     let done: BTreeSet<ToolId> = own.deeds.iter().chain(&good.deeds).map(|(tool, _)| *tool).collect();
     let deeds = done.into_iter().filter_map(|tool| {
         let (own, good) = (own.deeds_of(tool), good.deeds_of(tool));
-        (own != good).then_some(PartedDecision { tool, difference: DecisionContrast::Calls(own, good) })
+        (own != good).then_some(PartedDecision { tool, difference: DecisionContrast::Calls { own, good } })
     });
     settings.chain(deeds).collect()
 }
@@ -136,9 +162,10 @@ mod tests {
         let other =
             decided(&json!({"A": 12, "B": 30}), &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))]);
         let found = parted(&own, &other);
-        let b = ("B".to_owned(), json!(20), json!(30));
-        assert_eq!(found[0].difference, DecisionContrast::Settings(vec![b]));
-        assert_eq!(found[1].difference, DecisionContrast::Calls(Vec::new(), vec![json!({"deal_id": 4})]));
+        let b = SettingContrast { name: "B".to_owned(), own: json!(20), good: json!(30) };
+        assert_eq!(found[0].difference, DecisionContrast::Settings { settings: vec![b] });
+        let calls = DecisionContrast::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };
+        assert_eq!(found[1].difference, calls);
         let made = other.calls_of(&|tool| *tool == ToolId::SetPrices);
         assert_eq!(made, [(ToolId::SetPrices, json!({"A": 12, "B": 30}))]);
     }

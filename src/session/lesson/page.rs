@@ -1,5 +1,7 @@
 //! What a student sees of a lesson: the task, the goals with what they stand at, hints, pitfalls.
 
+use serde::Serialize;
+
 use super::debrief::DebriefStep;
 use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
@@ -53,7 +55,7 @@ pub struct LessonPage {
 }
 
 /// The question of a step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LessonQuestion {
     /// The question.
     pub text: String,
@@ -66,11 +68,12 @@ pub struct LessonQuestion {
     /// What came of it, once that is known.
     pub outcome: Option<f64>,
     /// Whether that is told at the end of the part, and not of the step.
+    #[serde(skip)]
     pub told_at_end: bool,
 }
 
 /// A goal and what it stands at.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoalPage {
     /// Its text.
     pub text: String,
@@ -79,10 +82,13 @@ pub struct GoalPage {
     /// What is to be reached; none where it is relative to the good play, and not judged yet.
     pub bound: Option<f64>,
     /// Whether the least is wanted.
+    #[serde(skip)]
     pub wants_least: bool,
     /// What share of the good play's value is to be reached, where it is relative to that.
+    #[serde(skip)]
     pub of_good_play: Option<f64>,
     /// Whether it counts dollars.
+    #[serde(skip)]
     pub in_dollars: bool,
     /// Whether it was reached, once it is judged.
     pub met: Option<bool>,

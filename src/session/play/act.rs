@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::irrevocable::Irrevocable;
@@ -23,7 +24,7 @@ use novamind_world::settings::Settings;
 use novamind_world::state::World;
 
 /// What a call would do.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preview {
     /// Tool.
     pub tool: ToolId,

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use serde::Serialize;
 use serde_json::Value;
 
 use super::act::not_saved;
@@ -16,7 +17,7 @@ use novamind_tools::{Kind, Refusal};
 use novamind_world::params::{ParameterError, Params};
 
 /// A parameter whose value is, or will be, another than that of the scenario.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameter {
     /// Full key.
     pub key: String,
@@ -29,7 +30,7 @@ pub struct ChangedParameter {
 }
 
 /// What differs from the scenario of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameters {
     /// What the values are held against: a shipped scenario, or none: the start of the run.
     pub scenario: Option<String>,

@@ -1,5 +1,7 @@
 //! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
 
+use serde::Serialize;
+
 use crate::canonical::canonical;
 use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
@@ -116,7 +118,7 @@ pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
 }
 
 /// What the change of a group does to another one that is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spill {
     /// The group that changed.
     pub from: Group,

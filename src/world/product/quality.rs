@@ -1,5 +1,7 @@
 //! Delivered and perceived quality, one function per term (`docs/mechanics/product/quality.md`).
 
+use serde::Serialize;
+
 use crate::fault::Fault;
 use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
@@ -68,7 +70,7 @@ pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
 }
 
 /// What a customer experiences, term by term.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Experience {
     /// Delivered quality less the service penalty where that counts.
     pub delivered: f64,

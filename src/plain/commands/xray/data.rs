@@ -1,11 +1,22 @@
 //! What the x-ray shows, as data.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
-use novamind_insight::{
-    CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor, PlanTerms, Weighed,
-};
-use novamind_session::identifiers::Plan;
+use novamind_insight::{CompanyDay, CompanyLens, CustomerDay, CustomerLens, LeadEquation, LeadFactor};
+use novamind_session::identifiers::{ByPlan, Plan};
+
+/// What holds for a plan, after its name.
+#[derive(Serialize)]
+struct OfPlan<'a, T> {
+    plan: Plan,
+    #[serde(flatten)]
+    own: &'a T,
+}
+
+fn by_plan<T>(plans: &ByPlan<T>) -> [OfPlan<'_, T>; 3] {
+    Plan::ALL.map(|plan| OfPlan { plan, own: &plans[plan] })
+}
 
 pub(super) fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
     let factors = LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(own.factor(factor))));
@@ -26,15 +37,6 @@ pub(super) fn leads_as_data(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> V
 }
 
 pub(super) fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
-    let plan = |weighed: &Weighed, plan: Plan| {
-        let PlanTerms { price, experience, quality, required, surplus, within_budget } = weighed.plans[plan];
-        json!({
-            "plan": plan.id(), "price": price, "delivered": experience.delivered,
-            "relationship": experience.relationship, "tenure": experience.tenure, "quota": experience.quota,
-            "issues": experience.issues, "ads": experience.ads, "quality": quality, "required": required,
-            "surplus": surplus, "within_budget": within_budget,
-        })
-    };
     let day = |own: &CustomerDay| {
         json!({
             "day": own.day,
@@ -45,7 +47,7 @@ pub(super) fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
             "relationship": own.relationship,
             "open_issue_days": own.open_issue_days,
             "choice": own.weighed.choice.map(Plan::id),
-            "plans": Plan::ALL.map(|own_plan| plan(&own.weighed, own_plan)),
+            "plans": by_plan(&own.weighed.plans),
         })
     };
     json!({
@@ -61,14 +63,6 @@ pub(super) fn customer_as_data(lens: &CustomerLens, headline: &str) -> Value {
 
 pub(super) fn company_as_data(lens: &CompanyLens) -> Value {
     let thread = |own: &CompanyDay| {
-        let plan = |plan: Plan| {
-            let judged = own.plans[plan];
-            json!({
-                "plan": plan.id(), "quality": judged.quality, "quality_if_answered": judged.quality_if_answered,
-                "accepts_below": judged.accepts_below, "accepts_any_price": judged.accepts_any_price,
-                "would_name": judged.counter,
-            })
-        };
         json!({
             "thread": own.thread,
             "kind": own.kind.id(),
@@ -77,7 +71,7 @@ pub(super) fn company_as_data(lens: &CompanyLens) -> Value {
             "relationship": own.relationship,
             "late_penalty": own.late_penalty,
             "reply_day": own.reply_day,
-            "plans": Plan::ALL.map(plan),
+            "plans": by_plan(&own.plans),
         })
     };
     json!({

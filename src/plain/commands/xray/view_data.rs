@@ -3,11 +3,11 @@
 use serde_json::{Map, Value, json};
 
 use novamind_insight::{
-    Departures, DriftState, Follows, GroupDrifted, KeyedDraws, MoodTerm, NextDraws, NextRivalMove, OwnChange,
+    DriftState, Follows, GroupDrifted, KeyedDraws, MoodTerm, NextDraws, NextRivalMove, OwnChange,
     PlanDelivered, QualityEquation, ReputationEquation, RivalState, SatisfactionEquation, Spillover,
 };
+use novamind_session::RivalEvent;
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{RivalEvent, Spill};
 
 pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
     let plan = |plan: Plan| {
@@ -25,10 +25,7 @@ pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
         "own": own.own,
         "plans": Plan::ALL.map(plan),
         "service_penalty": own.service_penalty,
-        "gains": {
-            "opening": own.gains.opening, "research": own.gains.research,
-            "development": own.gains.development, "noise": own.gains.noise,
-        },
+        "gains": own.gains,
         "banks": {"shared": own.shared_bank, "own": own.own_bank},
         "expectation": {
             "everyone": own.everyone, "quality": own.expectation.quality, "budget": own.expectation.c_max,
@@ -58,20 +55,8 @@ pub(super) fn satisfaction_as_data(own: &SatisfactionEquation) -> Value {
     })
 }
 
-fn departures(own: &Departures) -> Value {
-    json!({"count": own.count, "change": own.change})
-}
-
 fn contribution(own: &OwnChange) -> Value {
     json!({"subscribers": own.subscribers, "called": own.called, "counts": own.counts, "change": own.made()})
-}
-
-fn spill(own: &Spill) -> Value {
-    json!({
-        "from": own.from.id(), "to": own.to.id(), "source_change": own.source_change, "weight": own.weight,
-        "factor": own.factor, "change": own.change,
-        "counts": own.counts,
-    })
 }
 
 pub(super) fn reputation_as_data(own: &ReputationEquation) -> Value {
@@ -79,10 +64,10 @@ pub(super) fn reputation_as_data(own: &ReputationEquation) -> Value {
         "group": own.group.id(),
         "day": own.day,
         "before": own.before,
-        "cancellations": departures(&own.gave_up),
-        "lost_companies": departures(&own.lost),
+        "cancellations": own.gave_up,
+        "lost_companies": own.lost,
         "own": contribution(&own.own),
-        "spills": own.spills.iter().map(spill).collect::<Vec<_>>(),
+        "spills": own.spills,
         "bounds": own.bounds,
         "after": own.after,
         "least_own_change": own.least.own,
@@ -95,7 +80,7 @@ pub(super) fn spillover_as_data(own: &Spillover) -> Value {
     json!({
         "day": own.day,
         "own": Value::Object(own.known.iter().map(of).collect()),
-        "spills": own.spills.iter().map(spill).collect::<Vec<_>>(),
+        "spills": own.spills,
         "least_own_change": own.least.own,
         "least_spill": own.least.spill,
     })

@@ -1,0 +1,88 @@
+//! Columns of tables. Each column is declared once: headers, rows and the codebook follow from the declaration.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+/// The name of a column, and the unit and meaning of its values.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Heading {
+    /// Name, as in the header line.
+    pub name: Cow<'static, str>,
+    /// Unit or kind of the values.
+    pub unit: &'static str,
+    /// What the values mean.
+    pub meaning: &'static str,
+}
+
+/// A column of a table whose rows are `Row`s.
+pub(crate) struct Column<Row> {
+    /// Name, unit and meaning.
+    pub heading: Heading,
+    /// Returns the cell of a row.
+    pub cell: Box<dyn Fn(&Row) -> String>,
+}
+
+impl<Row> Column<Row> {
+    /// Declares a column whose cells `cell` returns.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        meaning: &'static str,
+        cell: impl Fn(&Row) -> String + 'static,
+    ) -> Column<Row> {
+        Column { heading: Heading { name: name.into(), unit, meaning }, cell: Box::new(cell) }
+    }
+}
+
+/// Declares the columns of a table: `name, unit, meaning => value;`, where the value is an expression of the row.
+macro_rules! columns {
+    ($row:ident: $Row:ty; $($name:expr, $unit:literal, $meaning:expr => $value:expr;)*) => {
+        vec![$($crate::tables::column::Column::<$Row>::new($name, $unit, $meaning, move |$row| {
+            let _ = $row;
+            $crate::tables::column::Value::cell(&$value)
+        })),*]
+    };
+}
+
+pub(crate) use columns;
+
+/// A value of a cell.
+pub(crate) trait Value {
+    /// Returns the cell: texts as they are, flags as 0 and 1, numbers in the shortest form that reads back to the same one,
+    /// nothing for no value.
+    fn cell(&self) -> String;
+}
+
+impl<T: Value> Value for Option<T> {
+    fn cell(&self) -> String {
+        self.as_ref().map(Value::cell).unwrap_or_default()
+    }
+}
+
+impl<T: Value + ?Sized> Value for &T {
+    fn cell(&self) -> String {
+        (*self).cell()
+    }
+}
+
+macro_rules! values {
+    ($($kind:ty: $cell:expr;)*) => {
+        $(impl Value for $kind {
+            fn cell(&self) -> String {
+                $cell(self)
+            }
+        })*
+    };
+}
+
+values! {
+    str: str::to_owned;
+    String: String::clone;
+    bool: |own: &bool| super::flag(*own);
+    f64: |own: &f64| super::number(*own);
+    u8: u8::to_string;
+    u32: u32::to_string;
+    u64: u64::to_string;
+    usize: usize::to_string;
+}

@@ -10,8 +10,8 @@
 //! * Mechanisms push facts ([`world::events`]); `database` turns them into rows, `voice` some into words.
 //! * A tool is data ([`tools::Spec`]) and a pure plan. A call is planned, its line is on the disk, then it is applied,
 //!   which cannot fail: memory is never ahead of the trajectory, the trajectory never ahead of what was confirmed.
-//! * What a player may see is decided in `database` and in tool answers; hidden state leaves `world` only through
-//!   the x-ray of `session`, in debug runs and once a run is over.
+//! * What a player may see is decided in `database` and in tool answers; hidden state leaves a
+//!   session only through a [`session::Look`], in debug runs and once a run is over.
 //! * Numbers live in `configs/`; a scenario overrides some of them.
 //! * Chance is keyed, not stateful ([`world::random`]): same version, seed and actions give the same bits on any number
 //!   of threads and any machine.

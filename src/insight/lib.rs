@@ -1,8 +1,7 @@
-//! What lies behind a run: why its figures changed, what would have been under other decisions, the curve that customers decide
-//! by, and its hidden state.
+//! Simulated explanations of a run: why its figures changed, the results of other decisions, the participation curve of a group,
+//! and hidden state.
 //!
-//! Whatever is told here was simulated, so each answer asks first who may see it: hidden state is seen through looks of the
-//! session, which are refused or recorded.
+//! Every answer checks first who may see it. Hidden state comes from looks of the session, which are refused or recorded.
 
 mod counterfactual;
 mod curve;

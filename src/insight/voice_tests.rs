@@ -1,4 +1,4 @@
-//! What a language model said of posts is taken as it was where their run is simulated again.
+//! Tests that a run is simulated again with the recorded scores of its language model.
 
 use std::path::Path;
 

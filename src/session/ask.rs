@@ -190,7 +190,7 @@ pub fn query_refusal(error: QueryError) -> Refusal {
     Refusal::new(error.code, message)
 }
 
-/// What says that a record cannot be read.
+/// The refusal for a record that cannot be read.
 pub fn not_readable(error: &RunError) -> Refusal {
     Refusal::new("not_readable", error.to_string())
 }

@@ -180,10 +180,10 @@ impl Session {
         }
     }
 
-    /// Begins a run that is described already, in memory and without a database.
+    /// Begins the run of a manifest in memory, without a database.
     ///
     /// # Errors
-    /// The parameters of the run are none of this program.
+    /// The program cannot use the parameters of the manifest.
     pub fn begin_in_memory(manifest: Manifest) -> Result<Session, RunError> {
         let params = manifest.params()?;
         let new = NewRun { projection: false, sync_calls: false, ..NewRun::default() };

@@ -142,7 +142,8 @@ pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::market::surges::Surge;
 pub use novamind_world::settings::{CoreSettings, Settings};
 
-/// What the days of a recorded run are simulated again with: for novamind-insight alone, which says who may see what comes of it.
+/// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the
+/// results.
 pub mod engine {
     pub use crate::figures::capacity_by_usage::UsageRule;
     pub use crate::figures::changes::changes;

@@ -65,7 +65,7 @@ pub struct Session {
     pub(super) seal_key: SealKey,
     /// It is a run simulated again beside one that may be looked into: its days are told with their hidden state.
     pub(super) is_shadow: bool,
-    /// What is kept for those who look inside.
+    /// A value that a higher crate keeps with the run.
     pub(super) companion: Companion,
     /// The lesson that it belongs to, and how it went; none outside lessons.
     pub(super) lesson: Option<Box<LessonStanding>>,
@@ -167,7 +167,7 @@ impl Session {
         &self.simulation.names
     }
 
-    /// Which customers their numbers mean.
+    /// The customers that customer numbers refer to.
     pub fn customer_numbers(&self) -> &CustomerNumbers {
         &self.simulation.world.customers.numbers
     }

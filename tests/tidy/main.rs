@@ -192,6 +192,21 @@ fn the_simulator_knows_no_clock_no_files_and_no_order_of_chance() {
     assert_none(&complaints);
 }
 
+/// Simulating recorded days shows hidden state. The crate that does it checks who may see the result.
+#[test]
+fn only_insight_imports_the_engine_of_sessions() {
+    let complaint = |line: &str| {
+        let imports = ["engine::", "::engine", "engine,", "engine}"].iter().any(|path| line.contains(path));
+        imports.then(|| "it imports the engine of sessions".to_owned())
+    };
+    let (insight, others): (Vec<Source>, Vec<Source>) = sources()
+        .into_iter()
+        .filter(|file| file.house() != "session")
+        .partition(|file| file.house() == "insight");
+    assert!(insight.iter().any(|file| !file.complaints(complaint).is_empty()), "imports are found");
+    assert_none(&others.iter().flat_map(|file| file.complaints(complaint)).collect::<Vec<String>>());
+}
+
 #[test]
 fn only_the_command_line_prints() {
     let complaint = |line: &str| {

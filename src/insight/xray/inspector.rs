@@ -1,4 +1,4 @@
-//! Looking inside a run: what was seen of its days is kept with it, so that the next look begins with it.
+//! Questions about the hidden state of a run. What they simulated is kept with the run and used by the next question.
 
 use std::sync::Arc;
 
@@ -8,28 +8,28 @@ use super::hidden_tables::HiddenTables;
 use novamind_session::{Look, Session, Shadow};
 use novamind_tools::Refusal;
 
-/// What those who look inside a run keep with it.
+/// What questions about hidden state keep with a run.
 #[derive(Default)]
 pub(super) struct Observations {
-    /// The run again, watched from within; none before somebody looks.
+    /// The copy that simulates the days again; `None` before the first question.
     pub(super) shadow: Option<Shadow>,
-    /// What was seen of its days.
+    /// The hidden state of its days.
     pub(super) diary: Arc<Diary>,
-    /// Conditions at which it stops.
+    /// Conditions at which the run stops.
     pub(super) breakpoints: Breakpoints,
-    /// The hidden tables; none before somebody asks them.
+    /// The hidden tables; `None` before the first query.
     pub(super) hidden_tables: Option<HiddenTables>,
 }
 
-/// Somebody who looks inside a run.
+/// Answers questions about the hidden state of a run. Each question is refused, or recorded before it is answered.
 pub struct Inspector<'a> {
     pub(super) run: &'a mut Session,
     pub(super) own: Box<Observations>,
 }
 
-/// What can be looked into.
+/// A run whose hidden state can be inspected.
 pub trait Inspect {
-    /// Looks inside: each question is refused, or recorded before it is answered.
+    /// Returns an inspector of the run.
     fn inspect(&mut self) -> Inspector<'_>;
 }
 

@@ -1,4 +1,4 @@
-//! A look: hidden state is seen through one, and there is none that was not allowed and recorded.
+//! Looks: hidden state is shown only through a look, which exists only after it was permitted and recorded.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,9 +18,11 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// A look inside that was allowed and recorded.
+/// A look at the hidden state of a run that was permitted and recorded.
 #[derive(Debug)]
 pub struct Look {
+    /// Identifier of the run.
+    run: String,
     day: u32,
 }
 
@@ -32,22 +34,29 @@ impl Look {
 
     /// The hidden state of the run as it stands.
     pub fn inside<'a>(&self, run: &'a Session) -> Xray<'a> {
+        self.assert_is_of(run);
         Xray::new(run)
     }
 
-    /// The run again, before its first line and watched.
+    /// A copy of the run before its first line, which passes its days to a watch.
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
     pub fn shadow(&self, run: &Session, watch: Arc<dyn DayWatch>) -> Result<Shadow, Refusal> {
+        self.assert_is_of(run);
         Shadow::of(run, watch)
     }
 
-    /// Shows somebody the days of the run up to one of them, and at most to the end of its week.
+    fn assert_is_of(&self, run: &Session) {
+        debug_assert_eq!(self.run, run.manifest.id, "a look shows the run that recorded it");
+    }
+
+    /// Simulates the days of the run again up to a day, at most to the end of its week, and passes them to a watch.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
     pub fn watch_up_to(&self, run: &Session, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), Refusal> {
+        self.assert_is_of(run);
         watch_up_to(run, day, watch)
     }
 
@@ -57,7 +66,7 @@ impl Look {
     /// `not_possible`, `not_readable`.
     pub fn world_on(&self, run: &Session, day: u32) -> Result<World, Refusal> {
         let evening = Arc::new(Evening { day, world: Mutex::default() });
-        watch_up_to(run, day, evening.clone())?;
+        self.watch_up_to(run, day, evening.clone())?;
         let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
         world.ok_or_else(|| Refusal::new("not_readable", format!("the record does not lead to day {day}")))
     }
@@ -67,17 +76,17 @@ fn watch_up_to(run: &Session, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), 
     Shadow::of(run, watch)?.lead(run, |reached| reached < day, &mut |_| {})
 }
 
-/// Days that run while somebody watches them.
+/// Days to simulate, and the watch that receives them.
 pub struct WatchedDays<'a> {
-    /// How many.
+    /// Number of days.
     pub days: u32,
-    /// Who watches them.
+    /// Receives the days.
     pub watch: Arc<dyn DayWatch>,
-    /// Whether the days that are over are shown to it first.
+    /// Whether the watch receives the past days first.
     pub shows_past: bool,
-    /// Whether to go on after a day.
+    /// Returns whether to continue after a day.
     pub goes_on: &'a dyn Fn(u32) -> bool,
-    /// What is recorded afterwards: what was looked for, and which ones.
+    /// The looks to record afterwards: their kind, and what each shows.
     pub looks: (&'a str, Vec<String>),
 }
 
@@ -92,7 +101,7 @@ impl Session {
         self.record_look_inside(what, which, day)
     }
 
-    /// Begins a look at the run as it stands, on whatever day that is.
+    /// Begins a look at the current state of the run. `shown_day` is the day that the record names.
     ///
     /// # Errors
     /// `not_in_this_mode`, `read_only`, `not_saved`.
@@ -145,7 +154,7 @@ impl Session {
         let line = Record::Activity(Activity::Xray(look));
         let appended = self.append(&line, Durability::Synced);
         appended.map_err(|error| Refusal::new("not_saved", error.to_string()))?;
-        Ok(Look { day: shown_day })
+        Ok(Look { run: self.manifest.id.clone(), day: shown_day })
     }
 
     /// The day that is asked for; the last one if none is.
@@ -162,7 +171,7 @@ impl Session {
         }
     }
 
-    /// A connection that knows the hidden tables, which are empty on it, to a database that is complete.
+    /// Opens a connection to the database on which the hidden tables exist and are empty.
     ///
     /// # Errors
     /// `not_in_this_mode`; the run has no database.
@@ -172,8 +181,8 @@ impl Session {
         self.projection.open_connection(Scope::Hidden)
     }
 
-    /// Simulates days of a debug run while somebody watches, at least one; that they go on says as much as that they stop, so
-    /// each thing that was looked for is a look of the last day. Without any, nobody watches.
+    /// Simulates at least one day of a debug run and passes the days to a watch. Both continuing and stopping show hidden state, so
+    /// each of the looks is recorded on the last day. If there are no looks, the watch receives nothing.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
@@ -202,7 +211,7 @@ impl Session {
         Ok(week)
     }
 
-    /// Steps over as many weeks as it takes to a day, as long as it is to go on.
+    /// Steps over weeks up to a day, as long as `goes_on` returns true.
     fn step_on(
         &mut self,
         until: u32,

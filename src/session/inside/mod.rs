@@ -1,6 +1,6 @@
-//! The one way out of hidden state: who may look inside a run, what a look leaves behind, and what it then sees.
+//! The only access to hidden state: who may inspect a run, the record of each look, and what a look shows.
 //!
-//! Whatever shows hidden state needs a [`Look`](look::Look), which exists only once the look was allowed and recorded.
+//! Every function that shows hidden state needs a [`Look`](look::Look). A look exists only after it was permitted and recorded.
 
 pub(crate) mod companion;
 pub(crate) mod last_day;

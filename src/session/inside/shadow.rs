@@ -1,4 +1,4 @@
-//! A run that is simulated again beside itself and watched.
+//! A copy of a run that simulates its recorded days again for a watch.
 
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use novamind_record::trajectory::Trajectory;
 use novamind_tools::Refusal;
 use novamind_world::day::watch::DayWatch;
 
-/// A run that is simulated again beside itself and watched.
+/// A copy of a run that simulates its recorded days again for a watch.
 pub struct Shadow(Box<Session>);
 
 impl Shadow {
-    /// Of a run, before its first line.
+    /// A copy of a run before its first line.
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
@@ -29,8 +29,8 @@ impl Shadow {
         Ok(Shadow(Box::new(shadow)))
     }
 
-    /// Applies the lines of the run that it lacks, at most up to the one at which the run stands, while it is to go on after
-    /// the day it has reached; each has to lead to what it records. Tells of each day.
+    /// Applies the lines of the run that the copy lacks, up to the current line of the run, while `goes_on` returns true for
+    /// the day it has reached. Each line must lead to the state that it records. Calls `tell` for each day.
     ///
     /// # Errors
     /// `not_readable`.

@@ -49,7 +49,7 @@ impl Session {
             .collect()
     }
 
-    /// Takes posts that are written again as they were judged before.
+    /// Uses recorded scores for posts that are published again.
     pub fn inherit_scores(&mut self, judged: Vec<JudgedPost>) {
         self.voice.inherited = judged;
     }

@@ -36,7 +36,7 @@ pub struct Stub {
 }
 
 impl Stub {
-    /// A model that answers so, on a port of its own.
+    /// Starts a model that answers in a manner, on its own port.
     pub fn start(manner: Manner) -> Stub {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();

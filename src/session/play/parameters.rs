@@ -202,12 +202,12 @@ fn in_words(error: &ParameterError) -> String {
     format!("{}: {}", error.key, error.problem)
 }
 
-/// There is no such parameter.
+/// The refusal for a parameter that does not exist.
 pub fn unknown(error: ParameterError) -> Refusal {
     Refusal::at(error.key, "parameter_unknown", error.problem)
 }
 
-/// A parameter may not have this value.
+/// The refusal for a value that a parameter cannot have.
 pub fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
     let message = match day {
         None => error.problem,

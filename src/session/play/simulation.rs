@@ -107,12 +107,12 @@ impl Simulation {
         }
     }
 
-    /// Takes in what a language model made of the player's posts.
+    /// Adds recorded scores of the player's posts.
     pub fn take_scores(&mut self, judged: &[JudgedPost]) {
         judged.iter().for_each(|own| self.scores.take_in(own.clone()));
     }
 
-    /// Begins the hashes of the facts of a new week.
+    /// Ends the chain of facts of a week.
     pub fn close_facts(&mut self) {
         self.facts_chain.close();
     }

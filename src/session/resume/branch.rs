@@ -59,7 +59,7 @@ impl Session {
     }
 }
 
-/// What says that the disk refuses.
+/// The refusal for a write that failed.
 pub fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }

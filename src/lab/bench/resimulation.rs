@@ -66,7 +66,7 @@ fn ask(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
 
 /// Seconds until it is known why the cancellations of the last week changed.
 fn why(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
-    let folder = folder_of_causes(&session)?;
+    let folder = folder_of_causes(session)?;
     let once = |_| {
         let started = Instant::now();
         let asked =

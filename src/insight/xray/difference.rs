@@ -140,7 +140,7 @@ impl Inspector<'_> {
     /// both.
     ///
     /// # Errors
-    /// As [`Session::difference_of_days`]; the refusal of either run.
+    /// As [`Inspector::difference_of_days`]; the refusal of either run.
     pub fn difference_to(&mut self, other: &mut Session, day: Option<u32>) -> Result<RunDifference, Refusal> {
         let run = &mut *self.run;
         run.refuse_to_look_inside()?;

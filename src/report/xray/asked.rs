@@ -157,8 +157,12 @@ impl AskedWords {
     /// Answers. A look is recorded, and so is what is set.
     ///
     /// # Errors
-    /// Those of [`Session::find_days`], [`Session::who_writes`], [`Session::difference_of_days`], [`Session::parameter`] and
-    /// [`Session::set_parameter`].
+    /// Those of [`Inspector::find_days`], [`Inspector::who_writes`], [`Inspector::difference_of_days`],
+    /// [`Session::parameter`] and [`Session::set_parameter`].
+    ///
+    /// [`Inspector::find_days`]: novamind_insight::Inspector::find_days
+    /// [`Inspector::who_writes`]: novamind_insight::Inspector::who_writes
+    /// [`Inspector::difference_of_days`]: novamind_insight::Inspector::difference_of_days
     pub fn answer(&self, session: &mut Session) -> Result<WordsFound, Refusal> {
         let today = session.day();
         match self {

@@ -14,7 +14,7 @@ fn asked(text: &str) -> WeekQuestion {
 }
 
 fn why(session: &Session, text: &str) -> Result<Why, Refusal> {
-    let mut causes = Causes::read(&folder_of_causes(&session)?)?;
+    let mut causes = Causes::read(&folder_of_causes(session)?)?;
     Ok(causes.why(asked(text), &|_| ControlFlow::Continue(()))?.expect("it is not stopped"))
 }
 

@@ -288,7 +288,7 @@ fn the_tree_names_a_decision_that_a_branch_leaves_out() {
 
 fn adopted(session: &Session, week: u32, alternative: &[&str]) -> Session {
     let go_on = &mut |_| ControlFlow::Continue(());
-    let adopted = branch_with_decisions(&session, week, &edits(alternative), Mode::Debug, go_on);
+    let adopted = branch_with_decisions(session, week, &edits(alternative), Mode::Debug, go_on);
     let Adopted { session, refused } = adopted.expect("a branch");
     assert_eq!(refused, []);
     session

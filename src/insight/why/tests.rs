@@ -26,7 +26,7 @@ fn group(figure: WeekFigure, id: &str) -> WeekQuantity {
 }
 
 fn causes_of(session: &Session) -> Causes {
-    Causes::read(&folder_of_causes(&session).expect("a folder")).expect("causes")
+    Causes::read(&folder_of_causes(session).expect("a folder")).expect("causes")
 }
 
 fn why(session: &Session, quantity: WeekQuantity) -> Why {

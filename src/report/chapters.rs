@@ -3,8 +3,7 @@
 use serde_json::Value;
 
 use super::words::number;
-use novamind_session::ToolId;
-use novamind_session::{Change, Decisions, JournalEntry, WeekFigures, week_of};
+use novamind_session::{Change, Decisions, JournalEntry, ToolId, WeekFigures, week_of};
 
 /// Weeks that began with the same decision: the first of them decided, the others let it stand.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,6 +13,7 @@ use super::code::CodeCheck;
 use super::keys::seal_key_of;
 use super::questions::Questionnaire;
 use novamind_record::error::RunError;
+use novamind_record::folder::configuration::CONSENT_FILE;
 use novamind_record::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_record::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 use novamind_record::trajectory::record::Activity;
@@ -22,8 +23,6 @@ use novamind_world::params::ParameterError;
 
 /// Name of the file that makes a folder a study.
 pub const STUDY_FILE: &str = "study.toml";
-/// Name of the text that participants agree to.
-pub const CONSENT_FILE: &str = "consent.md";
 
 /// A study that was read from its folder.
 #[derive(Debug, Clone, PartialEq)]

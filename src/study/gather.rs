@@ -12,8 +12,7 @@ use crate::visit_log::{VISITS, VisitEvent, VisitLine, visits};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Trajectory, nanoseconds};
-use novamind_session::lines_afterwards;
-use novamind_session::{LabPublicKey, import_run, is_archive_name};
+use novamind_session::{LabPublicKey, import_run, is_archive_name, lines_afterwards};
 
 /// How deep folders are searched.
 const DEEPEST: usize = 12;

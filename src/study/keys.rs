@@ -5,8 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use novamind_record::error::RunError;
-use novamind_session::SealKey;
-use novamind_session::{LabKey, LabPublicKey, read_seal_key, write_seal_key};
+use novamind_session::{LabKey, LabPublicKey, SealKey, read_seal_key, write_seal_key};
 
 /// File of the private key.
 pub const LAB_KEY_FILE: &str = "lab.key";

@@ -10,16 +10,13 @@ use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::consent::Agreed;
-use novamind_record::folder::consent::ConsentText;
+use novamind_record::folder::consent::{Agreed, ConsentText};
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
 use novamind_record::stamp::StudyStamp;
-use novamind_session::Access;
-use novamind_session::Session;
-use novamind_session::{NewRun, Storage, StudyEntry};
+use novamind_session::{Access, NewRun, Session, Storage, StudyEntry};
 
 /// What is kept of a participant who does not agree.
 pub const DECLINED: &str = "You did not agree. Kept: your label, with when you came and that you did not agree. Nothing else was \
@@ -257,7 +254,12 @@ impl Visit {
     }
 
     fn consent_text(&self) -> Option<ConsentText> {
-        let file = self.study.folder.join(super::definition::CONSENT_FILE).display().to_string();
+        let file = self
+            .study
+            .folder
+            .join(novamind_record::folder::configuration::CONSENT_FILE)
+            .display()
+            .to_string();
         self.study.consent.clone().map(|text| ConsentText { file, text })
     }
 

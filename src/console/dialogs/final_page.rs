@@ -21,8 +21,7 @@ use novamind_tui::text::{fitting, wrapped};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
-use novamind_worker::request::Recorded;
-use novamind_worker::request::Request;
+use novamind_worker::request::{Recorded, Request};
 
 /// Widest that reads well.
 const WIDEST: u16 = 124;

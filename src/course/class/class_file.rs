@@ -11,8 +11,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::durable::{create_folder, write_whole};
 use novamind_record::stamp::HandoutStamp;
 use novamind_record::trajectory::now;
-use novamind_session::Lesson;
-use novamind_session::new_id;
+use novamind_session::{Lesson, new_id};
 
 /// Name of the file in the folder of the class.
 const CLASS_FILE: &str = "class.toml";

@@ -15,9 +15,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::durable::write_whole;
 use novamind_record::folder::manifest::Manifest;
-use novamind_session::AnswersCompanies;
-use novamind_session::Lesson;
-use novamind_session::Workshop;
+use novamind_session::{AnswersCompanies, Lesson, Workshop};
 use novamind_study::{CollectNote, FoundRun, gather};
 
 /// Name of the file in the folder of the class.

@@ -9,16 +9,10 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::GuessForm;
-use novamind_session::Integrity;
-use novamind_session::Lesson;
-use novamind_session::LessonStanding;
-use novamind_session::Measurement;
-use novamind_session::SealKey;
-use novamind_session::Session;
-use novamind_session::WeekFigure;
-use novamind_session::read_recorded;
-use novamind_session::setting_values;
+use novamind_session::{
+    GuessForm, Integrity, Lesson, LessonStanding, Measurement, SealKey, Session, WeekFigure, read_recorded,
+    setting_values,
+};
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -11,9 +11,7 @@ use novamind_record::rules::SessionRules;
 use novamind_record::stamp::HandoutStamp;
 use novamind_record::trajectory::record::Parent;
 use novamind_record::trajectory::{Line, Record, Trajectory, now};
-use novamind_session::Workshop;
-use novamind_session::verify;
-use novamind_session::write_past;
+use novamind_session::{Workshop, verify, write_past};
 
 /// A run that can be handed out.
 pub(super) struct HandedPast {

@@ -7,10 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
 use novamind_record::error::RunError;
-use novamind_session::AnswersCompanies;
-use novamind_session::Lesson;
-use novamind_session::{GoalBound, LessonPart};
-use novamind_session::{PartPlay, play_part};
+use novamind_session::{AnswersCompanies, GoalBound, Lesson, LessonPart, PartPlay, play_part};
 
 /// The good play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -13,8 +13,7 @@ use novamind_session::engine::{
     ParameterChange, Projection, Simulation, StateHash, Taken, count_groups, not_allowed, value_of_json,
 };
 use novamind_session::{GroupWeek, MeasuredGroup, WeekFigures};
-use novamind_tools::bounds;
-use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View};
+use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View, bounds};
 use novamind_world::command::Command;
 use novamind_world::events::{DayFigures, LedgerEntry};
 use novamind_world::identifiers::ByGroup;

@@ -14,7 +14,7 @@ use crate::rules::{ResultsShown, SessionRules};
 use crate::stamp::HandoutStamp;
 use crate::stamp::LessonStamp;
 use crate::stamp::{EarlierRun, StudyStamp};
-use crate::trajectory::record::Parent;
+use crate::trajectory::record::{Parent, first_mechanics};
 use crate::trajectory::{Line, Record};
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::MECHANICS;
@@ -86,10 +86,6 @@ pub struct Manifest {
     /// Every parameter that differs from the shipped ones.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub parameters: Table,
-}
-
-fn first_mechanics() -> u32 {
-    1
 }
 
 impl Manifest {

@@ -11,8 +11,7 @@ use super::words::finding_in_words;
 use super::{ClassView, RunVerdict};
 use crate::html::STYLE;
 use crate::words::{count, money};
-use novamind_base::notation::escaped_html;
-use novamind_base::notation::percent;
+use novamind_base::notation::{escaped_html, percent};
 
 /// What the page has besides the style of every report.
 const OWN_STYLE: &str = include_str!("../../../assets/class.css");

@@ -14,11 +14,10 @@ mod tests;
 
 use serde_json::Value;
 
-use novamind_session::ToolId;
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{
-    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolLimits,
-    WeekFigures,
+    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolId,
+    ToolLimits, WeekFigures,
 };
 
 /// What is wrong. Of two needs with the same money at risk the one that stands first here comes first.

@@ -6,9 +6,8 @@ use super::{AHEAD, MONTH, Need, Place, Problem, Situation, rounded_up};
 use crate::fit::TruthRange;
 use crate::words::{count, money, whole};
 use novamind_base::notation::{cents, json_number, percent};
-use novamind_session::ToolId;
 use novamind_session::identifiers::{Channel, Group, Plan};
-use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek, ToolId};
 
 /// Leads of a week from which on it counts how few sign.
 const ENOUGH_LEADS: u32 = 20;

@@ -6,9 +6,7 @@ use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
 use crate::peak::PeakProjection;
 use crate::words::{count, money, whole};
 use novamind_base::notation::{json_number, percent};
-use novamind_session::SettingId;
-use novamind_session::ToolId;
-use novamind_session::{CapacityTier, WeekFigures};
+use novamind_session::{CapacityTier, SettingId, ToolId, WeekFigures};
 
 /// Weeks ahead in which capacity must not run out.
 const SOON: f64 = 2.0;

@@ -3,10 +3,8 @@
 use serde_json::{Value, json};
 
 use super::*;
-use novamind_session::Mode;
-use novamind_session::ToolId;
 use novamind_session::identifiers::Plan;
-use novamind_session::{Configuration, NewRun, Storage, Via};
+use novamind_session::{Configuration, Mode, NewRun, Storage, ToolId, Via};
 
 /// A company that can be bought from, is heard of and has room to grow.
 fn sound() -> Vec<(&'static str, Value)> {

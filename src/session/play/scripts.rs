@@ -11,8 +11,7 @@ use crate::python::refuse_unless_played;
 use crate::state::Session;
 use novamind_database::query::SQL_CANCELLED;
 use novamind_database::text;
-use novamind_record::trajectory::record::Calculated;
-use novamind_record::trajectory::record::Via;
+use novamind_record::trajectory::record::{Calculated, Via};
 use novamind_tools::{
     Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python,
 };

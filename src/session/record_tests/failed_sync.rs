@@ -5,9 +5,8 @@ use std::path::Path;
 use crate::create::NewRun;
 use crate::state::Session;
 use novamind_record::folder::{configuration::Configuration, durable::probe, first_line::start_of};
-use novamind_record::trajectory::PageCache;
 use novamind_record::trajectory::record::Memo;
-use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
+use novamind_record::trajectory::{Durability, PageCache, Record, Trajectory, TrajectoryWriter};
 
 /// A trajectory with its first line, on a disk whose syncs can fail.
 fn writer(folder: &Path) -> (TrajectoryWriter, PageCache) {

@@ -5,8 +5,7 @@ use serde::Serialize;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{Activity, Outcome};
 use novamind_record::trajectory::{Record, Trajectory};
-use novamind_session::Attendance;
-use novamind_session::SittingCount;
+use novamind_session::{Attendance, SittingCount};
 
 /// How a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]

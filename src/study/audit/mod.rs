@@ -26,9 +26,7 @@ use novamind_record::folder::derived::departures_of_file;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::{Line, Trajectory, seconds};
-use novamind_session::Integrity;
-use novamind_session::lines_afterwards;
-use novamind_session::verify_sealed;
+use novamind_session::{Integrity, lines_afterwards, verify_sealed};
 use run_record::{RunRecord, runs_in};
 
 /// What an audit of a study says.

@@ -6,8 +6,7 @@ use serde_json::Value;
 
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_session::Rows;
-use novamind_session::{number_at, text_at};
+use novamind_session::{Rows, number_at, text_at};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::{Channel, Group, Plan};
 

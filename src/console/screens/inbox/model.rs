@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use novamind_worker::readings::Reading;
 use novamind_rules::{AskingThread, offer_of, plan_in};
-use novamind_session::{CompanyNames, Rows};
-use novamind_session::{number_at, text_at};
+use novamind_session::{CompanyNames, Rows, number_at, text_at};
 use novamind_session::identifiers::Plan;
 
 /// One row of a thread.

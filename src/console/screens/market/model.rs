@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_session::{Cell, Rows, RunningStudy};
-use novamind_session::{number_at, text_at};
+use novamind_session::{Cell, Rows, RunningStudy, number_at, text_at};
 use novamind_session::identifiers::Group;
 
 /// Since when a group is known.

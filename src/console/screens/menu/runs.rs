@@ -15,8 +15,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::zero_if_near;
 use novamind_tui::widgets::{Axis, Cell, Column, Line, Side, Unit, chart};
 use novamind_worker::message::Instead;
-use novamind_worker::request::Recorded;
-use novamind_worker::request::Request;
+use novamind_worker::request::{Recorded, Request};
 
 /// Something that cannot be taken back and is asked about first.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use super::*;
 use crate::test_kit::painted;
 use novamind_session::{Access, Ended, Goal, Mode};
-use novamind_worker::request::Recorded;
-use novamind_worker::request::Request;
+use novamind_worker::request::{Recorded, Request};
 
 /// An unfinished run.
 pub(crate) fn summary(id: &str) -> RunSummary {

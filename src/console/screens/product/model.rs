@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use novamind_worker::company::Company;
 use novamind_report::plan_margins::{PlanUse, Sales};
-use novamind_session::{Category, ResearchMeans, Rows, WeekFigures};
-use novamind_session::{number_at, text_at};
+use novamind_session::{Category, ResearchMeans, Rows, WeekFigures, number_at, text_at};
 use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
 use novamind_session::identifiers::Plan;
 

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use novamind_worker::posts::{PostKind, Post};
-use novamind_session::Rows;
-use novamind_session::{number_at, text_at};
+use novamind_session::{Rows, number_at, text_at};
 
 /// Our posts as the database tells them.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {

@@ -30,6 +30,7 @@ pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
 pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
 pub use request_id::RequestId;
+pub(crate) use start::first_mechanics;
 pub use start::{Parent, Start};
 pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
 pub use week::{Advance, Branch, Calculated, Closing, End, Ended, FiledForecast, Override};

@@ -85,6 +85,6 @@ pub struct Parent {
 }
 
 /// Number of the mechanics of runs whose first line names none.
-pub fn first_mechanics() -> u32 {
+pub(crate) fn first_mechanics() -> u32 {
     1
 }

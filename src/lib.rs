@@ -26,7 +26,7 @@
 //! run.call("set_prices", &json!({"A": 16, "B": 34, "C": 70}), Via::Script)?;
 //! run.call("set_usage_quotas", &json!({"A": 150, "B": 400, "C": 900}), Via::Script)?;
 //! run.call("set_targeted_ad_spend", &json!({"targeted_spend": {"social_media": {"S2": 700}}}), Via::Script)?;
-//! let forecasts = run.naive_forecasts();
+//! let forecasts = run.company().naive_forecasts();
 //! let week = run.advance("the shop opens", &forecasts, Via::Script, &mut |_day| {})?;
 //! let rows = run.query("SELECT count(*) FROM customers")?;
 //! println!("{}\n{:?}", week.dashboard, rows.rows);

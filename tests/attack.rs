@@ -44,7 +44,7 @@ fn played(folder: &Path) -> Session {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
     for _ in 0..6 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
     session.wait_for_database().expect("everything is written");
@@ -174,7 +174,7 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
 
     let attacks = attacks();
     assert!(attacks.len() >= 300, "{}", attacks.len());
-    let connection = session.open_connection().expect("a connection");
+    let connection = session.database().open_connection().expect("a connection");
     ask_all(&connection, &attacks, &secrets);
 
     assert_eq!(contents(&folder), before, "something was written");
@@ -231,7 +231,7 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
         attacks.extend(statements.map(|sql| Attack { head: head.to_owned(), sql }));
     }
     assert!(attacks.len() > 700);
-    ask_all(&session.open_connection().expect("a connection"), &attacks, &[]);
+    ask_all(&session.database().open_connection().expect("a connection"), &attacks, &[]);
 }
 
 /// Whoever may look with the x-ray finds the hidden tables, and nothing else that others do not.
@@ -273,7 +273,7 @@ fn a_query_that_takes_too_much_memory_is_stopped() {
     let _alone = alone();
     let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::shipped())
         .expect("a run");
-    let connection = session.open_connection().expect("a connection");
+    let connection = session.database().open_connection().expect("a connection");
     let limits = Limits { steps: None, ..LIMITS };
     let sorted = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) \
                   SELECT length(z) FROM (SELECT randomblob(1900000) AS z FROM n ORDER BY 1)";

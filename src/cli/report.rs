@@ -122,7 +122,7 @@ mod tests {
         let new =
             NewRun { days: Some(21), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("wait and see", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         let id = session.manifest().id.clone();
         drop(session);

@@ -333,7 +333,7 @@ mod tests {
             run.call(tool, &arguments, Via::Script).expect(tool);
         }
         let week = |run: &mut Session| {
-            let forecasts = run.naive_forecasts();
+            let forecasts = run.company().naive_forecasts();
             run.advance("the tour", &forecasts, Via::Script, &mut |_| {}).expect("a week").figures
         };
         let first = week(&mut run);
@@ -349,7 +349,7 @@ mod tests {
         let second = week(&mut run);
         assert!(second.new_individual_subscribers > signed, "it was mended: {second:?}");
         let mut left = 0;
-        while run.observe().ended.is_none() {
+        while run.company().observe().ended.is_none() {
             left += week(&mut run).cancellations;
         }
         assert!(left > 0, "somebody leaves before the end");

@@ -97,7 +97,10 @@ mod tests {
         let world = SameWorld::of(session.folder().expect("a folder")).expect("a world");
         assert_eq!((world.seed(), world.last_day), (3, 120));
         let other = world.begin().expect("a run");
-        assert_eq!((other.day(), other.observe().cash, other.params()), (0, 50_000_000.0, session.params()));
+        assert_eq!(
+            (other.day(), other.company().observe().cash, other.params()),
+            (0, 50_000_000.0, session.params())
+        );
     }
 
     #[test]

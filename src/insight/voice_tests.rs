@@ -42,7 +42,7 @@ fn played(runs: &Path, configuration: &Configuration) -> Session {
             let text = "We doubled the quota of plan B today and cut its price by 20%.";
             call(&mut session, "post_social_media", json!({ "content": text }));
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
     session

@@ -51,7 +51,7 @@ fn play_opponent(
         }
         stopped = week(policy, &spec, &mut session).err();
     }
-    let seen = session.observe();
+    let seen = session.company().observe();
     Ok(Some(Opponent {
         policy: policy.name.clone(),
         day: seen.day,

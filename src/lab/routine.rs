@@ -14,7 +14,7 @@ const ADS_FROM_DAY: u32 = 20;
 const SECOND_GROUP_FROM_DAY: u32 = 30;
 /// The calls of the routine on a decision day, in their order.
 pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
-    let seen = session.observe();
+    let seen = session.company().observe();
     let on = seen.cash > rules.cash_floor;
     let (prices, tiers, quotas) = rules.price_book.book();
     let mut calls = vec![
@@ -27,7 +27,7 @@ pub fn calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
         calls.extend(targeted(rules, &seen, on, session.params()));
     }
     if rules.capacity == CapacityRule::Utilisation {
-        calls.push((ToolId::SetCapacityTier, json!({ "tier": session.capacity_towards_usage() })));
+        calls.push((ToolId::SetCapacityTier, json!({ "tier": session.company().capacity_towards_usage() })));
     }
     calls
 }

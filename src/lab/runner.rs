@@ -284,14 +284,14 @@ pub(super) fn decide_telling(
     }
     for scheduled in policy.calls.iter().filter(|call| call.is_due(day)) {
         for _ in 0..scheduled.repeat {
-            let symbols = Symbols::of(session.observe().known_groups);
+            let symbols = Symbols::of(session.company().observe().known_groups);
             for arguments in symbols.resolve(&scheduled.arguments) {
                 call(session, &scheduled.tool, &arguments, scheduled.may_fail)?;
             }
         }
     }
     if let Some(rule) = &policy.enterprise {
-        for (tool, arguments) in rule.calls(&session.observe().waiting) {
+        for (tool, arguments) in rule.calls(&session.company().observe().waiting) {
             call(session, tool.as_ref(), &arguments, false)?;
         }
     }
@@ -307,10 +307,10 @@ pub(super) fn advance(
     watch: &mut dyn FnMut(&DayReport<'_>),
 ) -> Result<(), RunError> {
     let day = session.day();
-    let ran = if until < session.next_decision_day() {
+    let ran = if until < session.company().next_decision_day() {
         session.step(until - day, watch)
     } else {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance(&policy_rationale(&policy.name), &forecasts, Via::Policy, watch)
     };
     ran.map(|_| ()).map_err(|refusal| RunError::Refused {
@@ -323,7 +323,7 @@ pub(super) fn advance(
 
 /// What became of a run that took so long.
 pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
-    let seen = session.observe();
+    let seen = session.company().observe();
     Outcome {
         seed,
         policy: policy.name.clone(),

@@ -38,7 +38,7 @@ use novamind_database::text::table;
 use novamind_insight::{Causes, LastRead, WhatIf};
 use novamind_report::research::late_in_words;
 use novamind_session::record::{Help, Select};
-use novamind_session::{Activity, Change, Library, QuerySource, Session, Via, rows_as_json};
+use novamind_session::{Activity, Change, Library, QuerySource, RunDatabase, Session, Via, rows_as_json};
 use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, Kind, Module, ToolId};
 
@@ -254,12 +254,13 @@ impl Interpreter {
     }
 
     fn query(&mut self, sql: &str, via: QuerySource) -> Answer {
-        let answer = self.session.interrupt().and_then(|interrupt| {
-            // What is stopped from here on is this query, though it has not begun.
-            let ticket = interrupt.ticket();
-            self.watch.enter_query(interrupt);
-            self.session.query_as(ticket, sql, via)
-        });
+        let answer =
+            self.session.complete_database().and_then(RunDatabase::interrupt).and_then(|interrupt| {
+                // What is stopped from here on is this query, though it has not begun.
+                let ticket = interrupt.ticket();
+                self.watch.enter_query(interrupt);
+                self.session.query_as(Some(ticket), sql, via)
+            });
         self.watch.enter(Phase::Working);
         match answer {
             Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
@@ -271,7 +272,7 @@ impl Interpreter {
         let answer = explain(word, rest, &self.session.numbers());
         if let Ok(subject) = novamind_glossary::find(rest) {
             let help = Help { term: subject.name(), place: "plain".to_owned() };
-            self.session.note_activity(Activity::Help(help));
+            self.session.activity().note(Activity::Help(help));
         }
         answer
     }
@@ -284,7 +285,7 @@ impl Interpreter {
         });
         let which = std::iter::once(word.to_owned()).chain(words).collect::<Vec<_>>().join(" ");
         let (screen, what) = ("plain".to_owned(), "command".to_owned());
-        self.session.note_activity(Activity::Select(Select { screen, what, which }));
+        self.session.activity().note(Activity::Select(Select { screen, what, which }));
     }
 
     fn next(&mut self, arguments: &[Argument], input: &mut Lines) -> io::Result<Answer> {

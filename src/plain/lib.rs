@@ -61,14 +61,14 @@ fn dialogue(
     study: Option<&Study>,
     lines: &mut Lines,
 ) -> io::Result<(End, Session)> {
-    session.take_up(Interface { name: "plain", window: None });
+    session.activity().take_up(Interface { name: "plain", window: None });
     let mut interpreter = Interpreter::new(session, library, lines.watch(), io::stdin().is_terminal());
     interpreter.code_check = study.and_then(Study::code_check);
     interpreter.leads_participant = study.is_some();
     let mut out = io::stdout();
     let end = converse(&mut interpreter, lines, &mut out, style, study);
     // Whoever cannot be answered any more has gone.
-    interpreter.session.leave(end.as_ref().map_or(LeavingCause::Hangup, |end| end.cause()));
+    interpreter.session.activity().leave(end.as_ref().map_or(LeavingCause::Hangup, |end| end.cause()));
     // Everything answered `ok` is on the disk already; what is left are rows that can be made again.
     let _ = interpreter.session.save();
     let end = end?;
@@ -138,7 +138,7 @@ fn converse(
         if lines.watch().caught().is_some() {
             return Ok(lines.end());
         }
-        if interpreter.session.record_loss().is_some() {
+        if interpreter.session.log().loss().is_some() {
             return Ok(End::RecordLost);
         }
         if style.strict && !reply.is_ok() {
@@ -154,7 +154,8 @@ fn ask_questions(
     style: Style,
     study: Option<&Study>,
 ) -> io::Result<Option<End>> {
-    let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.clock_stands()) else {
+    let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.log().clock_stands())
+    else {
         return Ok(None);
     };
     let left = questions::ask_due(study, &mut interpreter.session, style, lines)?;
@@ -181,7 +182,7 @@ fn prompt(text: &str) -> io::Result<()> {
 }
 
 fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()> {
-    let seen = session.observe();
+    let seen = session.company().observe();
     let hides_result = session.rules().hide_result(session.ended());
     let dashboard = if hides_result { "" } else { seen.dashboard.as_str() };
     if style.json {
@@ -220,7 +221,7 @@ fn farewell(session: &Session, style: Style, end: End) -> String {
     if style.json {
         json!({ "event": "end", "run": run, "day": day, "reason": end.id() }).to_string()
     } else {
-        let done = if session.is_recorded_to_its_end() { "saved" } else { "left" };
+        let done = if session.log().is_complete() { "saved" } else { "left" };
         format!("{done} run {run} · day {day}")
     }
 }

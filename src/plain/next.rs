@@ -34,14 +34,14 @@ pub enum Filing {
 impl Filing {
     /// What is filed for somebody whose time is over.
     pub fn at_limit(session: &Session) -> Filing {
-        let predictions = session.naive_forecasts().as_predictions();
+        let predictions = session.company().naive_forecasts().as_predictions();
         Filing::Given { rationale: json!(TIME_LIMIT), predictions, naive: [true; 4] }
     }
 }
 
 /// Reads the forms of the command.
 pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<Filing, Problem> {
-    let naive = session.naive_forecasts();
+    let naive = session.company().naive_forecasts();
     let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
     // What a lesson fills in nobody has to type.
@@ -170,7 +170,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
 
 /// What is said of the end where its result is not shown.
 fn over(command: &str, session: &Session, week: &Week) -> Answer {
-    let mut text = match session.is_practice() {
+    let mut text = match session.manifest().is_practice() {
         true => "the practice is over; the session comes next\n".to_owned(),
         false => "the run is over; the result is not shown in this study\n".to_owned(),
     };
@@ -186,7 +186,7 @@ fn over(command: &str, session: &Session, week: &Week) -> Answer {
 /// # Errors
 /// The input or the prompt fails.
 pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
-    let seen = session.observe();
+    let seen = session.company().observe();
     let changes = seen.changes.iter().map(super::commands::change_line);
     let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();
     if lines.is_empty() {
@@ -202,7 +202,7 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
             why => why,
         },
     };
-    let mut forecasts = session.naive_forecasts();
+    let mut forecasts = session.company().naive_forecasts();
     if session.lesson_fills_forecasts() {
         let predictions = forecasts.as_predictions();
         return Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));

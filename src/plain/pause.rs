@@ -19,7 +19,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 impl Interpreter {
     /// `pause [REASON]`.
     pub(super) fn pause(&mut self, reason: &str) -> Answer {
-        match self.session.stop_clock(Some(reason)) {
+        match self.session.activity().stop_clock(Some(reason)) {
             Ok(()) => {
                 let text = "the clock is stopped; resume starts it again".to_owned();
                 Answer::done("pause", text, json!({ "stopped": true }))
@@ -31,11 +31,11 @@ impl Interpreter {
     /// `resume`, with the experimenter's code where a limit has stopped the clock.
     pub(super) fn resume(&mut self, code: &str) -> Answer {
         let right = self.code_check.as_ref().is_none_or(|check| check(code));
-        if self.session.is_held() && !right {
+        if self.session.log().is_held() && !right {
             let text = "the time limit is reached; the experimenter starts the clock with resume CODE";
             return Answer::refused("resume", Refusal::new("code_needed", text));
         }
-        match self.session.start_clock() {
+        match self.session.activity().start_clock() {
             Ok(stood) => {
                 let text = format!("the clock runs again; it stood for {stood:.0} s");
                 Answer::done("resume", text, json!({ "stood_seconds": stood }))
@@ -50,7 +50,7 @@ impl Interpreter {
             Line::Empty => return None,
             Line::Text { word, .. } | Line::Call { word, .. } => word,
         };
-        if !self.session.clock_stands() || WHILE_STOPPED.contains(&word.as_str()) {
+        if !self.session.log().clock_stands() || WHILE_STOPPED.contains(&word.as_str()) {
             return None;
         }
         let text = "the clock is stopped: resume starts it; help and quit work, too";
@@ -59,12 +59,12 @@ impl Interpreter {
 
     /// Tells of limits that are near or reached, and does what the rules say.
     pub(super) fn check_limits(&mut self) -> Vec<Answer> {
-        let told = self.session.check_limits();
+        let told = self.session.activity().check_limits();
         told.into_iter().flat_map(|limit| self.reach(&limit)).collect()
     }
 
     fn reach(&mut self, limit: &Limit) -> Vec<Answer> {
-        let left = self.session.time_left().into_iter().find(|left| left.scope == limit.limit);
+        let left = self.session.log().time_left().into_iter().find(|left| left.scope == limit.limit);
         let words = left.map_or(String::new(), |left| left.in_words());
         let follows = left.map_or("", |left| left.what_follows(self.session.rules().limits.at_limit));
         let data = json!({ "limit": limit.limit, "event": limit.event, "minutes": limit.minutes, "used_ms": limit.used_ms });
@@ -78,7 +78,7 @@ impl Interpreter {
                 vec![tell("; the week is filed with the naive projection"), filed]
             }
             LimitEvent::Paused => {
-                let stopped = self.session.stop_clock(Some(TIME_LIMIT));
+                let stopped = self.session.activity().stop_clock(Some(TIME_LIMIT));
                 let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
                 let stopped = stopped.map_or("", |()| "; the clock is stopped");
                 vec![tell(&format!("{stopped}; {rest} starts it"))]
@@ -88,18 +88,22 @@ impl Interpreter {
 
     /// How long to wait for a line before limits are looked at again; none where there are none.
     pub(super) fn patience(&self) -> Option<Duration> {
-        let limits = !self.session.time_left().is_empty() && !self.session.clock_stands();
+        let limits = !self.session.log().time_left().is_empty() && !self.session.log().clock_stands();
         limits.then_some(BETWEEN_LOOKS)
     }
 
     /// What is asked for where a person types.
     pub(super) fn prompt_text(&self) -> String {
-        if self.session.clock_stands() {
+        if self.session.log().clock_stands() {
             return "clock stopped> ".to_owned();
         }
         let day = self.session.day();
-        let least =
-            self.session.time_left().into_iter().min_by(|one, other| one.seconds.total_cmp(&other.seconds));
+        let least = self
+            .session
+            .log()
+            .time_left()
+            .into_iter()
+            .min_by(|one, other| one.seconds.total_cmp(&other.seconds));
         match least {
             Some(left) => format!("day {day} · {}> ", left.in_words()),
             None => format!("day {day}> "),
@@ -108,11 +112,11 @@ impl Interpreter {
 
     /// A limit that has stopped the clock holds when the run is opened again.
     pub(super) fn hold_limit(&mut self) -> Option<Answer> {
-        if !self.session.is_held() {
+        if !self.session.log().is_held() {
             return None;
         }
         // It may stand already.
-        let _ = self.session.stop_clock(Some(TIME_LIMIT));
+        let _ = self.session.activity().stop_clock(Some(TIME_LIMIT));
         let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
         let text = format!("a time limit has stopped the clock; {rest} starts it");
         Some(Answer::done("limit", text, json!({ "stopped": true })))

@@ -88,7 +88,7 @@ impl Host<'_> {
                 NextStep::Practice { unfinished, may_pass } => self.practise(&visit, unfinished, may_pass)?,
                 NextStep::Session(unfinished) => {
                     let session = self.begin(&visit, false, unfinished.as_deref())?;
-                    let first = match (unfinished, session.observe().week) {
+                    let first = match (unfinished, session.company().observe().week) {
                         (None, _) => "The session begins.".to_owned(),
                         (Some(_), 0) => "The session goes on before its first week.".to_owned(),
                         (Some(_), week) => format!("The session goes on after week {week}."),

@@ -75,7 +75,7 @@ pub struct Books {
 impl Books {
     /// Asks the database of a run, without a trace in what the person asked.
     pub fn of(session: &Session) -> Books {
-        let connection = session.wait_for_database().and_then(|()| session.open_connection());
+        let connection = session.wait_for_database().and_then(|()| session.database().open_connection());
         let connection = match connection {
             Ok(connection) => connection,
             Err(refusal) => {
@@ -84,14 +84,14 @@ impl Books {
             }
         };
         let mut missing = Vec::new();
-        let mut ask = |what: &str, sql: &str| match connection.ask(sql, session.query_limits()) {
+        let mut ask = |what: &str, sql: &str| match connection.ask(sql, session.company().query_limits()) {
             Ok(rows) => rows,
             Err(error) => {
                 missing.push(format!("{what}: {}", error.message));
                 Rows::default()
             }
         };
-        let weeks = session.observe().week;
+        let weeks = session.company().observe().week;
         let flows = ask("groups", FLOWS);
         let (leads, revenue) = (ask("leads", LEADS), ask("revenue", REVENUE));
         let groups = groups_of(&flows, &by_group(&leads), &by_group(&revenue), weeks);
@@ -103,8 +103,9 @@ impl Books {
 
     /// Only the ads, for those who need no more; empty if the database does not say.
     pub fn channels_of(session: &Session) -> Vec<ChannelRow> {
-        let connection = session.wait_for_database().and_then(|()| session.open_connection()).ok();
-        let rows = connection.and_then(|connection| connection.ask(CHANNELS, session.query_limits()).ok());
+        let connection = session.wait_for_database().and_then(|()| session.database().open_connection()).ok();
+        let rows =
+            connection.and_then(|connection| connection.ask(CHANNELS, session.company().query_limits()).ok());
         rows.map(|rows| rows.rows.iter().map(|row| channel_of(row)).collect()).unwrap_or_default()
     }
 
@@ -157,7 +158,7 @@ fn channel_of(row: &[Cell]) -> ChannelRow {
 
 /// What each week booked, and what was booked since the last one.
 fn ledger_of(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
-    let since = session.observe().booked_since;
+    let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);
     let entries =
         |booked: Booked| booked.entries().map(|(category, dollars)| (category.id(), dollars)).collect();
@@ -175,7 +176,7 @@ mod tests {
         let session = test_kit::played(5);
         let books = Books::of(&session);
         assert_eq!(books.missing, Vec::<String>::new());
-        let seen = session.observe();
+        let seen = session.company().observe();
         let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
         let last: f64 = people.filter_map(|book| book.active.last()).sum();
         assert!(last > 0.0);
@@ -187,10 +188,10 @@ mod tests {
         }
         let total: f64 = books.totals().values().sum::<f64>() + session.cash_by_day()[0];
         assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
-        let connection = session.open_connection().expect("a connection");
+        let connection = session.database().open_connection().expect("a connection");
         let sql =
             format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger WHERE day > 0 GROUP BY 1, 2");
-        for row in connection.ask(&sql, session.query_limits()).expect("the ledger").rows {
+        for row in connection.ask(&sql, session.company().query_limits()).expect("the ledger").rows {
             let (week, category) = (number_at(&row, 0) as u32, text_at(&row, 1));
             let booked = books.ledger.get(&week).and_then(|week| week.get(category)).copied().unwrap_or(0.0);
             assert!((booked - number_at(&row, 2)).abs() < 0.01, "week {week}: {category} {booked}");
@@ -198,7 +199,7 @@ mod tests {
         assert!(
             books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
         );
-        assert!(session.asked().is_empty(), "reports leave no trace in what the person asked");
+        assert!(session.company().asked().is_empty(), "reports leave no trace in what the person asked");
     }
 
     #[test]
@@ -208,14 +209,14 @@ mod tests {
         let mut left_before_the_end = 0;
         for book in books.groups.iter().filter(|book| !book.group.is_enterprise()) {
             let mut active = 0.0;
-            for (at, week) in session.group_weeks().iter().enumerate() {
+            for (at, week) in session.company().group_weeks().iter().enumerate() {
                 let own = &week[book.group];
                 active += f64::from(own.signed) - f64::from(own.left);
                 assert_eq!(book.active[at + 1], active, "{} in week {}", book.group, at + 1);
                 assert_eq!(book.seats[at + 1], active, "a person takes one seat");
                 left_before_the_end += if at < 8 { own.left } else { 0 };
             }
-            let came: u32 = session.group_weeks().iter().map(|week| week[book.group].leads).sum();
+            let came: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
             assert_eq!(book.leads, f64::from(came), "{}", book.group);
         }
         assert!(left_before_the_end > 0, "nobody left, so nothing was tried");

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn weeks_without_a_decision_join_the_one_before() {
         let session = test_kit::played(5);
-        let told = chapters(session.decisions(), session.journal(), 1_000_000.0);
+        let told = chapters(session.company().decisions(), session.journal(), 1_000_000.0);
         let weeks: Vec<(u32, u32)> = told.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
         assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has a reason of its own");
         let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
@@ -155,10 +155,10 @@ mod tests {
         assert_eq!(told[1].changes, ["price B: 25 → 22 $/month"]);
         assert_eq!(told[1].why, "If B is cheaper, more will take it; otherwise we go back | <b>B</b>");
         let total: f64 = told.iter().map(|chapter| chapter.cash_change).sum();
-        assert!((total - (session.observe().cash - 1_000_000.0)).abs() < 0.01);
+        assert!((total - (session.company().observe().cash - 1_000_000.0)).abs() < 0.01);
         assert_eq!(
             told.last().map(|chapter| (chapter.until, chapter.cash)),
-            Some((35, session.observe().cash))
+            Some((35, session.company().observe().cash))
         );
     }
 }

@@ -245,7 +245,7 @@ mod tests {
     fn the_default_run_can_be_ranked_and_every_shipped_scenario_that_counts_exists() {
         for scenario in PUBLISHED_RULES {
             let new = NewRun { scenario: scenario.to_owned(), ..NewRun::default() };
-            let seen = Session::create(new, &Configuration::shipped()).expect("a run").observe();
+            let seen = Session::create(new, &Configuration::shipped()).expect("a run").company().observe();
             assert_eq!(RunTerms::of_observation(&seen).obstacles(), [], "{scenario}");
         }
     }

@@ -153,11 +153,11 @@ pub struct Fit {
 
 /// Every known group, in their fixed order.
 pub fn fits(session: &Session) -> Vec<Fit> {
-    let (quality, weeks) = (session.delivered_quality(), session.group_weeks());
+    let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|own| own.group == group);
     let of =
         |own: &Estimates| Some(fit(own, delivered(own.group)?, session.settings(), weeks, session.day()));
-    session.estimates().iter().filter_map(of).collect()
+    session.company().estimates().iter().filter_map(of).collect()
 }
 
 fn fit(
@@ -395,7 +395,7 @@ mod tests {
     #[test]
     fn leads_are_split_and_priced_as_the_tables_have_them() {
         let mut session = played(6);
-        let (all, costs) = (fits(&session), pair_costs(session.group_weeks()));
+        let (all, costs) = (fits(&session), pair_costs(session.company().group_weeks()));
         let mut by_mouth = 0;
         for fit in &all {
             let week = fit.last_week.expect("a week has run");
@@ -473,8 +473,8 @@ mod tests {
     #[test]
     fn quality_and_floor_are_kept_week_by_week() {
         let session = played(5);
-        let now = session.delivered_quality();
-        let (weeks, estimates) = (session.group_weeks(), session.estimates());
+        let now = session.company().delivered_quality();
+        let (weeks, estimates) = (session.company().group_weeks(), session.company().estimates());
         for own in &estimates {
             let last = &weeks[weeks.len() - 1][own.group];
             let quality =

@@ -32,11 +32,13 @@ pub struct Funnel {
 
 /// Every known group of companies, in their fixed order.
 pub fn funnels(session: &Session) -> Vec<Funnel> {
-    let (estimates, quality) = (session.estimates(), session.delivered_quality());
+    let (estimates, quality) = (session.company().estimates(), session.company().delivered_quality());
     let known = estimates.iter().filter(|own| own.group.is_enterprise());
     let quotas = session.settings().core.quotas;
     known
-        .map(|own| funnel(own, &quality, session.group_weeks(), &quotas.0.map(|quota| quota.units())))
+        .map(|own| {
+            funnel(own, &quality, session.company().group_weeks(), &quotas.0.map(|quota| quota.units()))
+        })
         .collect()
 }
 
@@ -125,6 +127,7 @@ mod tests {
         }
         for _ in 0..16 {
             let deals: Vec<_> = session
+                .company()
                 .observe()
                 .waiting
                 .iter()
@@ -135,7 +138,7 @@ mod tests {
                     .call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script)
                     .expect("offers");
             }
-            let forecasts = session.naive_forecasts();
+            let forecasts = session.company().naive_forecasts();
             session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         }
         let all = funnels(&session);

@@ -63,11 +63,13 @@ impl Measures {
             survival_days: survival_days(session.ended(), day, session.manifest().days),
             cash: session.cash_by_day().last().copied().unwrap_or(session.manifest().cash),
             channels: best_tried_channel_share(channels),
-            targeted_development: targeted_development(session.decisions()),
-            forecasts: session.forecast_scores(),
+            targeted_development: targeted_development(session.company().decisions()),
+            forecasts: session.company().forecast_scores(),
             filled_naively: filled_naively(journal),
             first_forecasts: first_forecasts(journal, session.cash_by_day()),
-            truly_best: truly_best_channel_share(channels, |group| session.truly_best_channel(group)),
+            truly_best: truly_best_channel_share(channels, |group| {
+                session.company().truly_best_channel(group)
+            }),
             tools: tool_use(journal),
             planning: planning(journal),
         }

@@ -108,7 +108,7 @@ impl Sales {
     /// The run has no database, or it cannot be read.
     pub fn of(session: &Session) -> Result<Sales, Refusal> {
         session.wait_for_database()?;
-        let (connection, limits) = (session.open_connection()?, session.query_limits());
+        let (connection, limits) = (session.database().open_connection()?, session.company().query_limits());
         let mut sales = Sales::default();
         sales.take_subscribers(&connection.ask(SUBSCRIBERS, limits).map_err(query_refusal)?);
         sales.take_usage(&connection.ask(USAGE, limits).map_err(query_refusal)?);
@@ -368,8 +368,13 @@ mod tests {
             let expected = 1.0 - units * unit_cost / paid;
             assert!((own.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
         }
-        let models: Vec<(u8, f64)> =
-            session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        let models: Vec<(u8, f64)> = session
+            .company()
+            .tool_limits()
+            .models
+            .iter()
+            .map(|model| (model.tier, model.unit_cost))
+            .collect();
         let now = terms(&session.settings().core);
         let draft = Lever::Tier.apply(now, &json!({"B": 3}));
         let lines = margin_lines(&sales, &draft, Lever::Tier, &models, 42);

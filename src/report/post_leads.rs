@@ -33,8 +33,8 @@ mod tests {
     #[test]
     fn leads_are_counted_on_both_sides_of_the_day() {
         let mut session = played(4);
-        let known = session.observe().known_groups;
-        let told = leads_around(14, session.group_weeks(), &known);
+        let known = session.company().observe().known_groups;
+        let told = leads_around(14, session.company().group_weeks(), &known);
         let mut leads = |from: u32| {
             let sql = format!(
                 "SELECT count(*) FROM customers WHERE group_id = 'S1' AND created_day > {from} AND created_day <= {from} + 7"
@@ -43,8 +43,11 @@ mod tests {
         };
         let expected = format!("S1 {} → {}", leads(7), leads(14));
         assert!(told[0].contains(&expected), "{told:?} without {expected}");
-        let first = leads_around(0, session.group_weeks(), &known);
+        let first = leads_around(0, session.company().group_weeks(), &known);
         assert!(first[0].contains("S1 – → "), "{first:?}");
-        assert!(leads_around(28, session.group_weeks(), &known).is_empty(), "no week has run since");
+        assert!(
+            leads_around(28, session.company().group_weeks(), &known).is_empty(),
+            "no week has run since"
+        );
     }
 }

@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_score_stands_among_the_published_ones() {
-        let mut seen = test_kit::played(0).observe();
+        let mut seen = test_kit::played(0).company().observe();
         (seen.seed, seen.last_day) = (Some(42), 500);
         assert_eq!(seen.scenario, "default");
         let good = standing(Some(14_208_331.0), &seen);
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_run_of_other_terms_is_not_ranked_and_says_why() {
-        let mut seen = test_kit::played(0).observe();
+        let mut seen = test_kit::played(0).company().observe();
         for (days, ranked) in [(500, true), (28, false)] {
             seen.last_day = days;
             let standing = standing(Some(2e6), &seen);
@@ -215,7 +215,11 @@ mod tests {
                 overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
             let new =
                 NewRun { scenario: scenario.to_owned(), mode: Mode::Debug, overrides, ..NewRun::default() };
-            Session::create(new, &Configuration::shipped()).expect("a run").observe().has_own_parameters
+            Session::create(new, &Configuration::shipped())
+                .expect("a run")
+                .company()
+                .observe()
+                .has_own_parameters
         };
         for scenario in ["default", "paper", "competitor-off"] {
             assert!(!own(scenario, &[]), "{scenario}");
@@ -225,7 +229,7 @@ mod tests {
 
     #[test]
     fn other_luck_is_named() {
-        let mut seen = test_kit::played(0).observe();
+        let mut seen = test_kit::played(0).company().observe();
         let caveat = |seen: &Observation| standing(None, seen).caveat;
         assert_eq!(
             caveat(&seen).as_deref(),

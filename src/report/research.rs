@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn the_spread_is_told_before_the_project_is_paid() {
         let session = run(500, Mode::Sandbox);
-        let told = |tier: u8| outlook_lines(&session.research_outlook(tier));
+        let told = |tier: u8| outlook_lines(&session.company().research_outlook(tier));
         assert_eq!(
             told(1),
             [
@@ -135,8 +135,8 @@ mod tests {
     fn mean_days_are_never_less_than_the_earliest_day() {
         let told = |mode| {
             let session = run(500, mode);
-            let means = session.research_means();
-            assert_eq!(means[4], session.research_outlook(5).means);
+            let means = session.company().research_means();
+            assert_eq!(means[4], session.company().research_outlook(5).means);
             [0, 1, 2, 4].map(|at| (mean_days(&means[at]), mean_gain(&means[at], 4)))
         };
         let words = |days: &str, gain: &str| (days.to_owned(), gain.to_owned());
@@ -147,7 +147,7 @@ mod tests {
         let session = run(500, Mode::Sandbox);
         let answer = json!({"tiers": [{"tier": 1, "mean_days": 12, "mean_quality_boost": 0.04}]});
         assert_eq!(
-            projects_with_means(&answer, &session.research_means()),
+            projects_with_means(&answer, &session.company().research_means()),
             json!({"tiers": [{"tier": 1, "mean_days": "30", "mean_quality_boost": "+0.0402"}]})
         );
         // Agents are not told the spread.
@@ -165,13 +165,13 @@ mod tests {
     #[test]
     fn a_run_that_is_too_short_says_so_and_a_late_project_is_named() {
         let session = run(28, Mode::Sandbox);
-        let told = outlook_lines(&session.research_outlook(2));
+        let told = outlook_lines(&session.company().research_outlook(2));
         assert_eq!(told, ["no project started now is done before day 30, after the last day (28)"]);
         let mut session = run(200, Mode::Sandbox);
         for tier in 12..=20 {
             let _ = session.call("start_research_project", &json!({ "tier": tier }), Via::Script);
         }
-        let seen = session.observe();
+        let seen = session.company().observe();
         let due = |project: &novamind_session::LateProject| project.due_day > 200 && project.is_new;
         assert!(!seen.late_projects.is_empty() && seen.late_projects.iter().all(due));
         let first = &seen.late_projects[0];

@@ -94,7 +94,7 @@ mod tests {
             session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
         assert_eq!(
-            money_lines(&session.observe()),
+            money_lines(&session.company().observe()),
             [
                 "Committed: $5,585 a day = $39,095 a week",
                 "One-time costs since the last week: $25,000",
@@ -102,7 +102,7 @@ mod tests {
             ]
         );
         let played = test_kit::played(3);
-        let lines = money_lines(&played.observe());
+        let lines = money_lines(&played.company().observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");
         assert!(lines[1].starts_with("Last 3 weeks: income $"), "{lines:?}");
     }
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn plans_that_became_alike_are_named_with_those_who_pay_more() {
         let mut session = test_kit::played(4);
-        assert_eq!(alike_lines(&session.observe()), [""; 0]);
+        assert_eq!(alike_lines(&session.company().observe()), [""; 0]);
         let call = |session: &mut Session, tool: &str, arguments: Value| {
             session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         };
@@ -121,26 +121,29 @@ mod tests {
         let payers = format!("{} have B", count(on_b as u32, "subscriber"));
         assert!(on_b > 1.0, "{payers}");
         let told = format!("A and B now differ in nothing but price ($12 against $22); {payers}");
-        assert_eq!(alike_lines(&session.observe()), [told]);
+        assert_eq!(alike_lines(&session.company().observe()), [told]);
         // Which of them is dearer follows from the prices, not from their letters.
         call(&mut session, "set_prices", json!({"A": 30.5}));
-        let turned = alike_lines(&session.observe());
+        let turned = alike_lines(&session.company().observe());
         assert!(
             turned[0].starts_with("B and A now differ in nothing but price ($22 against $30.50); "),
             "{turned:?}"
         );
         call(&mut session, "set_prices", json!({"A": 22}));
-        assert_eq!(alike_lines(&session.observe()), ["A and B now differ in nothing: both cost $22"]);
+        assert_eq!(
+            alike_lines(&session.company().observe()),
+            ["A and B now differ in nothing: both cost $22"]
+        );
         call(&mut session, "set_prices", json!({"A": 12}));
         session
             .advance_given(
                 &json!("why"),
-                &session.naive_forecasts().as_predictions(),
+                &session.company().naive_forecasts().as_predictions(),
                 [true; 4],
                 Via::Script,
                 &mut |_| {},
             )
             .unwrap_or_else(|refusal| panic!("{refusal}"));
-        assert!(alike_lines(&session.observe())[0].contains("A and B still differ"));
+        assert!(alike_lines(&session.company().observe())[0].contains("A and B still differ"));
     }
 }

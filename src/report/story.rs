@@ -58,7 +58,7 @@ pub struct Story {
 impl Story {
     /// The story of a run so far. Asks the database: not for the thread that draws.
     pub fn of(session: &Session) -> Story {
-        let seen = session.observe();
+        let seen = session.company().observe();
         let start_cash = session.manifest().cash;
         let (weeks, journal) = (session.weeks(), session.journal());
         let books = Books::of(session);
@@ -75,7 +75,7 @@ impl Story {
             weeks: weeks.to_vec(),
             standing: standing(seen.score, &seen),
             filed: filed_forecasts(journal, session.cash_by_day()),
-            chapters: chapters(session.decisions(), journal, start_cash),
+            chapters: chapters(session.company().decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
             measures,
             ruin,

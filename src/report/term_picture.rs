@@ -255,13 +255,13 @@ pub fn term_picture_of(term: &str, session: &Session) -> Option<TermPicture> {
     if !has_picture(term) {
         return None;
     }
-    let (fits, quality, numbers) = (fits(session), session.delivered_quality(), session.numbers());
+    let (fits, quality, numbers) = (fits(session), session.company().delivered_quality(), session.numbers());
     let seen = SeenFigures {
         weeks: session.weeks(),
-        group_weeks: session.group_weeks(),
+        group_weeks: session.company().group_weeks(),
         fits: &fits,
         quality: &quality,
-        quality_base: session.quality_base(),
+        quality_base: session.company().quality_base(),
         numbers: &numbers,
     };
     term_picture(term, &seen)
@@ -297,12 +297,12 @@ mod tests {
         let Some(TermDrawing::Lines(leads)) = picture("network-source", 3).drawing else {
             panic!("no lines")
         };
-        let week = &session.group_weeks()[2];
+        let week = &session.company().group_weeks()[2];
         let all: u32 = Group::all().map(|group| week[group].leads).sum();
         let drawn: f64 = leads.lines.iter().map(|(_, points)| points[2].1).sum();
         assert_eq!((leads.lines[0].1.len(), drawn), (3, f64::from(all)));
         let Some(TermDrawing::Bars(bars)) = picture("quality-bank", 3).drawing else { panic!("no bars") };
-        assert_eq!((bars[0].1, bars[1].1), session.quality_base());
+        assert_eq!((bars[0].1, bars[1].1), session.company().quality_base());
         let Some(TermDrawing::Lines(fit)) = picture("fit", 3).drawing else { panic!("no lines") };
         assert_eq!(fit.plans.len(), 3);
         let text = picture("fit", 3).as_text();

@@ -63,7 +63,7 @@ fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
         } else {
             "as planned"
         };
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         let week = session.advance(rationale, &forecasts, Via::Script, &mut |_| {}).expect("a week");
         if week.ended.is_some() {
             break;
@@ -86,10 +86,10 @@ pub fn recorded() -> (Session, Vec<Line>) {
     session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("no price");
     session.query("SELECT count(*) FROM ledger").expect("a count");
     session.query("SELECT c_max FROM nowhere").expect_err("no table");
-    session.note_view("cash", "overview", 1500);
-    session.note_view("cash", "overview", 500);
+    session.activity().note_view("cash", "overview", 1500);
+    session.activity().note_view("cash", "overview", 500);
     for rationale in ["If it goes well, we wait", "as planned"] {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance(rationale, &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     session.set_memo("watch costs").expect("a memo");

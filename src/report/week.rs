@@ -165,7 +165,7 @@ impl WeekReport {
     /// The last week of a run; none before the first.
     pub fn of_session(session: &Session) -> Option<WeekReport> {
         let mut posts: [Vec<u32>; 3] = Default::default();
-        for post in session.posts() {
+        for post in session.company().posts() {
             // Nobody's customers write the news.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
@@ -176,7 +176,7 @@ impl WeekReport {
         }
         WeekReport::of(&Sources {
             weeks: session.weeks(),
-            decisions: session.decisions(),
+            decisions: session.company().decisions(),
             journal: session.journal(),
             cash_by_day: session.cash_by_day(),
             posts: posts.each_ref().map(Vec::as_slice),

@@ -69,12 +69,12 @@ pub struct Market {
 impl Market {
     /// What a run sells today.
     pub fn of(session: &Session, usage: SeatUsage) -> Market {
-        let (core, terms) = (&session.settings().core, session.terms());
+        let (core, terms) = (&session.settings().core, session.company().tool_limits());
         let unit_cost = |plan: Plan| {
             let model = terms.models.iter().find(|model| model.tier == core.tiers[plan]);
             model.map_or(0.0, |model| model.unit_cost)
         };
-        let studied = session.estimates().into_iter().map(|own| (own.group, own.usage)).collect();
+        let studied = session.company().estimates().into_iter().map(|own| (own.group, own.usage)).collect();
         Market {
             lists: Plan::ALL.map(|plan| core.prices[plan]),
             quotas: Plan::ALL.map(|plan| core.quotas[plan].units()),
@@ -129,7 +129,7 @@ impl AskingThread {
         let letters = Letters::read(&session.look_into_database(LAST_LETTERS)?);
         let usage = SeatUsage::read(&session.look_into_database(SEAT_USAGE)?);
         let market = Market::of(session, usage);
-        let waiting = session.observe().waiting;
+        let waiting = session.company().observe().waiting;
         let threads = waiting.iter().map(|own| AskingThread::of(own, &letters, &market));
         Ok((threads.collect(), market))
     }

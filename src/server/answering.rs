@@ -28,7 +28,7 @@ pub fn answer(session: &mut Session, request: Request, via: Via) -> Answer {
         }
         Request::Vars => Answer::plain(json!({ "current_day": session.day() })),
         Request::Dashboard => {
-            Answer::plain(json!({ "dashboard": session.dashboard(), "day": session.day() }))
+            Answer::plain(json!({ "dashboard": session.company().dashboard(), "day": session.day() }))
         }
         Request::GameStatus => game_status(session),
         Request::DailyScripts => Answer::data(json!({ "scripts": daily_scripts(session) })),
@@ -83,7 +83,7 @@ fn query(session: &mut Session, sql: &Value) -> Answer {
     let Some(sql) = sql.as_str() else {
         return Answer::refused(Status::Refused, Refusal::at("sql", "sql_empty", "sql must be a text"));
     };
-    match session.query_of(sql, QuerySource::Program) {
+    match session.query_as(None, sql, QuerySource::Program) {
         Ok(rows) => Answer::done(rows_as_json(&rows)),
         Err(refusal) => Answer::refused(status_of_query(refusal.code), refusal),
     }
@@ -100,7 +100,7 @@ fn status_of_query(code: &str) -> Status {
 }
 
 fn game_status(session: &Session) -> Answer {
-    let seen = session.observe();
+    let seen = session.company().observe();
     Answer::plain(json!({
         "day": seen.day,
         "cash": seen.cash,

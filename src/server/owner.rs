@@ -14,7 +14,7 @@ use super::answering::answer;
 use super::request::{Answer, Request, Status};
 use super::running::Running;
 use novamind_session::record::LeavingCause;
-use novamind_session::{Access, Interface, ModelSettings, RunError, Session, Via};
+use novamind_session::{Access, Interface, ModelSettings, RunDatabase, RunError, Session, Via};
 use novamind_tools::Kept;
 
 /// Hears of defects of ours.
@@ -156,7 +156,7 @@ impl Owned {
     fn work(mut self, asked: &Receiver<Asked>, advancing: &Advancing) -> Result<(), RunError> {
         let interface = Interface { name: self.door.interface, window: None };
         if let Some(session) = &mut self.session {
-            session.take_up(interface);
+            session.activity().take_up(interface);
         }
         while let Ok(Asked { number, request, reply }) = asked.recv() {
             let is_week = matches!(request, Request::NextWeek { .. });
@@ -165,7 +165,10 @@ impl Owned {
                 continue;
             }
             if request.runs_code() || (is_week && self.has_calculations()) {
-                let interrupt = self.session.as_mut().and_then(|session| session.interrupt().ok());
+                let interrupt = self
+                    .session
+                    .as_mut()
+                    .and_then(|session| session.complete_database().and_then(RunDatabase::interrupt).ok());
                 self.running.begin(number, request.runs_code(), interrupt);
             }
             let answer = self.answer(request);
@@ -178,7 +181,7 @@ impl Owned {
         }
         match self.session {
             Some(mut session) => {
-                session.leave(LeavingCause::Quit);
+                session.activity().leave(LeavingCause::Quit);
                 session.save()
             }
             None => Ok(()),

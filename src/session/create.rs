@@ -3,27 +3,19 @@
 pub(crate) mod agreement;
 pub(crate) mod baseline;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use self::agreement::agreed;
-use crate::inside::companion::Companion;
+use crate::company::reports::DayReport;
 use crate::lesson::conduct::LessonEntry;
 use crate::model_voice::joining::model_of;
-use crate::model_voice::speaker::{ModelVoice, Speaker};
-use crate::play::advance::DayReport;
-use crate::play::history::History;
-use crate::play::personal_clock::PersonalClock;
-use crate::play::projection::Projection;
-use crate::play::recorder::Recorder;
-use crate::play::simulation::Simulation;
-use crate::play::surroundings::RunSurroundings;
-use crate::resume::sealing::SealKey;
-use crate::resume::unnamed::remove_leftovers;
-use crate::state::Session;
-use novamind_database::{Location, Position, Projector};
-use novamind_record::answer_book::AnswerBook;
+use crate::model_voice::speaker::Speaker;
+use crate::play::Session;
+use crate::recording::folders::{new_id, remove_leftovers};
+use crate::recording::recorder::Recorder;
+use crate::snapshot::sealing::SealKey;
+use novamind_database::{Location, Projector};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_record::folder::consent::{Agreed, ConsentText};
@@ -151,8 +143,9 @@ impl Session {
         let speaker = model.as_ref().map(Speaker::open).transpose().map_err(no_model)?;
         let (manifest, params) = plan_run(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };
-        let begun = Session::begin_stored(manifest, params, &new, tell)?;
-        Ok(Session { voice: ModelVoice { speaker, ..ModelVoice::default() }, ..begun })
+        let mut begun = Session::begin_stored(manifest, params, &new, tell)?;
+        begun.set_speaker(speaker);
+        Ok(begun)
     }
 
     /// Begins a run where it is to be kept.
@@ -202,53 +195,12 @@ impl Session {
         }
         let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
         let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
-        let simulation = Simulation::open(&manifest, params);
-        let begun = Session::assemble(manifest, folder, simulation, Projection::of(projector));
-        let (position, seal_key) = (recorder.position(), new.seal_key.clone());
-        let mut session = Session { position, seal_key, recorder: Some(recorder), ..begun };
-        session.project_opening();
+        let seal_key = new.seal_key.clone();
+        let mut session = Session::written((manifest, params), folder, projector, recorder, seal_key);
         if let Some(entry) = &new.lesson {
             session.begin_lesson(entry, tell)?;
         }
         Ok(session)
-    }
-
-    /// A session that nothing writes, and in which nothing has happened.
-    pub(crate) fn assemble(
-        manifest: Manifest,
-        folder: Option<PathBuf>,
-        simulation: Simulation,
-        projection: Projection,
-    ) -> Session {
-        Session {
-            manifest,
-            folder,
-            numbers: OnceLock::new(),
-            own_parameters: OnceLock::new(),
-            history: History::begin(&simulation.world),
-            simulation,
-            projection,
-            position: Position { seq: 0, line_hash: String::new() },
-            surroundings: RunSurroundings::default(),
-            viewed: BTreeMap::new(),
-            answers: AnswerBook::default(),
-            seal_key: SealKey::default(),
-            is_shadow: false,
-            companion: Companion::default(),
-            voice: ModelVoice::default(),
-            clock: PersonalClock::default(),
-            lesson: None,
-            company_answers: None,
-            memo_in_memory: String::new(),
-            remarks: Vec::new(),
-            recorder: None,
-        }
-    }
-
-    /// Hands the set-up of day 0 to the database.
-    pub(crate) fn project_opening(&self) {
-        self.projection.entries().write(|| self.entry());
-        self.projection.commit(&self.position);
     }
 }
 
@@ -344,16 +296,6 @@ fn no_model(problem: String) -> RunError {
     RunError::NotPossible(format!(
         "the language model cannot lend its voice: {problem}. Nothing was recorded"
     ))
-}
-
-/// Eight hexadecimal digits that no other run has, as good as certainly.
-pub fn new_id() -> String {
-    static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-    let moment =
-        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
-    let mix = format!("{moment} {} {count}", std::process::id());
-    blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
 }
 
 #[cfg(test)]

@@ -5,55 +5,49 @@
 //! what was confirmed, and a run can always be rebuilt from `run.toml` and `trajectory.jsonl`.
 
 pub mod archive;
-mod ask;
+mod company;
 mod create;
+mod database;
 mod figures;
 mod inside;
 mod lesson;
 mod model_voice;
+mod permission;
 mod play;
 mod playback;
 mod python;
 #[cfg(test)]
 mod record_tests;
+mod recording;
 mod resume;
-mod state;
+mod snapshot;
+mod view;
 
 pub use archive::{
     Export, Imported, LabKey, LabPublicKey, Seal, Workshop, import_run, is_archive_name, is_run_name,
     read_seal_key, write_seal_key,
 };
-pub use ask::{connection_to_file, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
+pub use company::reports::{DayReport, Week};
+pub use company::xray::Xray;
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
-pub use create::{NewRun, Storage, StudyEntry, new_id};
-pub use figures::alike_plans::AlikePlans;
+pub use create::{NewRun, Storage, StudyEntry};
+pub use database::{RunDatabase, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
 pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
-pub use figures::best_channels::best_starting_channel;
-pub use figures::booked::Booked;
 pub use figures::changes::{Change, Decisions};
-pub use figures::churn::churn_of_last_week;
 pub use figures::dashboard::DeliveredQuality;
-pub use figures::estimates::Estimates;
-pub use figures::groups::{GroupWeek, PaidLeads};
+pub use figures::estimates::{Estimates, truth_behind};
+pub use figures::groups::{GroupWeek, PaidLeads, churn_of_last_week};
 pub use figures::journal::JournalEntry;
-pub use figures::measured_group::MeasuredGroup;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
-pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
-pub use figures::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId, setting_values};
-pub use figures::simulated_week::{GroupOfWeek, SimulatedWeek};
 pub use figures::sitting_count::SittingCount;
-pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
-pub use figures::truth::truth_behind;
-pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
+pub use figures::week::{Booked, Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
 pub use figures::week_figure::{FigureUnit, WeekFigure};
-pub use inside::last_day::Xray;
 pub use inside::look::{Look, WatchedDays};
-pub use inside::permission::{REFUSED_LOOK, may_look_inside};
 pub use inside::shadow::Shadow;
 pub use lesson::conduct::LessonEntry;
 pub use lesson::debrief::{
@@ -100,32 +94,39 @@ pub use novamind_record::trajectory::{
     Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
     policy_rationale, record, steady, written_moment,
 };
+pub use permission::{REFUSED_LOOK, may_look_inside};
 pub use play::act::Preview;
-pub use play::advance::DayReport;
-pub use play::afterwards::lines_afterwards;
-pub use play::clock::TIME_LIMIT;
-pub use play::drafts::UnsentTexts;
-pub use play::machine::Machine;
+pub use play::companion::Companion;
+pub use play::drafts::{Drafts, UnsentTexts};
 pub use play::once::WeekRequest;
-pub use play::parameters::{ChangedParameter, ChangedParameters};
-pub use play::personal_clock::TimeLeft;
-pub use play::presence::{IDLE_AFTER, Interface};
+pub use play::open::{Access, end_run};
 pub use play::undo::undone_calls;
-pub use play::week::Week;
+pub use play::{AnswersCompanies, Session};
+pub use playback::Playback;
 pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
-pub use playback::{Origin, Playback, read as read_recorded};
 pub use python::PYTHON_NOT_RUN;
+pub use recording::RunLog;
+pub use recording::activity::{ActivityLog, IDLE_AFTER, Interface, TIME_LIMIT};
+pub use recording::afterwards::lines_afterwards;
+pub use recording::folders::new_id;
+pub use recording::machine::Machine;
+pub use recording::personal_clock::TimeLeft;
 pub use resume::branch::{not_saved, write_past};
-pub use resume::integrity::Integrity;
 pub use resume::look::record_look;
-pub use resume::open::{Access, end_run};
-pub use resume::rebuild::rebuild_database;
+pub use resume::rebuild::{connection_to_file, rebuild_database};
+pub use resume::recorded::{Origin, read as read_recorded};
 pub use resume::rescue::{Rescued, rescue};
-pub use resume::sealing::SealKey;
 pub use resume::unnamed::UnnamedBranch;
 pub use resume::verify::{Verification, verify, verify_sealed};
-pub use state::{AnswersCompanies, Session};
+pub use snapshot::integrity::Integrity;
+pub use snapshot::sealing::SealKey;
+pub use view::alike_plans::AlikePlans;
+pub use view::debug_parameters::{ChangedParameter, ChangedParameters, DebugParameters};
+pub use view::observe::{Observation, WaitingThread};
+pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
+pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
+pub use view::{CompanyView, best_starting_channel};
 
 pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
@@ -145,17 +146,15 @@ pub use novamind_world::settings::{CoreSettings, Settings};
 /// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the
 /// results.
 pub mod engine {
+    pub use crate::company::facts_chain::StateHash;
+    pub use crate::company::feed::Feed;
+    pub use crate::company::overrides::{
+        Overrides, ParameterChange, Taken, Unfit, json_of_value, not_allowed, unknown, value_of_json,
+    };
+    pub use crate::company::simulation::Simulation;
+    pub use crate::database::{Entries, RunDatabase};
     pub use crate::figures::capacity_by_usage::UsageRule;
     pub use crate::figures::changes::changes;
-    pub use crate::figures::churn::churn;
-    pub use crate::figures::groups::count as count_groups;
-    pub use crate::figures::mood::mood_of;
-    pub use crate::play::facts_chain::StateHash;
-    pub use crate::play::feed::Feed;
-    pub use crate::play::overrides::{
-        Overrides, ParameterChange, Taken, Unfit, json_of_value, value_of_json,
-    };
-    pub use crate::play::parameters::{not_allowed, unknown};
-    pub use crate::play::projection::{Entries, Projection};
-    pub use crate::play::simulation::Simulation;
+    pub use crate::figures::groups::{churn, count as count_groups, mood_of};
+    pub use crate::figures::simulated_week::{GroupOfWeek, MeasuredGroup, SimulatedWeek};
 }

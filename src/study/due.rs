@@ -39,7 +39,7 @@ impl Study {
                 let open = own
                     .questions
                     .iter()
-                    .filter(|question| !session.answer_book().has(&own.name, &occasion, &question.id));
+                    .filter(|question| !session.log().answer_book().has(&own.name, &occasion, &question.id));
                 let due = |question: &Question| DueQuestion {
                     questionnaire: own.name.clone(),
                     title: own.title.clone(),
@@ -63,8 +63,8 @@ fn occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
             due.map(|week| format!("week {week}")).collect()
         }
         Moment::Break => {
-            let last =
-                Some(session.answer_book().breaks).filter(|breaks| *breaks > 0 && session.ended().is_none());
+            let last = Some(session.log().answer_book().breaks)
+                .filter(|breaks| *breaks > 0 && session.ended().is_none());
             last.map(|number| format!("break {number}")).into_iter().collect()
         }
         Moment::End => session.ended().map(|_| "end".to_owned()).into_iter().collect(),
@@ -74,7 +74,7 @@ fn occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
 impl DueQuestion {
     /// Records that the question is shown.
     pub fn note_shown(&self, session: &mut Session) {
-        session.note_activity(Activity::Question(Asked {
+        session.activity().note(Activity::Question(Asked {
             questionnaire: self.questionnaire.clone(),
             occasion: self.occasion.clone(),
             id: self.question.id.clone(),
@@ -91,7 +91,7 @@ impl DueQuestion {
             Some(words) => json!({ "length": words.chars().count() }),
             None => value.clone(),
         };
-        session.note_activity(Activity::Answer(Answered {
+        session.activity().note(Activity::Answer(Answered {
             questionnaire: self.questionnaire.clone(),
             occasion: self.occasion.clone(),
             id: self.question.id.clone(),

@@ -115,37 +115,37 @@ impl Company {
     pub fn after(session: &Session, before: Option<&Company>) -> Company {
         let settings = ToolId::all().map(|tool| (tool, tool.tool().current(session.settings())));
         Company {
-            seen: session.observe(),
+            seen: session.company().observe(),
             folder: session.folder().map(PathBuf::from),
-            next_decision_day: session.next_decision_day(),
+            next_decision_day: session.company().next_decision_day(),
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: session.weeks().to_vec(),
             week: WeekReport::of_session(session),
             funnels: funnels(session),
             fits: fits(session),
-            lead_costs: pair_costs(session.group_weeks()),
-            group_weeks: session.group_weeks().into(),
+            lead_costs: pair_costs(session.company().group_weeks()),
+            group_weeks: session.company().group_weeks().into(),
             needs: needs(session),
-            notices: session.notices().to_vec(),
-            quality: session.delivered_quality(),
-            quality_base: session.quality_base(),
-            naive: session.naive_forecasts(),
-            scores: session.forecast_scores(),
+            notices: session.company().notices().to_vec(),
+            quality: session.company().delivered_quality(),
+            quality_base: session.company().quality_base(),
+            naive: session.company().naive_forecasts(),
+            scores: session.company().forecast_scores(),
             journal: session.journal().to_vec(),
-            asked: session.asked().to_vec(),
-            viewed: session.viewed().clone(),
+            asked: session.company().asked().to_vec(),
+            viewed: session.log().viewed().clone(),
             memo: session.memo().unwrap_or_default(),
             settings: settings.collect(),
-            costs: session.look_up(&GetCostInfo, ()).unwrap_or_default(),
-            projects: session.look_up(&ListResearchProjects, ()).unwrap_or_default(),
-            research_means: session.research_means(),
+            costs: session.company().look_up(&GetCostInfo, ()).unwrap_or_default(),
+            projects: session.company().look_up(&ListResearchProjects, ()).unwrap_or_default(),
+            research_means: session.company().research_means(),
             posts: posts::read(session, before.map(|company| &company.posts)),
-            market: session.look_up(&GetMarketOverview, ()).unwrap_or_default(),
-            names: session.company_names().clone(),
+            market: session.company().look_up(&GetMarketOverview, ()).unwrap_or_default(),
+            names: session.company().company_names().clone(),
             insights: insights(session),
-            terms: session.terms(),
+            terms: session.company().tool_limits(),
             numbers: session.numbers(),
-            studies: session.running_studies(),
+            studies: session.company().running_studies(),
             remarks: session.remarks().to_vec(),
             replayed: false,
             may_look_inside: session.may_look_inside(),
@@ -229,8 +229,8 @@ impl Company {
 
 /// What is known of every known group; free, and not recorded.
 fn insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
-    let known = session.observe().known_groups;
-    let told = |group: Group| Some((group, session.look_up(&GetGroupInsights, group)?));
+    let known = session.company().observe().known_groups;
+    let told = |group: Group| Some((group, session.company().look_up(&GetGroupInsights, group)?));
     known.into_iter().filter_map(told).collect()
 }
 

@@ -61,7 +61,7 @@ impl SessionThread {
             Some(Open::Replayed(_)) => {
                 Some(Refusal::new("read_only", "this is a replay: nothing is changed"))
             }
-            Some(Open::Played(session)) if !session.records_looks() && session.folder().is_some() => {
+            Some(Open::Played(session)) if !session.log().is_written() && session.folder().is_some() => {
                 Some(Refusal::new("read_only", "this run is only read: nothing is changed"))
             }
             _ => None,
@@ -74,7 +74,7 @@ impl SessionThread {
         let (is_allowed, folder) = match &self.open {
             None => return Err(Refusal::new("not_possible", "no run is open")),
             Some(Open::Played(session)) => {
-                (session.may_look_inside(), session.folder().filter(|_| !session.records_looks()))
+                (session.may_look_inside(), session.folder().filter(|_| !session.log().is_written()))
             }
             Some(Open::Replayed(playback)) => (playback.may_look_inside(), playback.session().folder()),
         };

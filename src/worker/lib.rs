@@ -329,20 +329,20 @@ impl SessionThread {
             Job::LookInside(number, question) => self.look_inside(number, &question),
             Job::ReadHiddenValues(day) => self.read_hidden_values(day),
             Job::TakeUp(interface) => self.take_up(interface),
-            Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
+            Job::Note(activity) => self.with_session(|session| session.activity().note(activity)),
             Job::NotePresence(event, idle_ms, window) => {
-                self.with_session(|session| session.note_presence(event, idle_ms, window));
+                self.with_session(|session| session.activity().note_presence(event, idle_ms, window));
             }
             // The screen is covered already; a disk that refuses the line is no reason to uncover it.
             Job::StopClock(reason) => {
-                self.with_session(|session| drop(session.stop_clock(reason.as_deref())));
+                self.with_session(|session| drop(session.activity().stop_clock(reason.as_deref())));
             }
             Job::StartClock => {
-                self.with_session(|session| drop(session.start_clock()));
+                self.with_session(|session| drop(session.activity().start_clock()));
                 // Questions may be due after a break.
                 self.tell_due();
             }
-            Job::KeepDrafts(texts) => self.with_session(|session| session.keep_drafts(&texts)),
+            Job::KeepDrafts(texts) => self.with_session(|session| session.drafts().keep(&texts)),
             Job::Settle(done) => drop(done.send(())),
         }
     }
@@ -354,11 +354,11 @@ impl SessionThread {
     }
 
     fn take_up(&mut self, interface: Interface) {
-        self.with_session(|session| session.take_up(interface));
+        self.with_session(|session| session.activity().take_up(interface));
         let Some(Open::Played(session)) = &self.open else { return };
-        let (texts, held) = (session.kept_drafts(), session.is_held());
+        let (texts, held) = (session.drafts().kept(), session.log().is_held());
         self.minutes_left.clear();
-        self.limits = (!session.time_left().is_empty()).then(Instant::now);
+        self.limits = (!session.log().time_left().is_empty()).then(Instant::now);
         if !texts.is_empty() {
             self.say(News::Unsent(Box::new(texts)));
         }
@@ -372,7 +372,7 @@ impl SessionThread {
     fn put_down(&mut self, cause: LeavingCause) -> Result<(), RunError> {
         match &mut self.open {
             Some(Open::Played(session)) => {
-                session.leave(cause);
+                session.activity().leave(cause);
                 session.save()
             }
             Some(Open::Replayed(playback)) => playback.session_mut().save(),
@@ -424,7 +424,7 @@ impl SessionThread {
             return;
         };
         let news = work(&mut OpenRun { session: open.session(), shown, news, queries, stop });
-        let loss = self.open.as_mut().and_then(|open| open.session().record_loss().map(str::to_owned));
+        let loss = self.open.as_mut().and_then(|open| open.session().log().loss().map(str::to_owned));
         if let Some(words) = loss {
             // Before what came of the work: nothing goes on from here.
             self.say(News::RecordLost(words));

@@ -17,8 +17,8 @@ impl SessionThread {
         }
         self.limits = Some(now + BETWEEN_LOOKS);
         let Some(Open::Played(session)) = &mut self.open else { return };
-        let reached = session.check_limits();
-        let left = session.time_left();
+        let reached = session.activity().check_limits();
+        let left = session.log().time_left();
         let minutes: Vec<i64> = left.iter().map(TimeLeft::whole_minutes).collect();
         if minutes != self.minutes_left {
             self.minutes_left = minutes;

@@ -14,7 +14,7 @@ impl SessionThread {
         let Some(Open::Played(session)) = &self.open else { return };
         // Whoever waits for the writer here would keep the person waiting; what it wrote last is known.
         if self.mending.is_none()
-            && let Some(problem) = session.database_failure()
+            && let Some(problem) = session.database().failure()
         {
             self.mending = Some(Instant::now() + BETWEEN_TRIES);
             self.say(News::DatabaseBehind(problem.0));

@@ -93,7 +93,8 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
     let mut limit = if last.is_some() { PostLimit::Newest(NEWEST) } else { PostLimit::All };
     loop {
-        let told = session.look_up(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
+        let told =
+            session.company().look_up(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
         let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();
         // Nothing known among them: more of what is new may stand before them.
@@ -171,7 +172,7 @@ mod tests {
         let nothing = Posts::default();
         for known in [&first, &nothing] {
             for _ in 0..3 {
-                let forecasts = session.naive_forecasts();
+                let forecasts = session.company().naive_forecasts();
                 session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
             }
             let (grown, whole) = (read(&session, Some(known)), read(&session, None));

@@ -63,13 +63,13 @@ impl QueryThreads {
 
     /// Gives each thread a connection to a run's database; returns what stops the person's queries.
     pub(super) fn connect(&self, session: &Session) -> Option<Interrupt> {
-        let limits = session.query_limits();
+        let limits = session.company().query_limits();
         let mut interrupt = None;
-        if let Ok(own) = session.open_connection() {
+        if let Ok(own) = session.database().open_connection() {
             interrupt = Some(own.interrupt());
             let _ = self.person.send(QueryJob::Connect(Box::new(own), limits));
         }
-        if let Ok(own) = session.open_connection() {
+        if let Ok(own) = session.database().open_connection() {
             let _ = self.screens.send(QueryJob::Connect(Box::new(own), limits));
         }
         interrupt
@@ -164,8 +164,8 @@ mod tests {
         let (jobs, asked) = channel();
         let thread = start_thread(news, jobs, ask_or_panic);
         let connect = || {
-            let connection = session.open_connection().expect("a connection");
-            let _ = thread.send(QueryJob::Connect(Box::new(connection), session.query_limits()));
+            let connection = session.database().open_connection().expect("a connection");
+            let _ = thread.send(QueryJob::Connect(Box::new(connection), session.company().query_limits()));
         };
         let answer = |sql: &str, number| {
             let question = Question::of_person(sql.to_owned(), number, None, QuerySource::Typed);

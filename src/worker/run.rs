@@ -14,7 +14,7 @@ use crate::message::{DayTold, Message, News};
 use novamind_insight::Inspect;
 use novamind_report::xray::stop_in_words;
 use novamind_report::{Story, as_html, as_markdown};
-use novamind_session::{DayReport, Forecasts, Interrupt, Session, Via};
+use novamind_session::{DayReport, Forecasts, Interrupt, RunDatabase, Session, Via};
 use novamind_tools::ToolId;
 
 /// The run that is open, and where news of it go.
@@ -38,7 +38,13 @@ impl OpenRun<'_> {
 
     pub(super) fn call(&mut self, tool: ToolId, arguments: &Value) -> Option<News> {
         let hold = |own| *self.stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
-        hold(self.session.interrupt().ok().filter(|_| tool.runs_code()));
+        hold(
+            self.session
+                .complete_database()
+                .and_then(RunDatabase::interrupt)
+                .ok()
+                .filter(|_| tool.runs_code()),
+        );
         let answer = self.session.call(tool, arguments, Via::Form).map(Box::new);
         hold(None);
         Some(News::Called(tool, answer, self.company()))

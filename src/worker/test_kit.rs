@@ -18,7 +18,7 @@ pub fn played(weeks: usize) -> Session {
         open_shop(&mut session);
     }
     for _ in 0..weeks {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     session
@@ -57,10 +57,10 @@ pub fn courted() -> Session {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
     for _ in 0..20 {
-        if session.observe().waiting.len() >= 3 {
+        if session.company().observe().waiting.len() >= 3 {
             return session;
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
     panic!("nobody came in twenty weeks");

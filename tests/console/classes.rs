@@ -30,7 +30,7 @@ fn play(handout: &Path, runs: &Path, price: f64) {
     session.call("set_prices", &prices, Via::Script).expect("prices");
     while session.ended().is_none() {
         let _ = session.guess_in_lesson(if price < 20.0 { 2.0 } else { 1.0 });
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
 }

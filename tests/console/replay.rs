@@ -32,11 +32,11 @@ fn decide(session: &mut Session, week: u32) {
         session.query("SELECT plan, count(*) FROM subscriptions GROUP BY 1").expect("an answer");
         session.set_memo(&format!("week {week}: watch the ads")).expect("notes");
     }
-    session.note_view("cash", "overview", 4_200);
+    session.activity().note_view("cash", "overview", 4_200);
     session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("a price below zero");
     session.call("set_prices", &json!({"A": 12 + week}), Via::Form).expect("a price");
     session.call("set_daily_spend", &json!({"development": 100 * week}), Via::Form).expect("spending");
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let why = format!("If week {week} keeps its leads, a dearer plan A pays for development.");
     session.advance(&why, &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }

@@ -274,7 +274,11 @@ fn words_are_answered_as_in_plain_mode_and_each_look_is_a_line() {
     let found = session.inspect().difference_of_days(27, 28).expect("a difference");
     shows(&screens[2], &format!("differs: {}", found.parts.join(", ")));
     shows(&screens[3], "no parameter differs from");
-    let value = session.parameter("group.S1.c_max_mean").expect("a value");
+    let value = session
+        .company()
+        .debug_parameters()
+        .and_then(|own| own.value("group.S1.c_max_mean"))
+        .expect("a value");
     shows(&screens[4], &format!("group.S1.c_max_mean = {value}"));
 }
 

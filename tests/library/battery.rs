@@ -84,13 +84,13 @@ fn week(session: &mut Session, at: u32) {
     if let Some((tool, arguments)) = deed {
         call(session, tool, arguments);
     }
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
 /// Answers most threads with what was asked, ends some, and leaves some alone.
 fn answer(session: &mut Session) {
-    let waiting = session.observe().waiting;
+    let waiting = session.company().observe().waiting;
     let offer = |thread: &WaitingThread| {
         let price = thread.asked.unwrap_or(30.0);
         json!([thread.customer, [["C", price * 1.5], ["B", price]]])
@@ -188,7 +188,7 @@ fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
 #[test]
 fn statements_are_answered_as_by_ordinary_tables_and_in_few_steps() {
     let session = company();
-    let connection = session.open_connection().expect("a connection");
+    let connection = session.database().open_connection().expect("a connection");
     let plain = plain_tables(&connection);
     let statements = battery();
     assert!(statements.len() >= 300, "{}", statements.len());
@@ -214,7 +214,7 @@ fn how_long_the_statements_take_with_190_000_subscribers() {
     let configuration = Configuration::shipped();
     let bench = Bench { repetitions: 1, scratch: scratch.path().to_owned(), configuration };
     let session = company_to_ask(&bench).expect("a company");
-    let connection = session.open_connection().expect("a connection");
+    let connection = session.database().open_connection().expect("a connection");
     let patient = Limits { steps: None, time: Duration::from_secs(120), ..LIMITS };
     let mut times: Vec<(Duration, &str)> = Vec::new();
     for (_, sql) in battery() {

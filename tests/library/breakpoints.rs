@@ -495,7 +495,7 @@ fn a_run_in_memory_stops_as_long_as_all_its_days_were_watched() {
     session.inspect().set_breakpoint(condition("new_subscribers >= 1")).expect("a breakpoint");
     let run = session.inspect().run_until_breakpoint(30, &mut |_| {}).expect("days");
     assert_eq!(run.hits.len(), 1);
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     assert_eq!(
         session.inspect().run_until_breakpoint(3, &mut |_| {}).expect_err("a gap").code,
@@ -571,7 +571,7 @@ fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
     assert_eq!(run.hits, []);
     let told: Vec<_> = run.true_before.iter().map(|own| (own.hit.breakpoint.number, own.until)).collect();
     assert_eq!(told, [(1, 19)]);
-    assert_eq!(session.observe().cash_change_days, 5);
+    assert_eq!(session.company().observe().cash_change_days, 5);
 }
 
 /// The first subscribers come in the third week: 30 days later churn has its first value, that of the first day's alone.

@@ -74,7 +74,7 @@ fn play_on(folder: &Path, price: f64, weeks: u32) {
         if awaits(&session) {
             session.guess_in_lesson(if price < 20.0 { 2.0 } else { 1.0 }).expect("a guess");
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
 }

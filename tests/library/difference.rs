@@ -88,7 +88,7 @@ fn figures_of_days_are_told_again_as_they_were() {
     let mut session = run_in(folder.path(), Mode::Debug);
     let mut live = Vec::new();
     for _ in 0..3 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         let mut keep = |day: &novamind::session::DayReport<'_>| {
             live.push((
                 day.figures.day,

@@ -34,7 +34,7 @@ fn create(storage: Storage) -> Session {
 
 /// Answers some threads, ends some, leaves some alone, and asks a subscriber for another price.
 fn answer(session: &mut Session) {
-    let seen = session.observe();
+    let seen = session.company().observe();
     let mine = |thread: &&WaitingThread, rest: u32| {
         thread.thread % 7 != 6 && (thread.thread % 5 == 4) == (rest == 1)
     };
@@ -67,7 +67,7 @@ fn answer(session: &mut Session) {
 
 fn week(session: &mut Session) {
     answer(session);
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
@@ -103,7 +103,7 @@ fn a_run_with_deals_is_left_continued_and_played_again() {
         assert_eq!(number(&mut session, sql), number(&mut straight, sql), "{sql}");
     }
     assert!(number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'deal_won'") > 20.0);
-    assert_eq!(session.observe().waiting, straight.observe().waiting);
+    assert_eq!(session.company().observe().waiting, straight.company().observe().waiting);
     drop(session);
     assert_eq!(verify(&place).expect("it verifies").states, 15);
     a_changed_price_is_found(&place);
@@ -210,7 +210,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
 fn deals_show_in_subscriptions_and_bills() {
     let mut session = create(Storage::Memory);
     (0..16).for_each(|_| week(&mut session));
-    let seen = session.observe();
+    let seen = session.company().observe();
     let run = &mut session;
     let companies = "FROM subscriptions s JOIN customers c USING (customer_id) WHERE customer_type = 'large'";
     assert_eq!(
@@ -281,7 +281,7 @@ fn deals_show_in_subscriptions_and_bills() {
 fn the_week_counts_threads_replies_and_what_waits() {
     let mut session = create(Storage::Memory);
     (0..12).for_each(|_| week(&mut session));
-    let seen = session.observe();
+    let seen = session.company().observe();
     let figures = seen.last_week.expect("a week");
     let run = &mut session;
     let from = "day BETWEEN 78 AND 84";
@@ -305,7 +305,7 @@ fn the_week_counts_threads_replies_and_what_waits() {
     rules_see_what_the_tables_say(run);
     // What was written since the week is told, and cannot be taken back: equal offers of a call as one sentence.
     answer(run);
-    let done = run.observe().purchases;
+    let done = run.company().observe().purchases;
     let offers = done.iter().filter(|line| line.starts_with("offered C at $"));
     let companies =
         offers.filter_map(|line| line.split(" to ").last()?.split(' ').next()?.parse::<f64>().ok());
@@ -379,7 +379,7 @@ fn rules_see_what_the_tables_say(run: &mut Session) {
         assert_eq!(last, told.map(|own| json!([own["plan"], own["price_per_seat"]])).collect::<Vec<_>>());
     }
     assert!(asked > 3, "{asked} companies asked");
-    let row = threads[0].row(run.company_names());
+    let row = threads[0].row(run.company().company_names());
     for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
         assert!(row.get(field).is_some(), "{field}: {row}");
     }

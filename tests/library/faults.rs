@@ -56,7 +56,13 @@ fn group(id: &str) -> Group {
 }
 
 fn parameter(session: &Session, key: &str) -> f64 {
-    session.parameter(key).expect("a parameter").as_f64().expect("a number")
+    session
+        .company()
+        .debug_parameters()
+        .and_then(|own| own.value(key))
+        .expect("a parameter")
+        .as_f64()
+        .expect("a number")
 }
 
 /// What tells a fault: the days it takes to show, and whether a view says something that the mechanism does not.
@@ -185,8 +191,12 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
     for fault in [Fault::SpillOverReversed, Fault::QuotaInverted] {
         let mut session = company(folder.path(), Some(fault), 28);
         weeks(&mut session, 1);
-        assert!(session.observe().has_own_parameters, "it is never ranked");
-        assert_eq!(session.changed_parameters().expect("a debug run").in_force, [], "it is no parameter");
+        assert!(session.company().observe().has_own_parameters, "it is never ranked");
+        assert_eq!(
+            session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run").in_force,
+            [],
+            "it is no parameter"
+        );
         let own = place(&session);
         let branch = session.branch(3, Mode::Debug).expect("a branch");
         assert_eq!(branch.manifest().fault, Some(fault));

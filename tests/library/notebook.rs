@@ -77,11 +77,11 @@ fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
     let long =
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 900) SELECT x FROM n";
     call(&mut session, "register_daily_calculation", json!({"name": "long", "code": long}));
-    assert!(!session.dashboard().contains("Weekly Calculations"));
+    assert!(!session.company().dashboard().contains("Weekly Calculations"));
     let dashboard = week(&mut session).dashboard;
     let expected = "\n--- Weekly Calculations ---\nmoney:\n  day  cash\n  0    1000000.0\nwrong:\n  failed: statement 1: there is no column c_max";
     assert!(dashboard.contains(expected), "{dashboard}");
-    assert_eq!(session.calculated()[2].output.chars().count(), 500);
+    assert_eq!(session.company().calculated()[2].output.chars().count(), 500);
     call(&mut session, "remove_daily_calculation", json!({"name": "long"}));
     let dashboard = week(&mut session).dashboard;
     assert!(
@@ -108,7 +108,7 @@ fn what_is_kept_survives_leaving_and_is_verified() {
     // What a script said is not asked again: chance in SQL does not damage a run.
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
-    assert_eq!(session.dashboard(), dashboard);
+    assert_eq!(session.company().dashboard(), dashboard);
     assert!(dashboard.contains("money:\n  cash\n  1000000.0\n"), "{dashboard}");
     assert_eq!(call(&mut session, "list_scripts", json!({})), json!({"scripts": ["two"]}));
     assert_eq!(call(&mut session, "run_script", json!({"name": "two"}))["stdout"], "2\n2\n");
@@ -162,19 +162,22 @@ fn the_dashboard_is_that_of_the_last_week_until_the_next() {
         session.call("set_prices", &json!({ "A": price }), Via::Script).expect("prices");
     };
     set(&mut session, 12.0);
-    assert!(session.dashboard().contains("Prices: A $12"), "before the first week it is fresh");
-    let forecasts = session.naive_forecasts();
+    assert!(session.company().dashboard().contains("Prices: A $12"), "before the first week it is fresh");
+    let forecasts = session.company().naive_forecasts();
     let told = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
     set(&mut session, 13.0);
     assert!(told.contains("Prices: A $12"), "{told}");
-    assert_eq!((session.dashboard(), session.observe().dashboard), (told.clone(), told.clone()));
+    assert_eq!(
+        (session.company().dashboard(), session.company().observe().dashboard),
+        (told.clone(), told.clone())
+    );
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     // From the snapshot, and without it.
     for _ in 0..2 {
         let again = Session::open(&folder, Access::Read, true).expect("it opens");
-        assert_eq!(again.dashboard(), told);
+        assert_eq!(again.company().dashboard(), told);
         std::fs::remove_file(folder.join("snapshot.bin")).ok();
     }
     let mut again = Session::open(&folder, Access::Write, true).expect("it opens");

@@ -142,7 +142,12 @@ fn a_run_that_was_killed_goes_on_with_what_was_set() {
             again.save().expect("saved");
             drop(again);
             let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
-            let waiting = again.changed_parameters().expect("a debug run").waiting;
+            let waiting = again
+                .company()
+                .debug_parameters()
+                .and_then(|own| own.changed())
+                .expect("a debug run")
+                .waiting;
             let outages = waiting.iter().any(|own| own.key == "operations.base_outage_prob");
             if outages {
                 weeks(&mut again, 4);
@@ -203,9 +208,23 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
                 ("", json!({}), Some(u32::MAX)),
             ] {
                 told.push(session.set_parameter(key, &value, from).expect_err("refused").to_string());
-                told.push(session.parameter(key).expect_err("refused").to_string());
+                told.push(
+                    session
+                        .company()
+                        .debug_parameters()
+                        .and_then(|own| own.value(key))
+                        .expect_err("refused")
+                        .to_string(),
+                );
             }
-            told.push(session.changed_parameters().expect_err("refused").to_string());
+            told.push(
+                session
+                    .company()
+                    .debug_parameters()
+                    .and_then(|own| own.changed())
+                    .expect_err("refused")
+                    .to_string(),
+            );
             told
         };
         let told = tried(&mut session);
@@ -218,7 +237,7 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
     session.end().expect("it ends");
     let refused = session.set_parameter("group.S1.c_max_mean", &json!(300), None).expect_err("it is over");
     assert_eq!(refused.code, "run_over");
-    assert!(session.changed_parameters().is_ok());
+    assert!(session.company().debug_parameters().and_then(|own| own.changed()).is_ok());
 }
 
 #[test]
@@ -257,7 +276,15 @@ fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
         assert_eq!(refused.code, code, "{key}: {refused}");
         assert!(refused.message.contains(part), "{key}: {refused}");
     }
-    assert_eq!(session.parameter("group.S9").expect_err("no group").code, "parameter_unknown");
+    assert_eq!(
+        session
+            .company()
+            .debug_parameters()
+            .and_then(|own| own.value("group.S9"))
+            .expect_err("no group")
+            .code,
+        "parameter_unknown"
+    );
     assert_eq!((lines(), session.state_hash()), (before, hash));
 }
 
@@ -313,19 +340,23 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
 fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
-    assert!(!session.observe().has_own_parameters);
+    assert!(!session.company().observe().has_own_parameters);
     let own = |id: &str| {
         let list = list_runs(folder.path()).expect("a list");
         list.into_iter().find(|run| run.id == id).expect("the run").has_own_parameters
     };
     let id = session.manifest().id.clone();
     assert!(!own(&id));
-    let before = session.parameter("operations.base_outage_prob").expect("a value");
+    let before = session
+        .company()
+        .debug_parameters()
+        .and_then(|own| own.value("operations.base_outage_prob"))
+        .expect("a value");
     set(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
-    assert!(session.observe().has_own_parameters && own(&id));
+    assert!(session.company().observe().has_own_parameters && own(&id));
     set(&mut session, "operations.base_outage_prob", before, None);
-    assert!(session.observe().has_own_parameters, "what was set stays on record");
-    let changed = session.changed_parameters().expect("a debug run");
+    assert!(session.company().observe().has_own_parameters, "what was set stays on record");
+    let changed = session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run");
     assert_eq!(
         (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),
         (Some("default"), 0, 1)
@@ -333,7 +364,7 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
     week(&mut session);
     drop(session);
     let again = Session::open(&folder.path().join(id), Access::Write, true).expect("it opens");
-    assert!(again.observe().has_own_parameters);
+    assert!(again.company().observe().has_own_parameters);
 }
 
 /// Every kind of parameter once: `group.*.c_max_mean` and not 26 of them.
@@ -389,7 +420,7 @@ fn whatever_is_set_the_days_go_on() {
     let (mut accepted, mut refused) = (0, 0);
     let all = kinds(&serde_json::to_value(session.params()).expect("JSON"));
     for (at, key) in all.into_iter().enumerate() {
-        let old = session.parameter(&key).expect("its value");
+        let old = session.company().debug_parameters().and_then(|own| own.value(&key)).expect("its value");
         let value = [json!(0), json!(8)][at % 2].clone();
         if session.set_parameter(&key, &value, None).is_err() {
             refused += 1;
@@ -415,14 +446,14 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
     let usual = session.set_parameter("calendar.weekly", &crowded, None).expect("in its range").old;
     let refused = session.inspect().run_until_breakpoint(7, &mut |_| {}).expect_err("no room");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
 
     // From a later day on: the days before it run, in days and in weeks.
     session.set_parameter("calendar.weekly", &usual, None).expect("as it was");
     session.set_parameter("calendar.weekly", &crowded, Some(today + 3)).expect("it waits");
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let week = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("two days");
     assert_eq!(session.day(), today + 2);
     assert!(week.remark.is_some_and(|text| text.contains("1,000,000 leads")), "it is told why");

@@ -48,7 +48,7 @@ fn assert_fails(session: &mut Session, code: &str, parts: &[&str]) {
 fn a_script_asks_and_prints() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let hash = session.state_hash();
-    let asked = session.asked().to_vec();
+    let asked = session.company().asked().to_vec();
     let said = run(
         &mut session,
         "rows = query('SELECT day, category, amount FROM ledger')\nprint(rows, get_vars())\n\
@@ -72,7 +72,7 @@ fn a_script_asks_and_prints() {
     week(&mut session);
     assert_eq!(call(&mut session, "run_script", json!({ "name": "day" }))["stdout"], "{'current_day': 7}\n");
     assert_ne!(session.state_hash(), hash, "a week has passed");
-    assert_eq!(session.asked(), asked, "what a script asks is no history of a person");
+    assert_eq!(session.company().asked(), asked, "what a script asks is no history of a person");
 }
 
 #[test]
@@ -234,7 +234,7 @@ fn records_hold_what_was_said_and_run_nothing() {
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     std::fs::remove_file(folder.join("snapshot.bin")).ok();
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
-    assert_eq!(session.dashboard(), dashboard);
+    assert_eq!(session.company().dashboard(), dashboard);
     assert!(session.remarks().join(" ").contains("Calculations in Python run before each week: now, wrong."));
     week(&mut session);
 
@@ -242,6 +242,6 @@ fn records_hold_what_was_said_and_run_nothing() {
     let again = branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());
-    let said = &branch.calculated()[0].output;
+    let said = &branch.company().calculated()[0].output;
     assert!(said.starts_with("failed: Python is not run"), "{said}");
 }

@@ -23,7 +23,7 @@ fn company_with_offers() -> Session {
         call(&mut session, tool, arguments);
     }
     while session.day() < 84 {
-        let waiting = session.observe().waiting;
+        let waiting = session.company().observe().waiting;
         // Every third company is left without an answer.
         let offered = waiting.iter().filter(|thread| thread.thread % 3 != 0).map(|thread| {
             let price = if thread.thread % 2 == 0 { 19.5 } else { 130.0 };
@@ -39,7 +39,7 @@ fn company_with_offers() -> Session {
 }
 
 fn week(session: &mut Session) {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 

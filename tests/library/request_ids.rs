@@ -11,7 +11,7 @@ use crate::durability::run::{create, open, runs};
 
 /// Lets a week pass over HTTP.
 fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -> Result<Value, String> {
-    let predictions = session.naive_forecasts().as_predictions();
+    let predictions = session.company().naive_forecasts().as_predictions();
     // The same forecasts each time: they are part of what is asked.
     let predictions = if rationale == "naive" { predictions } else { fixed() };
     let request = WeekRequest {
@@ -105,7 +105,7 @@ fn another_payload_another_day_and_strange_ids_are_refused() {
         "request_id_payload_mismatch"
     );
     assert_eq!(code(week(&mut session, "on", Value::Null, "x")), "request_id_payload_mismatch");
-    assert_eq!(session.current("set_prices")["A"], 12.0);
+    assert_eq!(session.company().current("set_prices")["A"], 12.0);
     for id in ["".to_owned(), "ä".repeat(129)] {
         assert_eq!(code(call(&mut session, "set_prices", json!({ "A": 13 }), &id)), "request_id_invalid");
     }
@@ -161,9 +161,9 @@ fn a_branch_keeps_the_ids_of_the_lines_that_it_shares() {
     assert_eq!(call(&mut branch, "set_prices", json!({ "A": 12 }), "p"), Ok(first));
     assert_eq!(week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
     // What was decided after the branch is not in its record.
-    assert_eq!(branch.current("set_prices")["A"], 12.0);
+    assert_eq!(branch.company().current("set_prices")["A"], 12.0);
     call(&mut branch, "set_prices", json!({ "A": 15 }), "q").expect("a new request");
-    assert_eq!(branch.current("set_prices")["A"], 15.0);
+    assert_eq!(branch.company().current("set_prices")["A"], 15.0);
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn undo_does_not_free_an_id() {
     let first = call(&mut session, "set_prices", json!({ "A": 14 }), "p").expect("a price");
     session.undo(Via::Plain).expect("it is taken back");
     assert_eq!(call(&mut session, "set_prices", json!({ "A": 14 }), "p"), Ok(first));
-    assert_eq!(session.current("set_prices")["A"], 12.0);
+    assert_eq!(session.company().current("set_prices")["A"], 12.0);
 }
 
 #[test]

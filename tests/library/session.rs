@@ -28,7 +28,7 @@ fn the_database_holds_what_the_run_says() {
     let mut session = create(new_run(Storage::Memory));
     open_shop(&mut session);
     weeks(&mut session, 6);
-    let observation = session.observe();
+    let observation = session.company().observe();
     assert!((number(&mut session, "SELECT sum(amount) FROM ledger") - observation.cash).abs() < 1e-6);
     let active = "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'";
     assert_eq!(number(&mut session, active), f64::from(observation.subscribers));
@@ -50,7 +50,7 @@ fn refused_calls_change_nothing_and_are_recorded() {
     let refusal = session.call("set_prices", &json!({"A": 0}), Via::Form).expect_err("a price of zero");
     assert_eq!((refusal.code, refusal.field.as_deref()), ("price_not_positive", Some("A")));
     assert_eq!(session.call("set_price", &json!({}), Via::Form).expect_err("no tool").code, "unknown_tool");
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let blank = session.advance(" ", &forecasts, Via::Form, &mut |_| {}).expect_err("no rationale");
     assert_eq!(blank.code, "rationale_missing");
     assert_eq!(session.state_hash(), before);
@@ -80,10 +80,10 @@ fn checking_shows_cost_and_changes_and_does_nothing() {
         "price_not_positive"
     );
     assert_eq!(session.state_hash(), before);
-    let cash = session.observe().cash;
+    let cash = session.company().observe().cash;
     call(&mut session, "start_research_project", json!({"tier": 1}));
-    assert_eq!(session.observe().cash, cash - preview.cost_now);
-    assert_eq!(session.observe().running_research, 1);
+    assert_eq!(session.company().observe().cash, cash - preview.cost_now);
+    assert_eq!(session.company().observe().running_research, 1);
 }
 
 #[test]
@@ -100,10 +100,10 @@ fn settings_of_the_week_can_be_taken_back() {
         ("ads linkedin E1", 200.0, 0.0)
     );
     session.undo(Via::Form).expect("it is taken back");
-    assert_eq!(session.current("set_prices")["A"], 12);
-    assert_eq!(session.changes().len(), 1);
+    assert_eq!(session.company().current("set_prices")["A"], 12);
+    assert_eq!(session.company().changes().len(), 1);
     week(&mut session);
-    assert!(session.changes().is_empty());
+    assert!(session.company().changes().is_empty());
     assert_eq!(session.undo(Via::Form).expect_err("a week has passed").code, "nothing_to_undo");
 }
 
@@ -116,7 +116,7 @@ fn calls_that_changed_nothing_do_not_block_undo() {
     call(&mut session, "set_daily_spend", json!({"operations": 0}));
     let back = session.undo(Via::Form).expect("11 is taken back");
     assert_eq!((back[0].setting.to_string().as_str(), back[0].old, back[0].new), ("price A", 11.0, 10.0));
-    assert_eq!(session.current("set_prices")["A"], 10);
+    assert_eq!(session.company().current("set_prices")["A"], 10);
     assert_eq!(session.undo(Via::Form).expect_err("no price before").code, "cannot_undo");
 }
 
@@ -130,7 +130,7 @@ fn redo_sets_again_what_undo_took_back_until_something_new_is_set() {
     let there = session.state_hash().1["settings"].clone();
     session.undo(Via::Form).expect("undone");
     session.undo(Via::Form).expect("undone");
-    assert_eq!(session.current("set_prices")["A"], 10);
+    assert_eq!(session.company().current("set_prices")["A"], 10);
     let again = session.redo(Via::Form).expect("redone");
     assert_eq!((again[0].setting.to_string().as_str(), again[0].old, again[0].new), ("price A", 10.0, 12.0));
     session.undo(Via::Form).expect("a redo can be undone");
@@ -163,10 +163,10 @@ fn what_can_be_undone_and_redone_survives_leaving() {
         assert_eq!(place.join("snapshot.bin").exists(), snapshot);
         let mut session = Session::open(&place, Access::Write, true).expect("it opens");
         session.redo(Via::Form).expect("redone");
-        assert_eq!(session.current("set_capacity_tier")["tier"], 2);
+        assert_eq!(session.company().current("set_capacity_tier")["tier"], 2);
         session.undo(Via::Form).expect("undone");
         session.undo(Via::Form).expect("undone");
-        assert_eq!(session.current("set_prices")["A"], 10);
+        assert_eq!(session.company().current("set_prices")["A"], 10);
     }
 }
 
@@ -174,15 +174,19 @@ fn what_can_be_undone_and_redone_survives_leaving() {
 fn purchases_of_a_decision_day_count_in_the_week_they_open() {
     let mut session = create(new_run(Storage::Memory));
     call(&mut session, "research_market", json!({}));
-    assert_eq!((session.observe().cash_change, session.observe().cash), (0.0, 975_000.0), "no week yet");
+    assert_eq!(
+        (session.company().observe().cash_change, session.company().observe().cash),
+        (0.0, 975_000.0),
+        "no week yet"
+    );
     week(&mut session);
-    let seen = session.observe();
+    let seen = session.company().observe();
     let week_figures = seen.last_week.expect("a week");
     assert_eq!(seen.cash_change, seen.cash - 1_000_000.0);
     assert_eq!(week_figures.cash_change, seen.cash_change);
     assert!(seen.dashboard.contains(&format!("{:.0}", -seen.cash_change)[..2]), "{}", seen.dashboard);
     call(&mut session, "research_market", json!({}));
-    assert_eq!(session.observe().cash_change, seen.cash_change, "the last week is what it was");
+    assert_eq!(session.company().observe().cash_change, seen.cash_change, "the last week is what it was");
     let sql = format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks(1, 1));
     assert!((number(&mut session, &sql) - seen.cash_change).abs() < 1e-6);
     let sql = format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks(2, 2));
@@ -194,10 +198,10 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(NewRun { days: Some(10), ..new_run(runs(&folder)) });
     week(&mut session);
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let last = session.advance("the end", &forecasts, Via::Script, &mut |_| {}).expect("three days");
     assert_eq!((last.figures.day, last.figures.days_run, last.ended), (10, 3, Some(Ended::Horizon)));
-    assert_eq!(session.score(), Some(session.observe().cash));
+    assert_eq!(session.score(), Some(session.company().observe().cash));
     for tool in ["set_prices", "start_research_project"] {
         assert_eq!(session.call(tool, &json!({"A": 5}), Via::Script).expect_err("over").code, "run_over");
     }
@@ -220,13 +224,13 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
 fn bankruptcy_ends_the_week_and_the_run() {
     let mut session = create(NewRun { cash: Some(30_000.0), ..new_run(Storage::Memory) });
     call(&mut session, "set_daily_spend", json!({"operations": 3000, "development": 1500}));
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let broke = session.advance("spend", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     assert_eq!((broke.figures.day, broke.ended, session.score()), (7, Some(Ended::Bankruptcy), Some(0.0)));
     assert!((broke.figures.cash - -2095.0).abs() < 1e-9);
     let mut session = create(new_run(Storage::Memory));
     call(&mut session, "set_targeted_dev_spend", json!({"S1": 200000}));
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let broke = session.advance("spend", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     assert_eq!((broke.figures.day, broke.figures.days_run), (5, 5));
     assert!((broke.figures.cash - -425.0).abs() < 1e-9);
@@ -297,7 +301,7 @@ fn runs_are_listed_found_and_named() {
     let list = list_runs(folder.path()).expect("a list");
     assert_eq!(list.len(), 2);
     let own = list.iter().find(|run| run.id == first.manifest().id).expect("the first");
-    assert_eq!((own.day, own.cash), (7, first.observe().cash));
+    assert_eq!((own.day, own.cash), (7, first.company().observe().cash));
     assert!(find_run(folder.path(), &second.manifest().id[..6]).is_ok());
     assert!(find_run(folder.path(), "latest").is_ok());
     assert!(find_run(folder.path(), "zz").is_err());
@@ -347,12 +351,12 @@ fn hidden_state_is_for_debug_runs() {
     week(&mut debug);
     let mut hidden = 0;
     for _ in 0..2 {
-        let forecasts = sandbox.naive_forecasts();
+        let forecasts = sandbox.company().naive_forecasts();
         let mut watch = |day: &novamind::session::DayReport<'_>| hidden += u32::from(day.xray.is_some());
         sandbox.advance("a week", &forecasts, Via::Script, &mut watch).expect("a week");
     }
     assert_eq!((hidden, debug.day(), sandbox.day()), (0, 14, 14));
-    assert_eq!(debug.observe().cash, sandbox.observe().cash);
+    assert_eq!(debug.company().observe().cash, sandbox.company().observe().cash);
 }
 
 #[test]
@@ -376,7 +380,7 @@ fn forecasts_are_filed_and_come_back() {
     let mut session = Session::open(&place, Access::Write, true).expect("it opens");
     assert_eq!(number(&mut session, sum), expected);
     assert_eq!(number(&mut session, "SELECT submitted_at FROM predictions"), filed);
-    let naive: Forecasts = session.naive_forecasts();
+    let naive: Forecasts = session.company().naive_forecasts();
     assert!(naive.filled_naively == [true; 4] && naive.all[0].lower < naive.all[0].point);
 }
 
@@ -426,7 +430,7 @@ fn the_journal_tells_the_run_and_scores_its_forecasts() {
     open_shop(&mut run);
     weeks(&mut run, 5);
     run.set_memo("prices were a guess").expect("noted");
-    let scores = run.forecast_scores();
+    let scores = run.company().forecast_scores();
     assert_eq!(
         scores.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
         [(7, 5), (28, 2), (84, 0), (182, 0)]
@@ -436,7 +440,7 @@ fn the_journal_tells_the_run_and_scores_its_forecasts() {
     drop(run);
     let again = Session::open(&folder.path().join(id), Access::Write, true).expect("opens");
     assert_eq!(again.journal(), journal);
-    assert_eq!(again.forecast_scores(), scores);
+    assert_eq!(again.company().forecast_scores(), scores);
     assert_eq!(again.memo().expect("readable"), "prices were a guess");
 }
 
@@ -467,7 +471,11 @@ fn a_post_is_read_judged_answered_and_told_about() {
     };
 
     week(&mut session);
-    assert!(session.dashboard().contains("--- Your posts ---\nDay 14: "), "{}", session.dashboard());
+    assert!(
+        session.company().dashboard().contains("--- Your posts ---\nDay 14: "),
+        "{}",
+        session.company().dashboard()
+    );
     insult(&mut session);
     let views = number(&mut session, own);
     assert!(views >= 300.0, "six groups of at least 50: {views}");
@@ -498,14 +506,17 @@ fn a_post_is_read_judged_answered_and_told_about() {
         .filter(|post| post["reply_to_agent_post_id"] == 2);
     assert!(against.count() >= 1);
     assert!(session.xray().expect("a debug run").judgements(2).iter().all(|own| own.effect < -0.3));
-    assert_eq!(session.posts().len() as f64, number(&mut session, "SELECT count(*) FROM social_media_posts"));
+    assert_eq!(
+        session.company().posts().len() as f64,
+        number(&mut session, "SELECT count(*) FROM social_media_posts")
+    );
 
     let place = session.folder().expect("a folder").to_owned();
     let (hash, _) = session.state_hash();
-    let words: Vec<String> = session.posts().iter().map(|post| post.content.clone()).collect();
+    let words: Vec<String> = session.company().posts().iter().map(|post| post.content.clone()).collect();
     drop(session);
     let again = Session::open(&place, Access::Read, false).expect("it opens");
     assert_eq!(again.state_hash().0, hash);
-    assert_eq!(again.posts().iter().map(|post| post.content.clone()).collect::<Vec<_>>(), words);
+    assert_eq!(again.company().posts().iter().map(|post| post.content.clone()).collect::<Vec<_>>(), words);
     verify(&place).expect("every state is reached again");
 }

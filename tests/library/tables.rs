@@ -240,7 +240,7 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
     call(&mut session, "research_group", json!({"group_id": "S1"}));
     call(&mut session, "start_research_project", json!({"tier": 1}));
     days(&mut session, 20);
-    let cash = session.observe().cash;
+    let cash = session.company().observe().cash;
     assert!((number(&mut session, "SELECT sum(amount) FROM ledger") - cash).abs() < 1e-6);
     let tools = rows(&mut session, "SELECT category, amount, note FROM ledger WHERE day = 0 ORDER BY id");
     let written: Vec<String> = tools.iter().map(|row| format!("{:?} {:?}", row[0], row[1])).collect();
@@ -279,7 +279,7 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
 fn forecasts_stand_with_the_day_they_were_filed() {
     let mut session = create(&[]);
     for _ in 0..2 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
     let filed = rows(&mut session, "SELECT submit_day, horizon_days, metric FROM predictions ORDER BY 1, 2");

@@ -103,7 +103,7 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
     open_shop(&mut session);
     let mut recorded: BTreeMap<(u32, &str), (f64, u32)> = BTreeMap::new();
     for _ in 0..6 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         let mut keep = |report: &novamind::session::DayReport<'_>| {
             let xray = report.xray.expect("a debug run");
             for group in Group::all() {
@@ -250,7 +250,7 @@ pub fn courted(folder: &Path, count: u32) -> Session {
                 thread.asked.unwrap_or(40.0) * if thread.thread.is_multiple_of(2) { 0.98 } else { 1.1 };
             json!([thread.customer, [["C", price * 1.2], ["B", price]]])
         };
-        let deals: Vec<Value> = session.observe().waiting.iter().map(offer).collect();
+        let deals: Vec<Value> = session.company().observe().waiting.iter().map(offer).collect();
         if !deals.is_empty() {
             session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script).expect("offers");
         }

@@ -110,7 +110,7 @@ fn play_a_week(session: &mut Session, week: u32) {
     if week == 2 {
         call("start_research_project", json!({"tier": 1}));
     }
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
@@ -133,7 +133,7 @@ fn leaving_at_any_week_changes_nothing() {
             }
         }
         assert_eq!(session.state_hash(), straight.state_hash(), "left after {left_after:?}");
-        assert_eq!(session.observe().dashboard, straight.observe().dashboard);
+        assert_eq!(session.company().observe().dashboard, straight.company().observe().dashboard);
         assert_eq!(session.cash_by_day(), straight.cash_by_day());
         assert_eq!(session.weeks(), straight.weeks());
     }

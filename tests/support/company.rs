@@ -51,7 +51,7 @@ pub fn opening() -> [(&'static str, Value); 6] {
 /// Lets a week pass with the naive forecasts.
 #[track_caller]
 pub fn week(session: &mut Session) -> Week {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("if leads hold, grow", &forecasts, Via::Script, &mut |_| {}).expect("a week")
 }
 

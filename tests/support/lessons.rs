@@ -27,7 +27,7 @@ pub fn begin(folder: &Path, name: &str, plan: &str) -> Session {
 
 /// A week without a rationale, with naive forecasts.
 pub fn week(session: &mut Session) -> Result<(), Refusal> {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
 }
 

@@ -52,7 +52,9 @@ fn as_text(opponents: &Opponents, run: &Session) -> String {
             places.push((score, name, how_it_ended(run.ended() == Some(Ended::Bankruptcy), day)));
             String::new()
         }
-        None => format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.observe().cash)),
+        None => {
+            format!("\n{name}: {} on day {day}, and no score yet\n", dollars(run.company().observe().cash))
+        }
     };
     places.sort_by(|one, other| other.0.total_cmp(&one.0));
     let row =

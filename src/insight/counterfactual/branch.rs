@@ -10,9 +10,10 @@ use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
 use novamind_session::engine::{
-    ParameterChange, Projection, Simulation, StateHash, Taken, count_groups, not_allowed, value_of_json,
+    MeasuredGroup, ParameterChange, RunDatabase, Simulation, StateHash, Taken, count_groups, not_allowed,
+    value_of_json,
 };
-use novamind_session::{GroupWeek, MeasuredGroup, WeekFigures};
+use novamind_session::{GroupWeek, WeekFigures};
 use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View, bounds};
 use novamind_world::command::Command;
 use novamind_world::events::{DayFigures, LedgerEntry};
@@ -116,7 +117,7 @@ struct OpenBranch<'a> {
     moves: &'a [Move],
     simulation: Simulation,
     /// Nothing is written.
-    projection: Projection,
+    projection: RunDatabase,
     /// The week that runs.
     week: WeekFigures,
     /// The same by group.
@@ -156,7 +157,7 @@ impl<'a> OpenBranch<'a> {
             moves,
             cash_before: simulation.world.finance.cash,
             simulation,
-            projection: Projection::default(),
+            projection: RunDatabase::default(),
             week: WeekFigures::default(),
             group_week: ByGroup::default(),
             called: Vec::new(),

@@ -39,7 +39,7 @@ pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, V
         if let (true, Some((tool, arguments))) = (week == WEEKS, &change) {
             session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
     session

@@ -134,7 +134,7 @@ fn with_parameters(folder: &Path, set: bool) -> Session {
         session.call(tool, &args, Via::Script).expect(tool);
     }
     for week in 1..=6 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         let put = |session: &mut Session, key: &str, value: Value, from| {
             session.set_parameter(key, &value, from).expect(key);

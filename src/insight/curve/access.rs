@@ -26,7 +26,7 @@ impl CurveLook {
     /// # Errors
     /// `not_in_this_mode`, `not_saved`.
     pub fn begin(run: &mut Session, group: Group, day: u32) -> Result<CurveLook, Refusal> {
-        Ok(CurveLook { group, look: run.begin_look_at("curve", group.id(), day)? })
+        Ok(CurveLook { group, look: Look::begin_at(run, "curve", group.id(), day)? })
     }
 }
 
@@ -64,8 +64,8 @@ impl CurveExplorer {
         if let Some(lesson) = run.lesson() {
             lesson.refuse_before_guess(run.weeks_passed())?;
         }
-        let all = run.estimates();
-        let delivered = run.delivered_quality();
+        let all = run.company().estimates();
+        let delivered = run.company().delivered_quality();
         let quality = delivered.iter().find(|own| own.group == group).map(|own| own.by_plan);
         let own = all.iter().find(|own| own.group == group);
         let Some((own, quality)) = own.zip(quality) else {

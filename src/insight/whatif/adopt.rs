@@ -13,7 +13,7 @@ use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::{JudgedPost, Via, VoiceAnswer};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::engine::UsageRule;
-use novamind_session::{Session, not_readable, not_saved};
+use novamind_session::{Session, UnnamedBranch, not_readable, not_saved};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::customers::numbers::CustomerNumbers;
 
@@ -55,7 +55,7 @@ pub fn branch_with_decisions(
         refuse_locked(lesson, decided, &known)?;
     }
     let no_room = |refusal: Refusal| if refusal.code == "not_saved" { no_branch(refusal) } else { refusal };
-    let branch = run.begin_branch(week, mode).map_err(no_room)?;
+    let branch = UnnamedBranch::begin(run, week, mode).map_err(no_room)?;
     let mut session = branch.open().map_err(|error| no_branch(not_saved(error)))?;
     // Whatever is posted again is taken as it was.
     session.inherit_scores(later.iter().filter_map(scores_of).collect());
@@ -68,7 +68,7 @@ pub fn branch_with_decisions(
         let followed = FollowedUsage { rule: UsageRule::StepByStep, from };
         let_capacity_follow(followed, &mut edits, &known);
     }
-    let mut adopted = Adopting { session, refused: Vec::new(), meant: run.customer_numbers() };
+    let mut adopted = Adopting { session, refused: Vec::new(), meant: run.company().customer_numbers() };
     adopted.play(&later, &edits, progress);
     let Adopting { mut session, refused, .. } = adopted;
     // What the disk did not take, or no memory holds, is no decision of the branch: without it there is no branch.
@@ -120,7 +120,7 @@ impl Adopting<'_> {
                 (Record::Advance(filed), _) => {
                     is_begun = true;
                     self.decide_besides(edits);
-                    let forecasts = self.session.naive_forecasts();
+                    let forecasts = self.session.company().naive_forecasts();
                     if let Err(refusal) =
                         self.session.advance(&filed.rationale, &forecasts, Via::Branch, &mut |_| {})
                     {
@@ -172,7 +172,7 @@ impl Adopting<'_> {
         }
         let is_decision_day = day.is_multiple_of(self.session.params().run.days_per_week);
         if let Some(followed) = edits.capacity.filter(|_| is_decision_day) {
-            let tier = self.session.tier_by(followed.rule);
+            let tier = self.session.company().tier_by(followed.rule);
             if tier != self.session.settings().core.capacity_tier {
                 self.call(ToolId::SetCapacityTier, &json!({ "tier": tier }));
             }
@@ -180,7 +180,7 @@ impl Adopting<'_> {
     }
 
     fn call(&mut self, tool: ToolId, args: &serde_json::Value) {
-        let here = self.session.customer_numbers();
+        let here = self.session.company().customer_numbers();
         let CallHere { args: here, absent } = CallHere::of(tool, args, self.meant, here);
         absent.into_iter().for_each(|refusal| self.refuse(tool.name(), refusal));
         let Some(here) = here else { return };

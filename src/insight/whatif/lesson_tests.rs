@@ -75,7 +75,7 @@ fn begun(folder: &Path, runs: &str) -> Session {
 
 fn weeks(session: &mut Session, count: u32) {
     for _ in 0..count {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
 }
@@ -109,7 +109,8 @@ fn the_capacity_follows_usage_in_every_branch_as_it_does_in_the_lesson() {
     let mut is_distinguished = false;
     for _ in 0..10 {
         weeks(&mut other, 1);
-        is_distinguished |= other.tier_by(UsageRule::BusiestDay) != other.tier_by(UsageRule::StepByStep);
+        is_distinguished |=
+            other.company().tier_by(UsageRule::BusiestDay) != other.company().tier_by(UsageRule::StepByStep);
     }
     assert!(is_distinguished, "another rule would lead elsewhere");
     let tier = |session: &Session| session.settings().core.capacity_tier;

@@ -38,7 +38,7 @@ use crate::counterfactual::script::{Move, PastDecision};
 use crate::why::{Sight, sight};
 use novamind_record::folder::mode::Mode;
 use novamind_session::engine::UsageRule;
-use novamind_session::{LessonStanding, Session, WeekFigures, not_readable};
+use novamind_session::{LessonStanding, Look, Session, WeekFigures, not_readable};
 use novamind_tools::{Refusal, highest_named};
 use novamind_world::events::DayFigures;
 
@@ -96,7 +96,7 @@ impl OfRecord for WhatIf {
 /// where nothing writes the line: then the what-if is told without.
 pub fn look_at_what_if(run: &mut Session, week: u32) -> bool {
     let day = run.day();
-    run.begin_look_at("whatif", &format!("from {week}"), day).is_ok()
+    Look::begin_at(run, "whatif", &format!("from {week}"), day).is_ok()
 }
 
 impl WhatIf {

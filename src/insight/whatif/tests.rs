@@ -41,7 +41,7 @@ fn run(runs: &Path, mode: Mode) -> Session {
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect_err("it is running");
     for _ in 0..2 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
     session
@@ -234,7 +234,7 @@ fn what_was_read_last_takes_in_what_was_decided_since_on_the_same_day() {
     assert_eq!(decided(&mut kept), 0);
     session.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
     assert_eq!(decided(&mut kept), 1);
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     let asked = kept.of(folder.clone()).expect("a record").compare(4, Some(present), &[], &on);
     let branches = asked.expect("an answer").expect("it is not stopped").branches;
@@ -317,7 +317,7 @@ fn a_parameter_is_set_as_a_run_sets_it() {
             }
             _ => {}
         }
-        let forecasts = by_hand.naive_forecasts();
+        let forecasts = by_hand.company().naive_forecasts();
         by_hand.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
     let compared = compared(&session, 5, &[alternative]);
@@ -396,7 +396,7 @@ fn run_with_offers(runs: &Path) -> Session {
         if !deals.is_empty() {
             session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Plain).expect("offers");
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
     session
@@ -404,7 +404,7 @@ fn run_with_offers(runs: &Path) -> Session {
 
 /// The companies to which a run made offers: day, group and running number in it; and under which numbers.
 fn offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
-    let numbers = session.customer_numbers();
+    let numbers = session.company().customer_numbers();
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let lines = Trajectory::read(&path).expect("a trajectory").lines;
     let mut met = (Vec::new(), Vec::new());
@@ -462,7 +462,7 @@ fn figures_of_a_record_that_stops_inside_a_week_are_those_of_whole_weeks() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut session = run(runs.path(), Mode::Debug);
     for _ in 0..5 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
     session.step(3, &mut |_| {}).expect("days");

@@ -26,7 +26,7 @@ use crate::counterfactual::last_read::OfRecord;
 use crate::counterfactual::past::Past;
 pub(crate) use access::{Sight, sight};
 use laboratory::Laboratory;
-use novamind_session::{Session, is_lesson_over, not_readable};
+use novamind_session::{Look, Session, is_lesson_over, not_readable};
 use novamind_tools::Refusal;
 
 /// How far an answer has come.
@@ -132,7 +132,7 @@ pub fn look_at_figure(run: &mut Session, asked: &WeekQuestion) -> Result<(), Ref
     access::refuse_hidden(*quantity, own_sight(run)?)?;
     let days = run.params().run.days_per_week;
     let day = week.map(|week| week.saturating_mul(days).min(run.day()));
-    run.begin_look("why", &quantity.to_string(), day).map(drop)
+    Look::begin(run, "why", &quantity.to_string(), day).map(drop)
 }
 
 fn own_sight(run: &Session) -> Result<Sight, Refusal> {

@@ -8,7 +8,8 @@ use super::*;
 use crate::counterfactual::test_kit::{WEEKS, played};
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::Via;
-use novamind_session::{GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure};
+use novamind_session::WeekFigure;
+use novamind_session::engine::{GroupOfWeek, MeasuredGroup, SimulatedWeek};
 use novamind_tools::ToolId;
 use novamind_world::identifiers::{ByGroup, Group};
 
@@ -36,12 +37,13 @@ fn why(session: &Session, quantity: WeekQuantity) -> Why {
 
 /// A week of a session, counted from 0, as what is simulated is compared with it: what nobody plays to see has no value.
 fn week_of(session: &Session, at: usize) -> SimulatedWeek {
-    let subscribers = |at: usize, group| session.group_weeks()[at][group].subscribers.0.iter().sum();
+    let subscribers =
+        |at: usize, group| session.company().group_weeks()[at][group].subscribers.0.iter().sum();
     SimulatedWeek {
         figures: session.weeks()[at],
         satisfaction: f64::NAN,
         groups: ByGroup::from_fn(|group| {
-            let counted = &session.group_weeks()[at][group];
+            let counted = &session.company().group_weeks()[at][group];
             GroupOfWeek {
                 measured: MeasuredGroup {
                     leads: counted.leads,
@@ -227,7 +229,7 @@ fn without_a_change_no_decision_is_a_cause_and_every_figure_adds_up() {
         session.xray().expect("a debug run").world().market.reputation.of(s1)
     );
     let leads: f64 =
-        Group::all().map(|own| f64::from(session.group_weeks()[WEEKS as usize][own].leads)).sum();
+        Group::all().map(|own| f64::from(session.company().group_weeks()[WEEKS as usize][own].leads)).sum();
     assert_eq!(value(company(WeekFigure::Leads)), leads);
     let mood = session.xray().expect("a debug run").mood(s1).expect("subscribers");
     assert_eq!(value(group(WeekFigure::Satisfaction, "S1")), mood.0);
@@ -297,7 +299,7 @@ fn several_changes_share_what_they_did_together() {
     ] {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     for figure in [WeekFigure::Payments, WeekFigure::CashChange, WeekFigure::Cancellations] {
         let why = why(&session, company(figure));
@@ -376,7 +378,7 @@ fn what_was_paid_once_the_week_before_is_a_cause_and_no_luck() {
     let runs = tempfile::tempdir().expect("a folder");
     let project = Some(("start_research_project", json!({"tier": 1})));
     let mut session = played(runs.path(), Mode::Sandbox, 3, project);
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     let paid = -session.weeks()[WEEKS as usize].booked.of(novamind_world::events::Category::ResearchProject);
     assert!(paid > 0.0);

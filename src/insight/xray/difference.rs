@@ -124,8 +124,9 @@ impl Inspector<'_> {
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn difference_of_days(&mut self, one: u32, other: u32) -> Result<Difference, Refusal> {
         self.run.refuse_to_look_inside()?;
-        let (one, other) = (self.run.day_to_show(Some(one))?, self.run.day_to_show(Some(other))?);
-        let look = self.run.begin_look("difference", &format!("{one} {other}"), Some(one.max(other)))?;
+        let (one, other) =
+            (Look::day_to_show(self.run, Some(one))?, Look::day_to_show(self.run, Some(other))?);
+        let look = Look::begin(self.run, "difference", &format!("{one} {other}"), Some(one.max(other)))?;
         let album = Arc::new(Album::of(&[one, other]));
         look.watch_up_to(self.run, one.max(other), album.clone())?;
         let first = album.take(one).ok_or_else(not_reached)?;
@@ -147,13 +148,13 @@ impl Inspector<'_> {
         other.refuse_to_look_inside()?;
         let last_day = run.day().min(other.day());
         if day.is_some() || last_day == 0 {
-            run.day_to_show(day)?;
-            other.day_to_show(day)?;
+            Look::day_to_show(run, day)?;
+            Look::day_to_show(other, day)?;
         }
         let (which, shown) = (|run: &Session| run.manifest().id.clone(), day.unwrap_or(last_day));
         let names = (which(run), which(other));
-        let own_look = run.begin_look_at("difference", &names.1, shown)?;
-        let other_look = other.begin_look_at("difference", &names.0, shown)?;
+        let own_look = Look::begin_at(run, "difference", &names.1, shown)?;
+        let other_look = Look::begin_at(other, "difference", &names.0, shown)?;
         let fingerprints = |run: &Session, look: &Look| {
             let seen = Arc::new(Fingerprints::with_ends(day.as_slice()));
             look.watch_up_to(run, last_day, seen.clone()).map(|()| seen)

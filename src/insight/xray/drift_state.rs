@@ -1,6 +1,7 @@
 //! How far expectations and budgets have moved, group by group, and what the next application of drift adds.
 
 use super::inspector::Inspector;
+use novamind_session::Look;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 use novamind_world::market::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
@@ -41,7 +42,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn drift_state(&mut self, day: Option<u32>) -> Result<DriftState, Refusal> {
-        let look = self.run.begin_look("drift", "", day)?;
+        let look = Look::begin(self.run, "drift", "", day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
         let (params, days) = (look.inside(self.run).params(), self.run.manifest().days);

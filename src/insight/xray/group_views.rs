@@ -16,7 +16,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Refusal> {
-        let look = self.run.begin_look("quality", group.id(), day)?;
+        let look = Look::begin(self.run, "quality", group.id(), day)?;
         let day = look.day();
         self.hidden_day(&look, day).map(|seen| QualityEquation::of(group, day, &seen.quality))
     }
@@ -30,7 +30,7 @@ impl Inspector<'_> {
         group: Group,
         day: Option<u32>,
     ) -> Result<SatisfactionEquation, Refusal> {
-        let look = self.run.begin_look("satisfaction", group.id(), day)?;
+        let look = Look::begin(self.run, "satisfaction", group.id(), day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
         let evening = &seen.groups[group];
@@ -53,7 +53,7 @@ impl Inspector<'_> {
         group: Group,
         day: Option<u32>,
     ) -> Result<ReputationEquation, Refusal> {
-        let look = self.run.begin_look("reputation", group.id(), day)?;
+        let look = Look::begin(self.run, "reputation", group.id(), day)?;
         let day = look.day();
         let evenings = self.evenings(&look, group, day, |own| own.reputation)?;
         self.hidden_day(&look, day).map(|seen| ReputationEquation::of(group, day, &seen.reputation, evenings))
@@ -78,7 +78,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Refusal> {
-        let look = self.run.begin_look("spillover", "", day)?;
+        let look = Look::begin(self.run, "spillover", "", day)?;
         let day = look.day();
         self.hidden_day(&look, day).map(|seen| Spillover::of(day, &seen.known, seen.reputation))
     }

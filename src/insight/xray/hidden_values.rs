@@ -3,6 +3,7 @@
 use super::hidden_day::HiddenDay;
 use super::inspector::Inspector;
 use super::rival_state::{NextRivalMove, rival_move_after};
+use novamind_session::Look;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::drift::next_drift_day;
@@ -53,7 +54,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn hidden_values(&mut self, day: Option<u32>) -> Result<HiddenValues, Refusal> {
-        let look = self.run.begin_look("values", "", day)?;
+        let look = Look::begin(self.run, "values", "", day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
         let own = seen.banks.own;

@@ -35,13 +35,13 @@ pub trait Inspect {
 
 impl Inspect for Session {
     fn inspect(&mut self) -> Inspector<'_> {
-        Inspector { own: self.take_companion(), run: self }
+        Inspector { own: self.companion().take(), run: self }
     }
 }
 
 impl Drop for Inspector<'_> {
     fn drop(&mut self) {
-        self.run.keep_companion(std::mem::take(&mut self.own));
+        self.run.companion().keep(std::mem::take(&mut self.own));
     }
 }
 

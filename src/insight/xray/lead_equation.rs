@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::hidden_day::HiddenDay;
 use super::inspector::Inspector;
+use novamind_session::Look;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::market::leads::LeadFactors;
@@ -149,7 +150,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn lead_equations(&mut self, group: Group, day: Option<u32>) -> Result<Vec<LeadEquation>, Refusal> {
-        let look = self.run.begin_look("leads", group.id(), day)?;
+        let look = Look::begin(self.run, "leads", group.id(), day)?;
         let day = look.day();
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
         let seen = self.hidden_days(&look, first..=day)?;

@@ -3,6 +3,7 @@
 use super::company_lens::CompanyLens;
 use super::customer_lens::CustomerLens;
 use super::inspector::Inspector;
+use novamind_session::Look;
 use novamind_tools::Refusal;
 
 /// A customer from within.
@@ -20,7 +21,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.
     pub fn lens(&mut self, customer: u32, day: Option<u32>) -> Result<Lens, Refusal> {
-        let (look, found, arrival) = self.run.begin_look_at_customer(customer, day)?;
+        let (look, found, arrival) = Look::begin_at_customer(self.run, customer, day)?;
         match found.0.is_enterprise() {
             true => CompanyLens::of(self.run, &look, customer, found.0).map(Lens::Company),
             false => CustomerLens::of(self.run, &look, customer, found, arrival)

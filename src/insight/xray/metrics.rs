@@ -9,7 +9,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::derived::manifest_of;
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::Trajectory;
-use novamind_session::{Access, DayReport, REFUSED_LOOK, SealKey, Session};
+use novamind_session::{Access, DayReport, Look, REFUSED_LOOK, SealKey, Session};
 use novamind_tools::Refusal;
 use novamind_world::day::watch::Unwatched;
 
@@ -35,7 +35,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.
     pub fn tell_days_again(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Refusal> {
-        let look = self.run.begin_look_at("metrics", "days", self.run.day())?;
+        let look = Look::begin_at(self.run, "metrics", "days", self.run.day())?;
         look.shadow(self.run, Arc::new(Unwatched))?.lead(self.run, |_| true, tell)
     }
 }

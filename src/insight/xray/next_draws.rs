@@ -2,7 +2,7 @@
 //! known before the day, as far as nothing decides on it that is still open.
 
 use super::inspector::Inspector;
-use novamind_session::Xray;
+use novamind_session::{Look, Xray};
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 use novamind_world::market::competitors::move_of;
@@ -185,7 +185,7 @@ impl Inspector<'_> {
             return Err(Refusal::at("draws", "out_of_range", message));
         }
         let day = self.run.day() + 1;
-        let look = self.run.begin_look_at("streams", part.id(), day)?;
+        let look = Look::begin_at(self.run, "streams", part.id(), day)?;
         let streams = streams_of(look.inside(self.run), part, day, count);
         let replays = look.inside(self.run).params().replayed_series().is_some();
         Ok(NextDraws {

@@ -2,7 +2,7 @@
 
 use super::hidden_day::Banks;
 use super::inspector::Inspector;
-use novamind_session::Xray;
+use novamind_session::{Look, Xray};
 use novamind_tools::Refusal;
 use novamind_world::events::Severity;
 use novamind_world::identifiers::{ByGroup, Group};
@@ -60,7 +60,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn rival_state(&mut self, day: Option<u32>) -> Result<RivalState, Refusal> {
-        let look = self.run.begin_look("rivals", "", day)?;
+        let look = Look::begin(self.run, "rivals", "", day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
         let Banks { shared_bonus, shared, group_bonus, own } = seen.banks;

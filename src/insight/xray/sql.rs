@@ -22,7 +22,7 @@ impl Inspector<'_> {
     /// # Errors
     /// As [`Inspector::xray_query`].
     pub fn xray_query_as(&mut self, ticket: Ticket, sql: &str, day: Option<u32>) -> Result<Rows, Refusal> {
-        let look = self.run.begin_look("sql", sql, day)?;
+        let look = Look::begin(self.run, "sql", sql, day)?;
         // Tables that went wrong are not kept: the next look begins anew.
         let mut tables = self.take_hidden_tables()?;
         let named = tables.connection().hidden_tables_in(sql);
@@ -34,7 +34,7 @@ impl Inspector<'_> {
                 _ => self.add_days(&look, &mut tables, ticket, table, keeps_threads)?,
             }
         }
-        let limits = self.run.query_limits();
+        let limits = self.run.company().query_limits();
         let answer = tables.connection().ask_as(ticket, sql, limits);
         self.own.hidden_tables = Some(tables);
         answer.map_err(query_refusal)
@@ -53,11 +53,11 @@ impl Inspector<'_> {
     fn take_hidden_tables(&mut self) -> Result<HiddenTables, Refusal> {
         // The tables of the company are to hold everything up to now, as they do for any other statement.
         self.run.complete_database()?;
-        let database = self.run.databases();
+        let database = self.run.database().replaced();
         match self.own.hidden_tables.take().filter(|tables| tables.database() == database) {
             Some(tables) => Ok(tables),
             None => {
-                let tables = HiddenTables::behind(self.run.open_hidden_connection()?, database);
+                let tables = HiddenTables::behind(Look::hidden_tables(self.run)?, database);
                 if self.own.diary.keeps_threads() {
                     // Those of its days were handed over to tables that are gone.
                     self.own.shadow = None;

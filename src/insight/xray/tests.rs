@@ -13,7 +13,7 @@ use crate::xray::inspector::Inspect;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::Via;
-use novamind_session::{Access, NewRun, Session, Storage, Xray};
+use novamind_session::{Access, Look, NewRun, Session, Storage, Xray};
 use novamind_world::customers::columns::Block;
 use novamind_world::day::watch::DayWatch;
 use novamind_world::events::{EndCause, Facts};
@@ -106,7 +106,7 @@ impl DayWatch for Used {
 fn run_and_days(place: &Path) -> (Session, Vec<UsedDay>) {
     let mut session = recorded_run(place);
     let used = Arc::new(Used::default());
-    let look = session.begin_look("metrics", "days", None).expect("a look");
+    let look = Look::begin(&mut session, "metrics", "days", None).expect("a look");
     look.watch_up_to(&session, look.day(), used.clone()).expect("it is simulated again");
     let days = std::mem::take(&mut *used.days.lock().expect("a lock"));
     assert_eq!(days.len(), 119);
@@ -227,7 +227,7 @@ fn rivals_and_drift_are_those_of_the_world_and_the_next_move_is_the_one_that_com
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next.as_ref().and_then(|next| next.made), coming.copied());
         // What is decided on the day is what came.
-        let look = session.begin_look("streams", "rivals", None).expect("a look");
+        let look = Look::begin(&mut session, "streams", "rivals", None).expect("a look");
         let (params, streams) = (look.inside(&session).params(), look.inside(&session).streams());
         let last_event = used.events.last().map(|event| event.day);
         let decided = next_move(day, 119, last_event, params, streams);

@@ -91,7 +91,7 @@ impl Company {
         decide(&self.policy, SEED, &mut self.session)?;
         self.session.wait_for_database()?;
         let before = self.subscribers();
-        let forecasts = self.session.naive_forecasts();
+        let forecasts = self.session.company().naive_forecasts();
         let started = Instant::now();
         self.session.advance("bench", &forecasts, Via::Policy, &mut |_| {})?;
         let seconds = started.elapsed().as_secs_f64();

@@ -48,7 +48,7 @@ impl Interpreter {
     /// What a capacity tier holds beside the busiest day of the last week.
     fn capacity(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let tier = arguments.get("tier").filter(|_| tool == ToolId::SetCapacityTier)?.as_u64()?;
-        let terms = self.session.terms();
+        let terms = self.session.company().tool_limits();
         let own = terms.capacities.iter().find(|own| u64::from(own.tier) == tier)?;
         Some(peak_beside_tier(self.session.weeks(), u32::from(own.tier), own.units))
     }
@@ -56,9 +56,13 @@ impl Interpreter {
     /// The level that a study reaches.
     fn study(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let group = arguments.get("group_id").filter(|_| tool == ToolId::ResearchGroup)?.as_str()?;
-        let terms = self.session.terms();
-        let now =
-            self.session.estimates().into_iter().find(|own| own.group.id().eq_ignore_ascii_case(group))?;
+        let terms = self.session.company().tool_limits();
+        let now = self
+            .session
+            .company()
+            .estimates()
+            .into_iter()
+            .find(|own| own.group.id().eq_ignore_ascii_case(group))?;
         let given = arguments.get("target_level").and_then(Value::as_u64);
         let target = given.map_or(now.level.max(terms.targets.0), |target| target as u8);
         let level = terms.level(target)?;
@@ -83,8 +87,14 @@ impl Interpreter {
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
         });
-        let models: Vec<(u8, f64)> =
-            self.session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        let models: Vec<(u8, f64)> = self
+            .session
+            .company()
+            .tool_limits()
+            .models
+            .iter()
+            .map(|model| (model.tier, model.unit_cost))
+            .collect();
         match Sales::of(&self.session) {
             Ok(sales) => {
                 margin_sentences(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())

@@ -29,7 +29,7 @@ impl Interpreter {
     }
 
     pub(super) fn leads(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let (all, weeks) = (fits(&self.session), self.session.group_weeks());
+        let (all, weeks) = (fits(&self.session), self.session.company().group_weeks());
         let shown = known(&all, name, arguments)?;
         let mut lines: Vec<String> = Vec::new();
         for fit in &shown {
@@ -90,7 +90,7 @@ pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) ->
             Some(overview_with_ages(&answer.to_json(), &fits(session)))
         }
         novamind_tools::Answer::ListResearchProjects(_) => {
-            Some(projects_with_means(&answer.to_json(), &session.research_means()))
+            Some(projects_with_means(&answer.to_json(), &session.company().research_means()))
         }
         _ => None,
     }

@@ -79,7 +79,7 @@ impl Interpreter {
         if let Some(filter) = &wanted.filter {
             waiting.retain(|thread| filter.means(thread));
         }
-        let names = self.session.company_names();
+        let names = self.session.company().company_names();
         let funnels = funnels(&self.session);
         let data = json!({
             "threads": waiting.iter().map(|thread| thread.row(names)).collect::<Vec<Value>>(),

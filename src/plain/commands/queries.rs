@@ -7,7 +7,7 @@ use super::super::grammar::{Argument, Problem, as_object};
 use super::super::signals::Phase;
 use super::{Interpreter, problem, unknown};
 use novamind_session::library::NamedQuery;
-use novamind_session::{QuerySource, Refusal, Via};
+use novamind_session::{QuerySource, Refusal, RunDatabase, Via};
 use novamind_tools::ToolId;
 
 impl Interpreter {
@@ -56,7 +56,7 @@ impl Interpreter {
         arguments: &Value,
     ) -> Result<novamind_tools::Answer, Refusal> {
         if tool.runs_code()
-            && let Ok(interrupt) = self.session.interrupt()
+            && let Ok(interrupt) = self.session.complete_database().and_then(RunDatabase::interrupt)
         {
             self.watch.enter_query(interrupt);
         }

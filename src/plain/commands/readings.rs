@@ -24,18 +24,25 @@ use novamind_tools::describe::{self, ToolDocument, document};
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> Answer {
-        let dashboard = self.session.dashboard();
+        let dashboard = self.session.company().dashboard();
         let data = json!({ "day": self.session.day(), "dashboard": dashboard });
         Answer::done("dashboard", dashboard, data)
     }
 
     pub(super) fn status(&self) -> Answer {
-        let seen = self.session.observe();
+        let seen = self.session.company().observe();
         let runway =
             seen.weeks_of_cash().map_or("to the last day".to_owned(), |weeks| format!("{weeks} weeks"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let tier = self.session.settings().core.capacity_tier;
-        let units = self.session.terms().capacities.iter().find(|own| own.tier == tier).map(|own| own.units);
+        let units = self
+            .session
+            .company()
+            .tool_limits()
+            .capacities
+            .iter()
+            .find(|own| own.tier == tier)
+            .map(|own| own.units);
         let next = PeakProjection::of(self.session.weeks()).zip(units);
         let capacity = next
             .map_or(String::new(), |(next, units)| format!("{}\n", next.in_words(u32::from(tier), units)));
@@ -104,7 +111,7 @@ impl Interpreter {
     }
 
     pub(super) fn changes(&self) -> Answer {
-        let seen = self.session.observe();
+        let seen = self.session.company().observe();
         let mut lines: Vec<String> = seen.changes.iter().map(change).collect();
         lines.extend(seen.purchases.iter().cloned());
         if lines.is_empty() {
@@ -131,7 +138,7 @@ impl Interpreter {
         let last = &journal[journal.len().saturating_sub(count as usize)..];
         let mut text: String = last
             .iter()
-            .map(|entry| entry_line(entry, &undone, self.session.company_names()) + "\n")
+            .map(|entry| entry_line(entry, &undone, self.session.company().company_names()) + "\n")
             .collect();
         if text.is_empty() {
             text = "nothing has been done yet".to_owned();

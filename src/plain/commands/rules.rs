@@ -40,7 +40,7 @@ impl Interpreter {
             Err(refusal) => return Answer::refused("rules", refusal),
         };
         let batch = Batch::of(rules, threads, &market);
-        if send { self.send(&batch) } else { preview(&batch, self.session.company_names()) }
+        if send { self.send(&batch) } else { preview(&batch, self.session.company().company_names()) }
     }
 
     fn send(&mut self, batch: &Batch) -> Answer {

@@ -57,7 +57,7 @@ impl Interpreter {
         let waiting = AskingThread::all(&mut self.session)
             .ok()
             .and_then(|(waiting, _)| waiting.into_iter().find(|own| own.waiting.thread == thread));
-        let names = self.session.company_names();
+        let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
         // Rows of the player count one seat, whatever the company has.
         let theirs = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");

@@ -207,10 +207,10 @@ impl Interpreter {
 
     /// Leaves this run for another one; its name and day.
     pub(super) fn go_on_in(&mut self, other: Session) -> (String, u32) {
-        self.session.leave(LeavingCause::Quit);
+        self.session.activity().leave(LeavingCause::Quit);
         let _ = self.session.save();
         self.session = other;
-        self.session.take_up(Interface { name: "plain", window: None });
+        self.session.activity().take_up(Interface { name: "plain", window: None });
         (self.session.manifest().id.clone(), self.session.day())
     }
 

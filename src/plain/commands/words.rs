@@ -124,7 +124,7 @@ mod tests {
         run.call("post_social_media", &json!({"content": "We open today."}), Via::Script).expect("a post");
         let mut words = Vec::new();
         for week in 0..10 {
-            let forecasts = run.naive_forecasts();
+            let forecasts = run.company().naive_forecasts();
             let week = run.advance(&format!("week {week}"), &forecasts, Via::Script, &mut |_| {});
             words.extend(labels(&week.expect("a week").dashboard));
         }

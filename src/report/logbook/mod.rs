@@ -191,7 +191,7 @@ impl Logbook {
             start_cash: manifest.cash,
             version: manifest.version.clone(),
             parameters_digest: manifest.parameters_digest.clone(),
-            has_own_parameters: session.observe().has_own_parameters,
+            has_own_parameters: session.company().observe().has_own_parameters,
             voice: manifest.voice.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
@@ -237,7 +237,7 @@ impl NotesLog {
 }
 
 fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
-    let decided = session.decisions().get(at);
+    let decided = session.company().decisions().get(at);
     let mut decisions: Vec<String> =
         decided.iter().flat_map(|own| own.changes.iter().map(change_in_words)).collect();
     decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));

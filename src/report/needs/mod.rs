@@ -136,16 +136,16 @@ impl<'a> Situation<'a> {
             ads_by_group[*group] += dollars;
         }
         Situation {
-            seen: session.observe(),
+            seen: session.company().observe(),
             settings: settings.core,
             ads: settings.targeted_ads.total(),
             ads_by_group,
             weeks: session.weeks(),
-            groups: session.group_weeks(),
-            decisions: session.decisions(),
-            quality: session.delivered_quality(),
-            estimates: session.estimates(),
-            terms: session.terms(),
+            groups: session.company().group_weeks(),
+            decisions: session.company().decisions(),
+            quality: session.company().delivered_quality(),
+            estimates: session.company().estimates(),
+            terms: session.company().tool_limits(),
             session,
         }
     }

@@ -48,7 +48,7 @@ pub(super) fn threads(situation: &Situation<'_>) -> Option<Need> {
     let first = waiting.iter().max_by(|left, right| value(left).total_cmp(&value(right)))?;
     let (who, fate) = match waiting.len() {
         1 => (
-            format!("{} waits", situation.session.company_names().with_number(first.customer)),
+            format!("{} waits", situation.session.company().company_names().with_number(first.customer)),
             "the thread ends",
         ),
         more => (format!("{} wait", count(more as u32, "company")), "their threads end"),
@@ -138,7 +138,7 @@ fn restored(situation: &Situation<'_>, changes: &[&Change], group: Group) -> Pla
     let tool = first.setting.tool();
     let mut arguments = match tool {
         ToolId::SetPrices | ToolId::SetModelTiers => Map::new(),
-        ToolId::SetUsageQuotas => situation.session.current(ToolId::SetUsageQuotas),
+        ToolId::SetUsageQuotas => situation.session.company().current(ToolId::SetUsageQuotas),
         _ => return Place::Group(group),
     };
     for change in changes.iter().filter(|change| change.setting.tool() == tool) {

@@ -288,8 +288,9 @@ impl<'a> Offers<'a> {
     /// is under way.
     fn renewed(&self, at_risk: f64) -> Option<(String, Place)> {
         let (own, day) = (self.own, self.situation.seen.day);
-        let is_studied =
-            || self.situation.session.running_studies().iter().any(|study| study.group == own.group);
+        let is_studied = || {
+            self.situation.session.company().running_studies().iter().any(|study| study.group == own.group)
+        };
         if day < own.as_of + OLD || is_studied() {
             return None;
         }
@@ -424,7 +425,7 @@ fn better_quality(
     if spend.get(&group).is_some_and(|spend| *spend >= DOLLARS) {
         return None;
     }
-    let gain = situation.session.targeted_gain(DOLLARS) * now.multiplier;
+    let gain = situation.session.company().targeted_gain(DOLLARS) * now.multiplier;
     let days = ((floor - delivered) / gain).ceil();
     // Settings hold for a week at least.
     let cost = DOLLARS * days.max(7.0);

@@ -92,7 +92,7 @@ fn costs(tier: &CapacityTier, now: &CapacityTier) -> String {
 pub(super) fn outages(situation: &Situation<'_>) -> Option<Need> {
     let week = situation.week().filter(|week| week.outage && week.overload_peak == 0.0)?;
     let operations = situation.settings.operations;
-    let share = |dollars: f64| situation.session.outage_share(dollars);
+    let share = |dollars: f64| situation.session.company().outage_share(dollars);
     let now = share(operations);
     if now < OFTEN {
         return None;

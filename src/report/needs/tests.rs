@@ -41,7 +41,7 @@ fn company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> Sessi
 
 fn play(session: &mut Session, weeks: usize) {
     for _ in 0..weeks {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
 }
@@ -163,7 +163,7 @@ fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
         ("set_usage_quotas", json!({"A": 2_000, "B": 4_000, "C": 4})),
     ]);
     let session = company(7, 1e6, &calls, 2);
-    let quality = session.delivered_quality();
+    let quality = session.company().delivered_quality();
     let own = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
     assert!(own.by_plan[Plan::C] > own.by_plan[Plan::B], "C has the better model");
     let named = format!(
@@ -228,7 +228,7 @@ fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
     let busiest = session.weeks().last().expect("a week").busiest_day as f64;
     let Place::Call(ToolId::SetCapacityTier, arguments) = &need.place else { panic!("{need:?}") };
     let tier = arguments["tier"].as_u64().expect("a tier");
-    let tiers = session.terms().capacities;
+    let tiers = session.company().tool_limits().capacities;
     let units = |tier: u64| tiers[tier as usize].units;
     assert!(units(tier) >= busiest && units(tier - 1) < busiest, "the smallest that does");
 }
@@ -251,9 +251,9 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
     let need = is_first(&session, Problem::Outages, &["outages took", words, "$350 a day leave 1.5%"]);
     let Place::Call(ToolId::SetDailySpend, arguments) = &need.place else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
-    let share = session.outage_share(dollars);
+    let share = session.company().outage_share(dollars);
     assert!(
-        share <= 0.015 && session.outage_share(dollars - 50.0) > 0.015,
+        share <= 0.015 && session.company().outage_share(dollars - 50.0) > 0.015,
         "half as often, and no more than that"
     );
     let mut small = company(5, 3e6, &calls, 1);
@@ -334,12 +334,12 @@ fn threads_that_end_without_an_answer_lead_to_the_largest() {
         2,
     );
     for _ in 0..20 {
-        if session.observe().waiting.len() > 1 {
+        if session.company().observe().waiting.len() > 1 {
             break;
         }
         play(&mut session, 1);
     }
-    let waiting = session.observe().waiting;
+    let waiting = session.company().observe().waiting;
     let need =
         is_first(&session, Problem::Threads, &["companies wait for an answer", "their threads end by day"]);
     let most = waiting.iter().max_by_key(|thread| thread.seats).expect("threads");
@@ -349,7 +349,7 @@ fn threads_that_end_without_an_answer_lead_to_the_largest() {
 #[test]
 fn four_weeks_of_cash_come_before_everything_else() {
     let session = company(3, 400_000.0, &sound(), 1);
-    let seen = session.observe();
+    let seen = session.company().observe();
     assert!(seen.runway_weeks.is_some_and(|weeks| (2.0..6.0).contains(&weeks)), "{:?}", seen.runway_weeks);
     let need = is_first(
         &session,
@@ -363,9 +363,9 @@ fn four_weeks_of_cash_come_before_everything_else() {
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
     assert!(
-        mended.observe().runway_weeks.is_none_or(|weeks| weeks >= 7.99),
+        mended.company().observe().runway_weeks.is_none_or(|weeks| weeks >= 7.99),
         "{:?}",
-        mended.observe().runway_weeks
+        mended.company().observe().runway_weeks
     );
 }
 

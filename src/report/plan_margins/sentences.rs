@@ -122,8 +122,13 @@ mod tests {
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
         });
-        let models: Vec<(u8, f64)> =
-            session.terms().models.iter().map(|model| (model.tier, model.unit_cost)).collect();
+        let models: Vec<(u8, f64)> = session
+            .company()
+            .tool_limits()
+            .models
+            .iter()
+            .map(|model| (model.tier, model.unit_cost))
+            .collect();
         let own = sales.of_plan(Plan::B);
         let unit_cost = models.iter().find(|(tier, _)| *tier == now[Plan::B].tier).expect("its model").1;
         let dear = Lever::Price.apply(now, &json!({"B": 250}));

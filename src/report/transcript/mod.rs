@@ -118,7 +118,7 @@ impl Transcript {
         let mut playback = Playback::open(path)?;
         let lines: Vec<Line> = playback.lines().to_vec();
         let manifest = playback.session().manifest().clone();
-        let opening = playback.session().dashboard();
+        let opening = playback.session().company().dashboard();
         let mut told = Transcript {
             last: (0, manifest.cash),
             manifest,
@@ -194,7 +194,7 @@ impl Transcript {
     fn close(&mut self, day: u32, cash: f64, state_hash: &str, session: &Session) {
         self.last = (day, cash);
         self.state_hash = state_hash.to_owned();
-        let week = PassedWeek { day, cash, dashboard: session.dashboard() };
+        let week = PassedWeek { day, cash, dashboard: session.company().dashboard() };
         let open = self.acts.iter_mut().rev().find_map(|act| match &mut act.deed {
             Deed::Week { passed, .. } => Some(passed),
             _ => None,

@@ -151,7 +151,11 @@ impl AskedWords {
     /// # Errors
     /// `not_in_this_mode`.
     pub fn refuse(word: &str, session: &Session) -> Result<(), Refusal> {
-        if word == "set" { session.refuse_parameters() } else { session.refuse_to_look_inside() }
+        if word == "set" {
+            session.company().debug_parameters().map(drop)
+        } else {
+            session.refuse_to_look_inside()
+        }
     }
 
     /// Answers. A look is recorded, and so is what is set.
@@ -177,10 +181,14 @@ impl AskedWords {
                 .inspect()
                 .difference_of_days(*one, *other)
                 .map(|found| WordsFound::Difference(*one, *other, found)),
-            AskedWords::Parameters => session.changed_parameters().map(WordsFound::Parameters),
-            AskedWords::Parameter(key) => {
-                session.parameter(key).map(|value| WordsFound::Parameter(key.clone(), value))
+            AskedWords::Parameters => {
+                session.company().debug_parameters().and_then(|own| own.changed()).map(WordsFound::Parameters)
             }
+            AskedWords::Parameter(key) => session
+                .company()
+                .debug_parameters()
+                .and_then(|own| own.value(key))
+                .map(|value| WordsFound::Parameter(key.clone(), value)),
             AskedWords::Set(key, value, from) => {
                 session.set_parameter(key, value, *from).map(|set| WordsFound::Set(set, today))
             }

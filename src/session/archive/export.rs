@@ -12,12 +12,12 @@ use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
 use crate::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
 use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
-use crate::play::afterwards::{AFTERWARDS, lines_afterwards};
+use crate::play::Session;
 use crate::play::memo::notes_file;
-use crate::resume::integrity::Integrity;
-use crate::resume::open::Access;
-use crate::resume::sealing::SealKey;
-use crate::state::Session;
+use crate::play::open::Access;
+use crate::recording::afterwards::{AFTERWARDS, lines_afterwards};
+use crate::snapshot::integrity::Integrity;
+use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::durable::{folder_of, sync_folder};
@@ -111,7 +111,7 @@ impl Export {
         let database = self.copies.join(DATABASE);
         // An archive may be written twice; the database is made for each.
         let _ = std::fs::remove_file(&database);
-        self.session.copy_database(&database)?;
+        self.session.database().copy_to(&database)?;
         let seal = self.seal()?;
         let folder = folder_of(archive);
         let workshop = Workshop::within(folder)?;
@@ -208,15 +208,5 @@ fn moved(error: RunError, copies: &Path, folder: &Path) -> RunError {
             RunError::Damaged { path: original(path), line, problem, safe }
         }
         other => other,
-    }
-}
-
-impl Session {
-    /// Writes the observable company into a new file that any SQLite tool can open.
-    ///
-    /// # Errors
-    /// The run is played without a database, or the file cannot be written.
-    pub fn copy_database(&self, file: &Path) -> Result<(), RunError> {
-        self.projection.copy_to(file)
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard};
 
-use crate::create::new_id;
+use crate::recording::folders::new_id;
 use novamind_record::error::RunError;
 use novamind_record::folder::durable::create_folder;
 

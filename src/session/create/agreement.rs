@@ -50,8 +50,8 @@ fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Conse
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::resume::open::Access;
-    use crate::state::Session;
+    use crate::play::Session;
+    use crate::play::open::Access;
     use novamind_record::folder::configuration::CONSENT_FILE;
     use novamind_record::folder::consent::ConsentGiven;
     use novamind_record::folder::mode::Mode;

@@ -1,7 +1,6 @@
 //! Rules by which the capacity follows usage: what is set at the start of a week.
 
 use crate::figures::week::WeekFigures;
-use crate::state::Session;
 use novamind_world::params::{CapacityTier, Params};
 
 /// Share of the capacity that mean use is to take.
@@ -39,17 +38,4 @@ fn covering(units: f64, now: u8, params: &Params) -> u8 {
     let tiers = &params.capacity_tier;
     let holds = |tier: &&CapacityTier| f64::from(tier.capacity_units) >= units;
     tiers.iter().find(holds).or(tiers.last()).map_or(now, |tier| tier.tier)
-}
-
-impl Session {
-    /// The capacity tier one step towards the smallest that holds the mean use of the last week at 80 %.
-    pub fn capacity_towards_usage(&self) -> u8 {
-        self.tier_by(UsageRule::StepByStep)
-    }
-
-    /// The capacity tier that a rule sets now.
-    pub fn tier_by(&self, rule: UsageRule) -> u8 {
-        let now = self.simulation.world.settings.core.capacity_tier;
-        rule.tier(now, self.history.weeks.last(), &self.simulation.params)
-    }
 }

@@ -1,8 +1,5 @@
 //! What studies say of a group, as numbers: what get_group_insights answers, without its words.
 
-use super::truth::truth_behind;
-use crate::state::Session;
-use novamind_tools::GetGroupInsights;
 use novamind_world::identifiers::Group;
 
 /// Estimates of a group. The truth at the time of the study lies within a relative error of each.
@@ -45,34 +42,16 @@ impl Estimates {
     }
 }
 
-impl Session {
-    /// Estimates of every known group, in their fixed order; not recorded.
-    pub fn estimates(&self) -> Vec<Estimates> {
-        let terms = self.terms();
-        let of = |group: Group| {
-            let insights = self.look_up(&GetGroupInsights, group)?;
-            let (level, estimates) = (insights.info_level, insights.estimates);
-            let [least, most] = estimates.seat_range.unwrap_or([1, 1]);
-            Some(Estimates {
-                group,
-                level,
-                as_of: self.simulation.world.market.knowledge[group].snapshot?.day,
-                noise: terms.level(level)?.noise,
-                budget: estimates.willingness_to_pay,
-                usage: estimates.usage_volume,
-                floor: estimates.quality_floor_q_min,
-                seats: (least as f64, most as f64),
-            })
-        };
-        Group::all().filter(|group| self.simulation.world.market.is_known(*group)).filter_map(of).collect()
-    }
+/// Least and greatest truth behind an estimate that is off by at most a share: it is the truth times 1 ± share.
+pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {
+    let from = estimate / (1.0 + share);
+    let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
+    (from.min(to), from.max(to))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::create::{NewRun, Storage};
-    use novamind_record::folder::configuration::Configuration;
 
     #[test]
     fn the_truth_lies_inside_the_range_whatever_the_noise_was() {
@@ -85,20 +64,5 @@ mod tests {
         }
         assert_eq!(truth_behind(0.0, 0.4), (0.0, 0.0));
         assert_eq!(truth_behind(14.0, 0.4), (10.0, 14.0 / 0.6));
-    }
-
-    #[test]
-    fn estimates_are_those_of_the_tool_and_their_range_holds_the_mean() {
-        let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
-        let session = Session::create(new, &Configuration::shipped()).expect("a run");
-        let all = session.estimates();
-        assert_eq!(all.len(), 6);
-        let s1 = all[0];
-        let answer = session.look_up(&GetGroupInsights, all[0].group).expect("an answer");
-        assert_eq!((s1.group.id(), s1.level, s1.noise), ("S1", 1, 0.65));
-        assert_eq!(s1.budget, answer.estimates.willingness_to_pay);
-        let mean = session.params().group(s1.group).c_max_mean;
-        let (least, most) = s1.range(s1.budget);
-        assert!(least <= mean + 0.01 && mean <= most + 0.01, "{least} {mean} {most}");
     }
 }

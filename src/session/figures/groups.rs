@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::dashboard::delivered_quality;
-use super::truth::floor_of;
-use crate::play::simulation::Simulation;
+use super::week::WeekFigures;
 use novamind_world::canonical::canonical;
+use novamind_world::customers::columns::Block;
 use novamind_world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
 use novamind_world::identifiers::{ByChannel, ByGroup, ByPlan, Group};
+use novamind_world::params::Params;
 use novamind_world::state::World;
 
 /// What advertising of a group through a channel brought.
@@ -121,17 +122,52 @@ pub fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts,
     }
 }
 
-/// Settles what is counted at the end of a week.
-pub(crate) fn settle(week: &mut ByGroup<GroupWeek>, simulation: &Simulation) {
-    let world = &simulation.world;
-    for own in delivered_quality(world, &simulation.params) {
+/// Settles what is counted at the end of a week. `floor` returns the range of a group's mean floor, if it is known.
+pub(crate) fn settle(
+    week: &mut ByGroup<GroupWeek>,
+    world: &World,
+    params: &Params,
+    floor: impl Fn(Group) -> Option<(f64, f64)>,
+) {
+    for own in delivered_quality(world, params) {
         week[own.group].quality = Some(own.by_plan);
-        week[own.group].floor = floor_of(own.group, simulation);
+        week[own.group].floor = floor(own.group);
     }
     for (group, block) in world.customers.blocks().filter(|(group, _)| !group.is_enterprise()) {
         for (plan, price) in block.plan.iter().zip(&block.effective_price) {
             week[group].subscribers[*plan] += 1;
             week[group].revenue[*plan] += price;
         }
+    }
+}
+
+/// Mean satisfaction and relationship of a group's active subscribers; none without any.
+pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
+    let blocks = || world.customers.groups[group].blocks.iter();
+    let count: usize = blocks().map(Block::len).sum();
+    let satisfaction: f64 = blocks().flat_map(|block| &block.satisfaction).sum();
+    let relationship: f64 = blocks().flat_map(|block| &block.relationship).sum();
+    (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
+}
+
+/// Churn of some days: their cancellations, as a share of the subscribers before the first of them. None without subscribers.
+pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
+    (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
+}
+
+/// Cancellations of individuals in the last week as a share of those who subscribed before it; none without any.
+pub fn churn_of_last_week(weeks: &[WeekFigures]) -> Option<f64> {
+    let [.., before, last] = weeks else { return None };
+    churn(last.cancellations.into(), before.individual_subscribers.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn churn_is_a_share_of_those_who_were_there_before() {
+        assert_eq!(churn(5.0, 200.0), Some(0.025));
+        assert_eq!((churn(0.0, 3.0), churn(0.0, 0.0)), (Some(0.0), None));
     }
 }

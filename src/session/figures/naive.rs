@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::pace::Pace;
 use super::week::{Forecasts, WeekFigures};
-use crate::state::Session;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
@@ -253,7 +252,7 @@ fn widening(made: &[Hindcast], before: usize) -> f64 {
 }
 
 /// Naive forecasts of cash after the weeks that ran, at a pace.
-pub(super) fn forecasts(cash: f64, pace: &Pace, weeks: &[WeekFigures], horizons: &[u32]) -> Forecasts {
+pub(crate) fn forecasts(cash: f64, pace: &Pace, weeks: &[WeekFigures], horizons: &[u32]) -> Forecasts {
     let bands = Bands::shipped();
     let stage = Stage::of(weeks);
     let one = |horizon: u32| {
@@ -275,19 +274,10 @@ fn cents(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-impl Session {
-    /// The naive forecasts of cash.
-    pub fn naive_forecasts(&self) -> Forecasts {
-        let horizons = &self.simulation.params.limits.prediction_horizons_days;
-        let cash = self.simulation.world.finance.cash;
-        forecasts(cash, &self.pace(), &self.history.weeks, horizons)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::booked::Booked;
+    use crate::figures::week::Booked;
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 

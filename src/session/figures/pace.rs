@@ -3,9 +3,7 @@
 
 use serde::Serialize;
 
-use super::scored_forecast::{ForecastScore, filed_forecasts};
 use super::week::WeekFigures;
-use crate::state::Session;
 use novamind_world::events::Category;
 
 /// Weeks that are recent.
@@ -58,26 +56,10 @@ fn flows(week: &WeekFigures) -> (f64, f64) {
     )
 }
 
-impl Session {
-    /// Scores of the forecasts so far, one per horizon.
-    pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
-        let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
-        horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
-    }
-
-    /// How money goes on from here.
-    pub fn pace(&self) -> Pace {
-        let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
-        let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
-        Pace::of(self.daily_cost(&self.simulation.world.settings), &weeks)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::booked::Booked;
+    use crate::figures::week::Booked;
 
     fn week(income: f64, compute: f64) -> WeekFigures {
         let mut booked = Booked::default();

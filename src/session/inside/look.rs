@@ -2,11 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::last_day::Xray;
 use super::shadow::Shadow;
-use crate::play::advance::DayReport;
-use crate::play::week::Week;
-use crate::state::Session;
+use crate::company::reports::{DayReport, Week};
+use crate::company::xray::Xray;
+use crate::play::Session;
 use novamind_database::{QueryConnection, Scope};
 use novamind_record::trajectory::record::{Activity, XrayLook};
 use novamind_record::trajectory::{Durability, Record};
@@ -27,6 +26,95 @@ pub struct Look {
 }
 
 impl Look {
+    /// Begins a look at a day, the last one if none is named: it is refused, or recorded before anything is shown.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
+    pub fn begin(run: &mut Session, what: &str, which: &str, day: Option<u32>) -> Result<Look, Refusal> {
+        run.refuse_to_look_inside()?;
+        let day = Look::day_to_show(run, day)?;
+        Look::record(run, what, which, day)
+    }
+
+    /// Begins a look at the current state of the run. `shown_day` is the day that the record names.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `read_only`, `not_saved`.
+    pub fn begin_at(run: &mut Session, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
+        run.refuse_to_look_inside()?;
+        Look::record(run, what, which, shown_day)
+    }
+
+    /// Begins a look at a customer on a day, the last one if none is named. Its group, its number in the group and the day on
+    /// which it came.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, also where it came later, `customer_not_found`, `read_only`, `not_saved`.
+    pub fn begin_at_customer(
+        run: &mut Session,
+        customer: u32,
+        day: Option<u32>,
+    ) -> Result<(Look, (Group, u32), u32), Refusal> {
+        run.refuse_to_look_inside()?;
+        let day = Look::day_to_show(run, day)?;
+        let customers = &run.simulation().world.customers;
+        let Some(found) = customers.find(customer) else {
+            let message = match customers.next_customer {
+                FIRST_CUSTOMER => "nobody has come yet".to_owned(),
+                next => format!(
+                    "there is no customer {customer}; choose one from {FIRST_CUSTOMER} to {}",
+                    next - 1
+                ),
+            };
+            return Err(Refusal::at("customer_id", "customer_not_found", message));
+        };
+        let arrival = customers.numbers.arrival_day(customer).unwrap_or(0);
+        if arrival > day {
+            let message = format!("customer {customer} came on day {arrival}, after day {day}");
+            return Err(Refusal::at("day", "day_unknown", message));
+        }
+        Ok((Look::record(run, "customer", &customer.to_string(), day)?, found, arrival))
+    }
+
+    /// The day that is asked for; the last one if none is.
+    ///
+    /// # Errors
+    /// `day_unknown`: it has not been simulated.
+    pub fn day_to_show(run: &Session, day: Option<u32>) -> Result<u32, Refusal> {
+        let last = run.day();
+        let refused = |message: String| Err(Refusal::at("day", "day_unknown", message));
+        match day.unwrap_or(last) {
+            _ if last == 0 => refused("no day has run yet".to_owned()),
+            day if (1..=last).contains(&day) => Ok(day),
+            day => refused(format!("there is no day {day}; choose a day from 1 to {last}")),
+        }
+    }
+
+    /// Opens a connection to the database on which the hidden tables exist and are empty.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`; the run has no database.
+    pub fn hidden_tables(run: &mut Session) -> Result<QueryConnection, Refusal> {
+        run.refuse_to_look_inside()?;
+        run.complete_database()?.open_connection_to(Scope::Hidden)
+    }
+
+    /// Records a look, before anything is shown.
+    ///
+    /// # Errors
+    /// `read_only` where the run has nothing that writes it, `not_saved`.
+    fn record(run: &mut Session, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
+        if !run.log().is_written() {
+            let message = "a look is recorded, and this run is open read-only; open it as for play";
+            return Err(Refusal::new("read_only", message));
+        }
+        let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
+        let line = Record::Activity(Activity::Xray(look));
+        let appended = run.append(&line, Durability::Synced);
+        appended.map_err(|error| Refusal::new("not_saved", error.to_string()))?;
+        Ok(Look { run: run.manifest().id.clone(), day: shown_day })
+    }
+
     /// The day that it shows.
     pub fn day(&self) -> u32 {
         self.day
@@ -35,7 +123,7 @@ impl Look {
     /// The hidden state of the run as it stands.
     pub fn inside<'a>(&self, run: &'a Session) -> Xray<'a> {
         self.assert_is_of(run);
-        Xray::new(run)
+        run.hidden_state()
     }
 
     /// A copy of the run before its first line, which passes its days to a watch.
@@ -48,7 +136,7 @@ impl Look {
     }
 
     fn assert_is_of(&self, run: &Session) {
-        debug_assert_eq!(self.run, run.manifest.id, "a look shows the run that recorded it");
+        debug_assert_eq!(self.run, run.manifest().id, "a look shows the run that recorded it");
     }
 
     /// Simulates the days of the run again up to a day, at most to the end of its week, and passes them to a watch.
@@ -90,141 +178,47 @@ pub struct WatchedDays<'a> {
     pub looks: (&'a str, Vec<String>),
 }
 
-impl Session {
-    /// Begins a look at a day, the last one if none is named: it is refused, or recorded before anything is shown.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
-    pub fn begin_look(&mut self, what: &str, which: &str, day: Option<u32>) -> Result<Look, Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        self.record_look_inside(what, which, day)
-    }
-
-    /// Begins a look at the current state of the run. `shown_day` is the day that the record names.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `read_only`, `not_saved`.
-    pub fn begin_look_at(&mut self, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
-        self.refuse_to_look_inside()?;
-        self.record_look_inside(what, which, shown_day)
-    }
-
-    /// Begins a look at a customer on a day, the last one if none is named. Its group, its number in the group and the day on
-    /// which it came.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, also where it came later, `customer_not_found`, `read_only`, `not_saved`.
-    pub fn begin_look_at_customer(
-        &mut self,
-        customer: u32,
-        day: Option<u32>,
-    ) -> Result<(Look, (Group, u32), u32), Refusal> {
-        self.refuse_to_look_inside()?;
-        let day = self.day_to_show(day)?;
-        let customers = &self.simulation.world.customers;
-        let Some(found) = customers.find(customer) else {
-            let message = match customers.next_customer {
-                FIRST_CUSTOMER => "nobody has come yet".to_owned(),
-                next => format!(
-                    "there is no customer {customer}; choose one from {FIRST_CUSTOMER} to {}",
-                    next - 1
-                ),
-            };
-            return Err(Refusal::at("customer_id", "customer_not_found", message));
-        };
-        let arrival = customers.numbers.arrival_day(customer).unwrap_or(0);
-        if arrival > day {
-            let message = format!("customer {customer} came on day {arrival}, after day {day}");
-            return Err(Refusal::at("day", "day_unknown", message));
-        }
-        Ok((self.record_look_inside("customer", &customer.to_string(), day)?, found, arrival))
-    }
-
-    /// Records a look, before anything is shown.
-    ///
-    /// # Errors
-    /// `read_only` where the run has nothing that writes it, `not_saved`.
-    fn record_look_inside(&mut self, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
-        if !self.records_looks() {
-            let message = "a look is recorded, and this run is open read-only; open it as for play";
-            return Err(Refusal::new("read_only", message));
-        }
-        let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
-        let line = Record::Activity(Activity::Xray(look));
-        let appended = self.append(&line, Durability::Synced);
-        appended.map_err(|error| Refusal::new("not_saved", error.to_string()))?;
-        Ok(Look { run: self.manifest.id.clone(), day: shown_day })
-    }
-
-    /// The day that is asked for; the last one if none is.
-    ///
-    /// # Errors
-    /// `day_unknown`: it has not been simulated.
-    pub fn day_to_show(&self, day: Option<u32>) -> Result<u32, Refusal> {
-        let last = self.day();
-        let refused = |message: String| Err(Refusal::at("day", "day_unknown", message));
-        match day.unwrap_or(last) {
-            _ if last == 0 => refused("no day has run yet".to_owned()),
-            day if (1..=last).contains(&day) => Ok(day),
-            day => refused(format!("there is no day {day}; choose a day from 1 to {last}")),
-        }
-    }
-
-    /// Opens a connection to the database on which the hidden tables exist and are empty.
-    ///
-    /// # Errors
-    /// `not_in_this_mode`; the run has no database.
-    pub fn open_hidden_connection(&mut self) -> Result<QueryConnection, Refusal> {
-        self.refuse_to_look_inside()?;
-        self.complete_database()?;
-        self.projection.open_connection(Scope::Hidden)
-    }
-
+impl WatchedDays<'_> {
     /// Simulates at least one day of a debug run and passes the days to a watch. Both continuing and stopping show hidden state, so
     /// each of the looks is recorded on the last day. If there are no looks, the watch receives nothing.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
-    pub fn step_watched(
-        &mut self,
-        watched: WatchedDays<'_>,
-        progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        self.refuse_to_look_inside()?;
-        self.refuse_to_step()?;
-        let WatchedDays { days, watch, shows_past, goes_on, looks: (what, which) } = watched;
-        let until = self.day().saturating_add(days.max(1));
+    pub fn step(self, run: &mut Session, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
+        run.refuse_to_look_inside()?;
+        run.refuse_to_step()?;
+        let WatchedDays { days, watch, shows_past, goes_on, looks: (what, which) } = self;
+        let until = run.day().saturating_add(days.max(1));
         if which.is_empty() {
-            return self.step_on(until, &|_| true, progress);
+            return step_on(run, until, &|_| true, progress);
         }
         if shows_past {
-            watch_up_to(self, self.day(), watch.clone())?;
+            watch_up_to(run, run.day(), watch.clone())?;
         }
-        self.simulation.watch = watch;
-        let week = self.step_on(until, goes_on, progress);
-        self.simulation.watch = Arc::new(Unwatched);
+        run.set_watch(watch);
+        let week = step_on(run, until, goes_on, progress);
+        run.set_watch(Arc::new(Unwatched));
         let week = week?;
         for which in which {
-            self.record_look_inside(what, &which, self.day())?;
+            Look::record(run, what, &which, run.day())?;
         }
         Ok(week)
     }
+}
 
-    /// Steps over weeks up to a day, as long as `goes_on` returns true.
-    fn step_on(
-        &mut self,
-        until: u32,
-        goes_on: &dyn Fn(u32) -> bool,
-        progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        let mut notices = Vec::new();
-        loop {
-            let mut week = self.step_while(goes_on, until - self.day(), progress)?;
-            notices.append(&mut week.notices);
-            if self.day() >= until || week.ended.is_some() || week.remark.is_some() || !goes_on(self.day()) {
-                return Ok(Week { notices, ..week });
-            }
+/// Steps over weeks up to a day, as long as `goes_on` returns true.
+fn step_on(
+    run: &mut Session,
+    until: u32,
+    goes_on: &dyn Fn(u32) -> bool,
+    progress: &mut dyn FnMut(&DayReport<'_>),
+) -> Result<Week, Refusal> {
+    let mut notices = Vec::new();
+    loop {
+        let mut week = run.step_while(goes_on, until - run.day(), progress)?;
+        notices.append(&mut week.notices);
+        if run.day() >= until || week.ended.is_some() || week.remark.is_some() || !goes_on(run.day()) {
+            return Ok(Week { notices, ..week });
         }
     }
 }
@@ -258,7 +252,7 @@ mod tests {
         let storage = Storage::Runs(folder.path().to_owned());
         let new = NewRun { mode: Mode::Baseline, days: Some(28), storage, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("wait", &forecasts, crate::Via::Script, &mut |_| {}).expect("a week");
         session.end().expect("it ends");
         let sql = "SELECT count(*) FROM hidden.groups";
@@ -267,10 +261,11 @@ mod tests {
             (true, ResultsShown::Own, false),
             (false, ResultsShown::None, false),
         ] {
-            session.manifest.study = Some(StudyStamp::pilot(practice));
-            session.manifest.rules = Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
-            let look = session.begin_look("sql", sql, None).map_err(|refusal| refusal.code);
-            let asked = session.open_hidden_connection().map(drop).map_err(|refusal| refusal.code);
+            session.manifest_mut().study = Some(StudyStamp::pilot(practice));
+            session.manifest_mut().rules =
+                Some(SessionRules { results, ..SessionRules::of_mode(Mode::Baseline) });
+            let look = Look::begin(&mut session, "sql", sql, None).map_err(|refusal| refusal.code);
+            let asked = Look::hidden_tables(&mut session).map(drop).map_err(|refusal| refusal.code);
             assert_eq!(asked, look.map(drop), "{practice} {results:?}");
             assert_eq!(asked.is_ok(), is_shown, "{practice} {results:?}");
             assert!(is_shown || asked == Err("not_in_this_mode"));

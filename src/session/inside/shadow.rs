@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::ask::not_readable;
-use crate::play::advance::DayReport;
-use crate::state::Session;
+use crate::company::reports::DayReport;
+use crate::database::not_readable;
+use crate::play::Session;
 use novamind_record::trajectory::Trajectory;
 use novamind_tools::Refusal;
 use novamind_world::day::watch::DayWatch;
@@ -18,14 +18,11 @@ impl Shadow {
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
     pub(super) fn of(run: &Session, watch: Arc<dyn DayWatch>) -> Result<Shadow, Refusal> {
-        if run.folder.is_none() {
+        if run.folder().is_none() {
             let message = "a run in memory keeps no lines, so its past days cannot be simulated again";
             return Err(Refusal::new("not_possible", message));
         }
-        let params = Arc::new(run.manifest.params().map_err(|error| not_readable(&error))?);
-        let mut shadow = Session::unwritten(run.manifest.clone(), run.folder.clone(), params, None);
-        shadow.simulation.watch = watch;
-        shadow.is_shadow = true;
+        let shadow = Session::shadow_of(run, watch).map_err(|error| not_readable(&error))?;
         Ok(Shadow(Box::new(shadow)))
     }
 
@@ -41,15 +38,15 @@ impl Shadow {
         tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), Refusal> {
         let Shadow(shadow) = self;
-        let Some(folder) = &run.folder else { return Ok(()) };
-        let has_begun = !shadow.position.line_hash.is_empty();
-        if has_begun && shadow.position == run.position {
+        let Some(folder) = run.folder() else { return Ok(()) };
+        let has_begun = !shadow.position().line_hash.is_empty();
+        if has_begun && shadow.position() == run.position() {
             return Ok(());
         }
         let path = folder.join("trajectory.jsonl");
         let trajectory = Trajectory::read(&path).map_err(|error| not_readable(&error))?;
-        let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position.seq);
-        let lacking: Vec<_> = lines.take_while(|line| line.seq <= run.position.seq).collect();
+        let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position().seq);
+        let lacking: Vec<_> = lines.take_while(|line| line.seq <= run.position().seq).collect();
         for line in lacking {
             if !goes_on(shadow.day()) {
                 break;

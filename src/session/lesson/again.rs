@@ -2,8 +2,8 @@
 
 use super::conduct::LessonEntry;
 use crate::create::{NewRun, Storage};
+use crate::play::Session;
 use crate::resume::branch::branch_of_lesson;
-use crate::state::Session;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
@@ -24,13 +24,13 @@ impl Session {
             let message = format!("choose a step from 1 to {}", standing.last_begun() + 1);
             return Err(Refusal::at("step", "step_unknown", message));
         }
-        let Some(folder) = &self.folder else {
+        let Some(folder) = self.folder() else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be tried again"));
         };
         let refused = |error: novamind_record::error::RunError| Refusal::new("not_saved", error.to_string());
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(refused)?;
-        let begun = standing.own_part().weeks_of(step).0 * self.simulation.params.run.days_per_week;
-        let mut again = branch_of_lesson(folder, &self.manifest, &trajectory, begun)?;
+        let begun = standing.own_part().weeks_of(step).0 * self.params().run.days_per_week;
+        let mut again = branch_of_lesson(folder, self.manifest(), &trajectory, begun)?;
         again.company_answers = self.company_answers;
         // Whoever has seen what came of it is not asked again: the first guess stands.
         if let Some(value) = standing.guess(step) {
@@ -52,15 +52,15 @@ impl Session {
         if part >= parts {
             return Err(Refusal::at("part", "part_unknown", format!("choose a part from 1 to {parts}")));
         }
-        let runs = self.folder.as_deref().and_then(|folder| folder.parent());
+        let runs = self.folder().and_then(|folder| folder.parent());
         let Some(runs) = runs else {
             return Err(Refusal::new("not_saved", "a run in memory has no other parts"));
         };
         let new = NewRun {
             mode: Mode::Lesson,
-            participant: self.manifest.participant.clone(),
+            participant: self.manifest().participant.clone(),
             lesson: Some(LessonEntry { lesson: standing.lesson.clone(), part, is_judged: true }),
-            handout: self.manifest.handout.clone().map(HandoutEntry::of_later_run),
+            handout: self.manifest().handout.clone().map(HandoutEntry::of_later_run),
             storage: Storage::Runs(runs.to_owned()),
             ..NewRun::default()
         };

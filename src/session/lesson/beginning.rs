@@ -8,9 +8,9 @@ use super::conduct::LessonEntry;
 use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
+use crate::company::reports::DayReport;
+use crate::play::Session;
 use crate::play::act::not_saved;
-use crate::play::advance::DayReport;
-use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
 use novamind_record::trajectory::{Line, Record, Trajectory};
@@ -57,7 +57,7 @@ impl Session {
                 })?;
             }
             if week < start.start_weeks {
-                let forecasts = self.naive_forecasts();
+                let forecasts = self.company().naive_forecasts();
                 let refused = |refusal: Refusal| RunError::NotPossible(refusal.to_string());
                 self.advance("the start of the lesson", &forecasts, Via::Lesson, tell).map_err(refused)?;
             }
@@ -93,7 +93,7 @@ impl Session {
     /// # Errors
     /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
     pub(crate) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
-        let Some(stamp) = self.manifest.lesson.clone() else { return Ok(()) };
+        let Some(stamp) = self.manifest().lesson.clone() else { return Ok(()) };
         let lesson = Lesson::of_run(folder, &stamp.name)?;
         let part = stamp.part as usize;
         if lesson.digest != stamp.digest || !(1..=lesson.plan.parts.len()).contains(&part) {
@@ -113,7 +113,7 @@ impl Session {
                 Record::Week(_) | Record::Override(_) | Record::Activity(Activity::Lesson(_))
             )
         };
-        if self.recorder.is_some() && lines.last().is_some_and(is_open) && !is_try_to_begin(lines) {
+        if self.log().is_written() && lines.last().is_some_and(is_open) && !is_try_to_begin(lines) {
             self.settle_lesson();
         }
         Ok(())
@@ -125,7 +125,7 @@ impl Session {
     /// # Errors
     /// The start of the lesson is refused.
     pub(crate) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
-        let is_open = self.recorder.is_some() && self.history.ended.is_none();
+        let is_open = self.log().is_written() && self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
         let Some(step) = self.lesson_step().filter(|step| !standing.has_begun(*step)) else { return Ok(()) };
         if is_try_to_begin(lines) {
@@ -139,7 +139,7 @@ impl Session {
 
     /// How many calls of the start were made since the last week.
     fn calls_of_week(&self, lines: &[Line]) -> usize {
-        let day = self.simulation.world.day;
+        let day = self.day();
         let after = lines.iter().rposition(Line::closes_days).map_or(0, |week| week + 1);
         let calls =
             lines[after..].iter().filter(|line| line.day == day && line.record.accepted_call().is_some());
@@ -148,8 +148,8 @@ impl Session {
 
     /// The newest try of a step in the run of which this one is a branch.
     fn tries_of_parent(&self, step: usize) -> u32 {
-        let runs = self.folder.as_deref().and_then(Path::parent);
-        let parent = self.manifest.parent.as_ref().zip(runs);
+        let runs = self.folder().and_then(Path::parent);
+        let parent = self.manifest().parent.as_ref().zip(runs);
         let read = parent.and_then(|(parent, runs)| {
             Trajectory::read(&runs.join(&parent.run).join("trajectory.jsonl")).ok()
         });

@@ -11,8 +11,8 @@ use super::definition::{
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
 use crate::create::NewRun;
+use crate::play::Session;
 use crate::play::act::not_saved;
-use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::stamp::LessonStamp;
 use novamind_record::trajectory::record::{Activity, Ended, LessonEvent, LessonNote, Via};
@@ -62,12 +62,12 @@ impl Session {
     /// The step that the next week belongs to, counted from 0; none outside lessons and once the part is over.
     pub fn lesson_step(&self) -> Option<usize> {
         let standing = self.lesson.as_deref()?;
-        standing.own_part().step_after(self.weeks_passed()).filter(|_| self.history.ended.is_none())
+        standing.own_part().step_after(self.weeks_passed()).filter(|_| self.ended().is_none())
     }
 
     /// Whole weeks that have passed.
     pub fn weeks_passed(&self) -> u32 {
-        self.simulation.world.day / self.simulation.params.run.days_per_week
+        self.day() / self.params().run.days_per_week
     }
 
     /// Refuses a tool that the lesson does not have.
@@ -109,7 +109,7 @@ impl Session {
         if !self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity()) {
             return Ok(());
         }
-        let (now, next) = (self.simulation.world.settings.core.capacity_tier, self.capacity_towards_usage());
+        let (now, next) = (self.settings().core.capacity_tier, self.company().capacity_towards_usage());
         if now == next {
             return Ok(());
         }
@@ -119,11 +119,11 @@ impl Session {
     /// Judges what a week came to, before the line that ends the run. A step that is over is measured and the next begins;
     /// after the last one the run is over. What is judged already stays as it is.
     pub(crate) fn settle_lesson(&mut self) {
-        let is_open = self.history.ended.is_none();
+        let is_open = self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
-        let is_over = self.simulation.world.is_over(&self.simulation.params);
+        let is_over = self.simulation().world.is_over(self.params());
         // A week in which the cash ran out counts.
-        let weeks = self.simulation.world.day.div_ceil(self.simulation.params.run.days_per_week);
+        let weeks = self.day().div_ceil(self.params().run.days_per_week);
         let part = standing.own_part();
         let step = part.step_after(weeks.saturating_sub(1));
         let Some(step) = step.filter(|step| standing.has_begun(*step) && !standing.has_begun(step + 1))
@@ -164,7 +164,7 @@ impl Session {
         let met = standing.pitfalls();
         let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
         let looked: Vec<_> = standing.lesson.plan.pitfalls.iter().filter(own).cloned().collect();
-        let days = self.simulation.params.run.days_per_week;
+        let days = self.params().run.days_per_week;
         let from = weeks.saturating_sub(1) * days;
         for pitfall in looked {
             let Ok(Some(value)) = pitfall.measurement.of(self, from) else { continue };
@@ -189,7 +189,7 @@ impl Session {
             let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else { continue };
             let is_due = if guess.told == GuessTold::Part { is_last } else { at == step };
             if is_due {
-                let from = part.weeks_of(at).0 * self.simulation.params.run.days_per_week;
+                let from = part.weeks_of(at).0 * self.params().run.days_per_week;
                 let outcome = self.outcome_of(standing, guess, at, from);
                 let _ = self.note_lesson(outcome);
             }
@@ -214,7 +214,7 @@ impl Session {
     /// Measures what was to be reached.
     fn judge(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
-        let from = begin * self.simulation.params.run.days_per_week;
+        let from = begin * self.params().run.days_per_week;
         let judged = standing.goals(step).len();
         let good = self.good_play_values(standing, step);
         for (number, goal) in own.goals.iter().enumerate().skip(judged) {
@@ -274,7 +274,7 @@ impl Session {
 
     pub(super) fn note_lesson(&mut self, note: LessonNote) -> Result<(), RunError> {
         self.append(&Record::Activity(Activity::Lesson(note.clone())), Durability::Synced)?;
-        let day = self.simulation.world.day;
+        let day = self.day();
         if let Some(standing) = &mut self.lesson {
             standing.notes.push((day, note));
         }

@@ -17,7 +17,7 @@ use super::standing::LessonStanding;
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::WeekFigures;
 use crate::figures::week_figure::WeekFigure;
-use crate::state::{AnswersCompanies, Session};
+use crate::play::{AnswersCompanies, Session};
 use novamind_record::trajectory::record::Ended;
 use novamind_tools::{Refusal, ToolId, highest_named};
 use novamind_voice::CompanyNames;
@@ -200,9 +200,9 @@ impl Session {
         }
         Ok(PlayedPart {
             standing: standing.clone(),
-            run: self.manifest.id.clone(),
-            participant: self.manifest.participant.clone(),
-            seed: self.manifest.seed,
+            run: self.manifest().id.clone(),
+            participant: self.manifest().participant.clone(),
+            seed: self.manifest().seed,
             cash_by_day: self.cash_by_day().to_vec(),
             weeks: self.weeks().to_vec(),
             days_per_week: self.params().run.days_per_week,

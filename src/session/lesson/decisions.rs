@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::figures::journal::JournalEntry;
-use crate::state::Session;
+use crate::play::Session;
 use novamind_tools::{Kind, ToolId};
 
 /// What holds in a week, and what was done at its start.

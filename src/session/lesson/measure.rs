@@ -2,7 +2,7 @@
 
 use super::measurement::{Measurement, NumberSource, Over};
 use crate::figures::week::WeekFigures;
-use crate::state::Session;
+use crate::play::Session;
 use novamind_database::Cell;
 
 impl Measurement {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::debrief::DebriefStep;
 use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
 use super::standing::LessonStanding;
-use crate::state::Session;
+use crate::play::Session;
 use novamind_record::trajectory::record::LessonNote;
 use novamind_tools::ToolId;
 

@@ -8,7 +8,7 @@ use super::lesson_call::LessonCall;
 use super::lesson_file::Lesson;
 use super::standing::LessonStanding;
 use crate::create::NewRun;
-use crate::state::{AnswersCompanies, Session};
+use crate::play::{AnswersCompanies, Session};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::mode::Mode;
@@ -136,7 +136,7 @@ fn play_week(
     if asked {
         session.guess_in_lesson(1.0)?;
     }
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("reference play", &forecasts, Via::Script, &mut |_| {}).map(|_| ())
 }
 
@@ -159,14 +159,14 @@ impl Session {
     /// has waited for it is judged now.
     pub fn answer_companies_by(&mut self, answers: AnswersCompanies) {
         self.company_answers = Some(answers);
-        if self.recorder.is_some() && self.awaits_judgement() {
+        if self.log().is_written() && self.awaits_judgement() {
             self.settle_lesson();
         }
     }
 
     /// Whether the weeks of a step are over, and the next one has not begun.
     fn awaits_judgement(&self) -> bool {
-        let Some(standing) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) else {
+        let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
             return false;
         };
         let (part, weeks) = (standing.own_part(), self.weeks_passed());
@@ -194,7 +194,7 @@ impl Session {
         let play = PartPlay {
             lesson: &standing.lesson,
             part: standing.part,
-            seed: Some(self.manifest.seed),
+            seed: Some(self.manifest().seed),
             plays: &standing.lesson.plan.good.plays,
             weeks: Some(end),
             // Its own goals would ask for the good play again.
@@ -204,7 +204,7 @@ impl Session {
         let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "no rules"));
         let answers = self.company_answers.unwrap_or(refuses);
         let mut played = goals.iter().any(relative).then(|| play_part(&play, answers)).and_then(Result::ok);
-        let from = begin * self.simulation.params.run.days_per_week;
+        let from = begin * self.params().run.days_per_week;
         let mut value = |goal: &LessonGoal| {
             let played = played.as_mut().filter(|_| relative(goal))?;
             goal.measurement.of(played, from).ok().flatten()

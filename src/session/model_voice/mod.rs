@@ -4,13 +4,8 @@
 //! Its scores of the player's posts are inputs of the world, so their line is in the trajectory before they count. Its words
 //! stand beside the world: nothing that is simulated reads them.
 
-mod asking;
 mod endpoint;
 pub(crate) mod joining;
-pub(crate) mod scores;
 pub(crate) mod speaker;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub(crate) mod stub;
-mod telling_again;
-#[cfg(all(test, feature = "server"))]
-mod tests;

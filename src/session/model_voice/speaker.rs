@@ -47,11 +47,11 @@ pub(crate) struct Speaker {
 }
 
 /// What came of a question, and the milliseconds it took.
-pub(super) struct Reply<T> {
+pub(crate) struct Reply<T> {
     /// The answer, or why there is none.
-    pub(super) answer: Result<T, String>,
+    pub(crate) answer: Result<T, String>,
     /// Milliseconds.
-    pub(super) took_ms: f64,
+    pub(crate) took_ms: f64,
 }
 
 impl Speaker {
@@ -66,7 +66,7 @@ impl Speaker {
     }
 
     /// Asks within what is left of the week's time. The player is told of the first of several failures.
-    pub(super) fn ask<T>(
+    pub(crate) fn ask<T>(
         &mut self,
         prompt: &ModelPrompt,
         read: impl FnOnce(&str) -> Result<T, String>,

@@ -3,25 +3,22 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use super::irrevocable::Irrevocable;
-use super::this_week::Step;
-use crate::figures::changes::{Change, changes, daily_cost};
+use super::Session;
+use crate::company::irrevocable::Irrevocable;
+use crate::company::this_week::Step;
+use crate::figures::changes::{Change, changes};
 use crate::figures::journal::JournalEntry;
-use crate::figures::research_outlook::ResearchOutlook;
-use crate::state::Session;
+use crate::view::research_outlook::ResearchOutlook;
 use novamind_base::notation::plain_numbers;
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::{Call, CalledTool, Outcome, RequestId, Reversal, Via};
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{
-    Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, Tool, ToolId, View,
-    bounds, find,
+    Answer, AnyTool, Arguments, Kind, NotebookChange, Planned, REMARK, Refusal, Spec, ToolId, bounds, find,
 };
 use novamind_world::command::{Command, ResolvedCommand};
-use novamind_world::settings::Settings;
-use novamind_world::state::World;
 
 /// What a call would do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -65,6 +62,7 @@ impl Session {
         let tool = self.tool(tool.as_ref())?;
         self.refuse_if_over(tool.spec().kind)?;
         let (_, planned) = self.plan(tool, arguments)?;
+        let company = self.company();
         let mut preview = Preview {
             tool: tool.spec().id,
             cost_now: 0.0,
@@ -79,7 +77,7 @@ impl Session {
                 let now = &self.simulation.world.settings;
                 let mut after = now.clone();
                 after.set(change);
-                preview.cost_per_day = self.daily_cost(&after) - self.daily_cost(now);
+                preview.cost_per_day = company.daily_cost(&after) - company.daily_cost(now);
                 preview.effect_day = Some(self.simulation.world.day + 1);
                 preview.changes = changes(now, &after);
             }
@@ -88,7 +86,7 @@ impl Session {
                 preview.cost_now = f64::from(self.simulation.params.research(tier).cost);
                 preview.effect_day =
                     Some(self.simulation.world.day + self.simulation.params.development.rd_min_duration_days);
-                preview.research = Some(self.research_outlook(tier));
+                preview.research = Some(company.research_outlook(tier));
             }
             Command::ResearchMarket => {
                 preview.cost_now = self.simulation.params.market_research.discovery_cost_level_1;
@@ -106,17 +104,6 @@ impl Session {
             Command::RejectDeals(_) => preview.effect_day = Some(self.simulation.world.day),
         }
         Ok(preview)
-    }
-
-    /// Answers a reading tool without recording that it was asked, for screens that always show what it says; none
-    /// where the tool refuses, or does more than read.
-    pub fn look_up<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
-        if tool.spec().kind != Kind::Read {
-            return None;
-        }
-        let planned = tool.plan(&self.view(), args).ok()?;
-        let resolved = self.simulation.resolve(planned.command);
-        planned.reply.without_running(&resolved)
     }
 
     /// Calls a tool; `next_week` and `query` have functions of their own.
@@ -173,7 +160,7 @@ impl Session {
                 Err(refusal)
             }
             Ok((given, accepted, answer)) => {
-                let durability = self.durability_of_calls();
+                let durability = self.log.durability_of_calls();
                 let record =
                     called(Value::Object(given.as_map().clone()), Outcome::Accepted(answer.to_json()));
                 self.append(&record, durability).map_err(not_saved)?;
@@ -185,7 +172,7 @@ impl Session {
     }
 
     fn apply(&mut self, spec: &Spec, given: &Arguments, reversal: Option<Reversal>, accepted: Accepted) {
-        let (Accepted { resolved, change, row }, seq) = (accepted, self.position.seq);
+        let (Accepted { resolved, change, row }, seq) = (accepted, self.log.position().seq);
         change.iter().for_each(|change| self.keep(change));
         if !resolved.only_reads() {
             let args = Value::Object(given.as_map().clone());
@@ -202,7 +189,7 @@ impl Session {
         };
         let before =
             matches!(resolved, ResolvedCommand::Set(_)).then(|| self.simulation.world.settings.clone());
-        self.simulation.apply(resolved, self.projection.entries());
+        self.simulation.apply(resolved, self.database.entries());
         if let Some(restores) = before {
             let changed = restores != self.simulation.world.settings;
             self.history.this_week.keep(Step { seq, tool: spec.id, restores }, changed, reversal);
@@ -216,30 +203,12 @@ impl Session {
         if let Some(last) = self.history.cash_by_day.last_mut() {
             *last = self.simulation.world.finance.cash;
         }
-        let notices = self.notice_texts();
-        self.simulation.follow_call(self.projection.entries(), notices, settings);
+        let notices = self.simulation.notice_texts();
+        self.simulation.follow_call(self.database.entries(), notices, settings);
         // The database must not be ahead of what is on the disk.
-        if self.durability_of_calls() == Durability::Synced {
+        if self.log.durability_of_calls() == Durability::Synced {
             self.commit_projection();
         }
-    }
-
-    /// Settings changed since the last week, old -> new.
-    pub fn changes(&self) -> Vec<Change> {
-        self.history.changes(&self.simulation.world)
-    }
-
-    /// The present values of a tool's arguments, as a call would send them.
-    pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
-        find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
-    }
-
-    /// Running costs that follow from settings alone, dollars a day.
-    pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
-        daily_cost(
-            settings,
-            f64::from(self.simulation.params.capacity(settings.core.capacity_tier).cost_per_day),
-        )
     }
 
     pub(crate) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
@@ -257,13 +226,6 @@ impl Session {
             };
             Refusal::at("tool", "unknown_tool", message)
         })
-    }
-
-    /// What tools may look at.
-    fn view(&self) -> View<'_> {
-        View::new(&self.simulation.world, &self.simulation.params)
-            .within(&self.surroundings)
-            .with_posts(&self.simulation.feed.posts)
     }
 
     fn plan(
@@ -285,7 +247,7 @@ impl Session {
         arguments: &Value,
     ) -> Result<(Arguments, Planned<Answer>), Refusal> {
         let given = Arguments::of(tool.spec(), arguments, || self.numbers())?;
-        let planned = tool.plan(&self.view(), &given)?;
+        let planned = tool.plan(&self.company().for_tools(), &given)?;
         Ok((given, planned))
     }
 
@@ -319,9 +281,9 @@ impl Session {
     }
 
     fn refuse_if_only_read(&self) -> Result<(), Refusal> {
-        match &self.recorder {
-            Some(_) => Ok(()),
-            None => Err(Refusal::new("read_only", "this run is open read-only")),
+        match self.log.is_written() {
+            true => Ok(()),
+            false => Err(Refusal::new("read_only", "this run is open read-only")),
         }
     }
 
@@ -411,10 +373,5 @@ impl Session {
         }
         self.apply(tool.spec(), &given, call.reversal, Accepted { resolved, change, row });
         Ok(())
-    }
-
-    /// The world, for the parts of the session that build readings from it.
-    pub(crate) fn world(&self) -> &World {
-        &self.simulation.world
     }
 }

@@ -4,36 +4,23 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::Session;
 use super::act::not_saved;
-use super::facts_chain::StateHash;
-use super::recorder::Recorder;
-use super::simulation::Simulation;
-use super::week::Week;
+use crate::company::derived::DerivedOfParameters;
+use crate::company::facts_chain::StateHash;
+use crate::company::reports::{DayReport, Week};
+use crate::company::simulation::Simulation;
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::{Forecasts, WeekFigures};
-use crate::inside::last_day::Xray;
-use crate::resume::snapshot::WEEKS_BETWEEN;
-use crate::state::Session;
+use crate::snapshot::file::WEEKS_BETWEEN;
 use novamind_database::{Entry, ForecastRow, ProjectionError};
 use novamind_record::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
 use novamind_record::trajectory::{Durability, Record, seconds};
 use novamind_tools::{Kind, Refusal, ToolId};
-use novamind_world::events::DayFigures;
 use novamind_world::held::Held;
-use novamind_world::market::surges::week_end;
 
 /// The rationale of a week in a lesson that asks for none.
 const UNASKED: &str = "(not asked for in this lesson)";
-
-/// A day that was just simulated.
-pub struct DayReport<'a> {
-    /// Its figures.
-    pub figures: &'a DayFigures,
-    /// Day on which the week will end, unless cash runs out.
-    pub week_end: u32,
-    /// The hidden state, in debug runs.
-    pub xray: Option<Xray<'a>>,
-}
 
 /// What is filed before a week, not yet checked.
 pub(crate) struct Filing<'a> {
@@ -120,7 +107,7 @@ impl Session {
             calculations: calculated.clone(),
             request: request.clone(),
         };
-        let at = self.append(&Record::Advance(filed), self.durability_of_calls()).map_err(not_saved)?;
+        let at = self.append(&Record::Advance(filed), self.log.durability_of_calls()).map_err(not_saved)?;
         self.history.first_answers.begin_week(request);
         self.history.calculated = calculated;
         self.file(text, &forecasts, &at);
@@ -166,7 +153,7 @@ impl Session {
         self.refuse_to_step()?;
         self.simulation.refuse_crowded_day()?;
         let from = self.simulation.world.day;
-        let until = self.next_decision_day().min(from.saturating_add(days.max(1)));
+        let until = self.company().next_decision_day().min(from.saturating_add(days.max(1)));
         let goes_on = |day: &Simulation| (day.world.day == from || goes_on(day.world.day)) && has_room(day);
         let last_day = self.run_days_while(&goes_on, until, progress);
         Ok(self.close_days(Record::Step, from, last_day))
@@ -196,15 +183,10 @@ impl Session {
         Ok(())
     }
 
-    /// The day on which the week that holds the next day ends.
-    pub fn next_decision_day(&self) -> u32 {
-        week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
-    }
-
     /// Runs the week of an `advance` line and closes it. A week in which a day has no room for its leads ends before that day, as
     /// single days do.
     pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
-        let (from, until) = (self.simulation.world.day, self.next_decision_day());
+        let (from, until) = (self.simulation.world.day, self.company().next_decision_day());
         let last_day = self.run_days_while(&has_room, until, progress);
         let Simulation { world, params, .. } = &self.simulation;
         let is_whole = world.day == until || world.is_over(params);
@@ -214,7 +196,7 @@ impl Session {
     /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
     pub(crate) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let last_day = self.run_days_while(&|_| true, until, progress);
-        self.simulation.end_days(self.projection.entries(), last_day)
+        self.simulation.end_days(self.database.entries(), last_day)
     }
 
     /// Simulates days as long as it is to go on. Returns the notices of the last day, if there was any: what follows from it
@@ -225,7 +207,7 @@ impl Session {
         until: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Option<Vec<String>> {
-        let week_end = self.next_decision_day();
+        let week_end = self.company().next_decision_day();
         self.voice.begin_week();
         self.history.notices.clear();
         let (mut day_before, nothing) = (None, Held::default());
@@ -234,20 +216,19 @@ impl Session {
             if !goes_on(&self.simulation) {
                 break;
             }
-            let figures =
-                self.simulation.simulate_day(&nothing, self.projection.entries(), day_before.take());
+            let figures = self.simulation.simulate_day(&nothing, self.database.entries(), day_before.take());
             self.ask_readers();
-            self.simulation.judge_own_posts(self.projection.entries());
-            let notices = self.notice_texts();
+            self.simulation.judge_own_posts(self.database.entries());
+            let notices = self.simulation.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
             let debug = self.manifest.mode == novamind_record::folder::mode::Mode::Debug;
-            let xray = (debug || self.is_shadow).then(|| Xray::new(self));
+            let xray = (debug || self.is_shadow).then(|| self.hidden_state());
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();
             day_before = Some(notices);
         }
         if !Arc::ptr_eq(&params, &self.simulation.params) {
-            self.renew_what_follows_from_parameters();
+            self.derived = DerivedOfParameters::default();
         }
         day_before
     }
@@ -255,8 +236,8 @@ impl Session {
     /// Lets follow what is left of the last day, and hashes the state for the line that closes the days; where no file holds
     /// that line, the hash stays empty.
     fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
-        let entries = self.projection.entries();
-        if self.recorder.as_ref().is_some_and(Recorder::is_on_disk) {
+        let entries = self.database.entries();
+        if self.log.is_on_disk() {
             return self.simulation.end_days(entries, last_day);
         }
         self.simulation.follow_last_day(entries, last_day);
@@ -265,9 +246,9 @@ impl Session {
 
     /// Ends the figures of the days that ran, and the week if it is complete.
     pub(crate) fn settle_figures(&mut self) -> WeekFigures {
-        let open_issues = self.open_issues();
+        let open_issues = self.simulation.open_issues();
         let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
-        self.history.last_dashboard = Some(self.build_dashboard(figures.open_issues));
+        self.history.last_dashboard = Some(self.company().build_dashboard(figures.open_issues));
         figures
     }
 
@@ -291,7 +272,7 @@ impl Session {
         };
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
-        let snapshot = due && problem.is_none() && self.durability_of_calls() == Durability::Synced;
+        let snapshot = due && problem.is_none() && self.log.durability_of_calls() == Durability::Synced;
         // Before a week stands the line that lets it pass; before single days stands nothing.
         let next = match is_week {
             true => "the days are simulated again when the run is opened, with the same result",
@@ -336,9 +317,9 @@ impl Session {
     fn database_remark(&self) -> Option<String> {
         if self.history.ended.is_some() {
             self.commit_projection();
-            let _ = self.projection.wait();
+            let _ = self.database.wait();
         }
-        let ProjectionError(problem) = self.database_failure()?;
+        let ProjectionError(problem) = self.database.failure()?;
         let recovery = match self.folder {
             Some(_) => {
                 "The run is safe: world.db is rebuilt from its record, trajectory.jsonl. Free some disk space; the next query \
@@ -385,7 +366,7 @@ impl Session {
     fn report(&self, remark: Option<String>) -> Week {
         Week {
             figures: self.history.latest_week(),
-            dashboard: self.dashboard(),
+            dashboard: self.company().dashboard(),
             notices: self.history.notices.clone(),
             ended: self.history.ended,
             remark,
@@ -422,7 +403,7 @@ impl Session {
             submitted_at,
         };
         let rows = || forecasts.all.iter().map(row).collect();
-        self.projection.entries().write(|| Entry { forecasts: rows(), ..Entry::default() });
+        self.database.entries().write(|| Entry { forecasts: rows(), ..Entry::default() });
     }
 }
 

@@ -3,10 +3,11 @@
 //! The file is written whole and takes the place of the old one. It is no part of the record, and is not exported.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::Session;
+use super::Session;
 use novamind_record::folder::durable::write_whole;
 use novamind_tools::ToolId;
 
@@ -67,27 +68,35 @@ impl UnsentTexts {
     }
 }
 
-impl Session {
-    /// Keeps texts that were typed beside the run; no file where there are none. A disk that refuses them is no reason to
-    /// stop: they are in the window.
-    pub fn keep_drafts(&self, drafts: &UnsentTexts) {
-        let (Some(folder), true) = (&self.folder, self.recorder.is_some()) else { return };
-        let file = folder.join(FILE);
+/// The file of texts that were typed and not sent in a run that is played; a run in memory, or one that is only read, keeps
+/// none.
+pub struct Drafts(Option<PathBuf>);
+
+impl Drafts {
+    /// Keeps texts beside the run; no file where there are none. A disk that refuses them is no reason to stop: they are in the
+    /// window.
+    pub fn keep(&self, drafts: &UnsentTexts) {
+        let Some(file) = &self.0 else { return };
         if drafts.is_empty() {
-            let _ = std::fs::remove_file(&file);
+            let _ = std::fs::remove_file(file);
             return;
         }
         let Ok(text) = serde_json::to_vec(drafts) else { return };
-        let _ = write_whole(&file, &text);
+        let _ = write_whole(file, &text);
     }
 
-    /// Texts that were kept when the program was stopped; none of a run that is only read, and none that cannot be read.
-    pub fn kept_drafts(&self) -> UnsentTexts {
-        let (Some(folder), true) = (&self.folder, self.recorder.is_some()) else {
-            return UnsentTexts::default();
-        };
-        let text = std::fs::read(folder.join(FILE)).unwrap_or_default();
+    /// Texts that were kept when the program was stopped; none that cannot be read.
+    pub fn kept(&self) -> UnsentTexts {
+        let text = self.0.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
         serde_json::from_slice(&text).unwrap_or_default()
+    }
+}
+
+impl Session {
+    /// Texts that were typed and not sent.
+    pub fn drafts(&self) -> Drafts {
+        let folder = self.folder.as_ref().filter(|_| self.log.is_written());
+        Drafts(folder.map(|folder| folder.join(FILE)))
     }
 }
 
@@ -106,14 +115,14 @@ mod tests {
         let mut drafts = UnsentTexts { rationale: "wait\nand see".to_owned(), ..UnsentTexts::default() };
         drafts.forecasts[1][2] = "1,2".to_owned();
         drafts.forms.entry(ToolId::SetPrices).or_default().insert("A".to_owned(), "12.".to_owned());
-        session.keep_drafts(&drafts);
-        assert_eq!(session.kept_drafts(), drafts);
+        session.drafts().keep(&drafts);
+        assert_eq!(session.drafts().kept(), drafts);
         let places: Vec<String> = drafts.places().into_iter().map(|(place, _)| place).collect();
         assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
         let file = session.folder().expect("a folder").join(FILE);
         std::fs::write(&file, b"{\"rationale\":").expect("written");
-        assert!(session.kept_drafts().is_empty(), "half a file is none");
-        session.keep_drafts(&UnsentTexts::default());
+        assert!(session.drafts().kept().is_empty(), "half a file is none");
+        session.drafts().keep(&UnsentTexts::default());
         assert!(!file.exists());
     }
 }

@@ -7,8 +7,8 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::resume::open::Access;
-use crate::state::Session;
+use super::Session;
+use super::open::Access;
 use novamind_record::error::RunError;
 use novamind_record::folder::durable::{folder_of, sync_folder};
 use novamind_record::rules::FreeText;
@@ -39,7 +39,7 @@ impl Session {
     /// # Errors
     /// `not_saved`, `read_only`.
     pub fn set_memo(&mut self, text: &str) -> Result<(), Refusal> {
-        if self.recorder.is_none() {
+        if !self.log.is_written() {
             return Err(Refusal::new("read_only", "this run is open read-only"));
         }
         let not_saved = |error: RunError| Refusal::new("not_saved", error.to_string());

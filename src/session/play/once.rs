@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
+use super::Session;
 use super::act::Marks;
 use super::advance::{Filing, arguments_of_week};
-use super::first_answers::{FirstAnswer, mismatch};
-use super::week::Week;
-use crate::state::Session;
+use crate::company::first_answers::{FirstAnswer, mismatch};
+use crate::company::reports::Week;
 use novamind_record::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
 use novamind_tools::{Refusal, ToolId, find};
 

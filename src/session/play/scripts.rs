@@ -6,15 +6,16 @@
 
 use std::time::{Duration, Instant};
 
-use crate::ask::query_refusal;
-use crate::python::refuse_unless_played;
-use crate::state::Session;
-use novamind_database::query::SQL_CANCELLED;
-use novamind_database::text;
-use novamind_record::trajectory::record::{Calculated, Via};
-use novamind_tools::{
-    Kept, Language, Notebook, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python,
-};
+use serde_json::{Value, json};
+
+use super::Session;
+use crate::database::{RunDatabase, query_refusal, rows_as_json};
+use crate::python::run::run_python;
+use crate::python::{Said, ScriptHost, ScriptRequest, failed, refuse_unless_played};
+use novamind_database::query::{Limits, SQL_CANCELLED};
+use novamind_database::{Rows, text};
+use novamind_record::trajectory::record::{Calculated, QuerySource, Via};
+use novamind_tools::{Kept, Language, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python};
 
 /// Characters of output that a script may give.
 const MOST_OUTPUT: usize = 5000;
@@ -24,24 +25,14 @@ const MOST_REMARKS: usize = 2000;
 /// What is remarked of longer output.
 const OUTPUT_IS_CUT: &str = "stdout is cut after 5,000 characters\n";
 
-/// What code said.
-#[derive(Debug, Default)]
-pub(crate) struct Said {
-    /// Results as tables, or what was printed.
-    pub results: String,
-    /// Warnings and hints.
-    pub remarks: String,
-}
-
-impl Said {
-    fn add(&mut self, rows: &novamind_database::Rows) {
-        if self.results.len() <= 4 * MOST_OUTPUT {
-            self.results += &text::columns(rows);
-        }
-        for remark in [&rows.warning, &rows.hint].into_iter().flatten() {
-            if self.remarks.len() <= 4 * MOST_REMARKS {
-                self.remarks += &format!("{remark}\n");
-            }
+/// Adds a result as a table, and its remarks, as long as they can be shown.
+fn add(said: &mut Said, rows: &Rows) {
+    if said.results.len() <= 4 * MOST_OUTPUT {
+        said.results += &text::columns(rows);
+    }
+    for remark in [&rows.warning, &rows.hint].into_iter().flatten() {
+        if said.remarks.len() <= 4 * MOST_REMARKS {
+            said.remarks += &format!("{remark}\n");
         }
     }
 }
@@ -52,16 +43,6 @@ fn first(text: &str, most: usize) -> String {
 }
 
 impl Session {
-    /// Calculations and scripts of the run.
-    pub fn notebook(&self) -> &Notebook {
-        &self.surroundings.notebook
-    }
-
-    /// What the calculations said before the last week.
-    pub fn calculated(&self) -> &[Calculated] {
-        &self.history.calculated
-    }
-
     /// From here on no Python is started: what is called was decided elsewhere.
     pub fn keep_python_out(&mut self) {
         self.surroundings.keeps_python_out = true;
@@ -71,7 +52,7 @@ impl Session {
     ///
     /// # Errors
     /// `script_failed`, `script_timeout`, saying where.
-    pub(crate) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Refusal> {
+    pub(super) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Refusal> {
         let time = Duration::from_secs_f64(script.seconds);
         let said = match Language::of(&script.code) {
             Language::Sql => self.run_statements(&script.code, time)?,
@@ -95,12 +76,48 @@ impl Session {
         refuse_unless_played(is_played && !self.surroundings.keeps_python_out)
     }
 
+    /// What a script in Python says. Its statements are lines of the record where they are `noted`.
+    fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<Said, Refusal> {
+        let stop = self.complete_database().and_then(RunDatabase::interrupt);
+        let stop = stop.map_err(|refusal| failed(refusal.message))?;
+        let (ticket, mode) = (stop.ticket(), self.manifest.mode);
+        let mut answer = |request, left| self.answer_script(request, left, noted);
+        let host = &mut ScriptHost { is_stopped: &|| stop.has_stopped(ticket), answer: &mut answer };
+        run_python(code, time, mode, host)
+    }
+
+    fn answer_script(
+        &mut self,
+        request: ScriptRequest,
+        left: Duration,
+        noted: bool,
+    ) -> Result<Value, Refusal> {
+        match request {
+            ScriptRequest::Vars => Ok(json!({ "current_day": self.day() })),
+            ScriptRequest::Query { sql } => {
+                self.query_of_script(&sql, left, noted).map(|rows| Value::Object(rows_as_json(&rows)))
+            }
+        }
+    }
+
+    fn query_of_script(&mut self, sql: &str, left: Duration, noted: bool) -> Result<Rows, Refusal> {
+        let started = Instant::now();
+        let own = self.company().query_limits();
+        let limits = Limits { time: own.time.min(left), ..own };
+        let ticket = self.draw_ticket()?;
+        let answer = self.answer_within(ticket, sql, limits);
+        if noted {
+            self.note_query(sql, answer.as_ref(), started.elapsed(), QuerySource::Script);
+        }
+        answer
+    }
+
     fn run_statements(&mut self, code: &str, time: Duration) -> Result<Said, Refusal> {
-        let limits = self.query_limits();
-        let connection =
-            self.connection().map_err(|refusal| Refusal::new("script_failed", refusal.message))?;
+        let limits = self.company().query_limits();
+        let connection = self.complete_database().and_then(|database| database.connection());
+        let connection = connection.map_err(|refusal| Refusal::new("script_failed", refusal.message))?;
         let mut said = Said::default();
-        match connection.run_script(code, limits, time, |rows| said.add(&rows)) {
+        match connection.run_script(code, limits, time, |rows| add(&mut said, &rows)) {
             Ok(()) => Ok(said),
             Err(stopped) => {
                 let refusal = query_refusal(stopped.error);
@@ -117,9 +134,9 @@ impl Session {
 
     /// Runs all calculations on the company as it is. One that fails says why and does not keep the week; all together have the
     /// time of one query, so that a week never waits longer for them.
-    pub(crate) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
+    pub(super) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
         let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
-        let (most, started) = (self.query_limits().time, Instant::now());
+        let (most, started) = (self.company().query_limits().time, Instant::now());
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
             let time = most.saturating_sub(started.elapsed());
@@ -145,18 +162,18 @@ impl Session {
     }
 
     /// Names the calculations in Python to whoever goes on with a run: somebody else may have registered them.
-    pub(crate) fn name_python_calculations(&mut self) {
+    pub(super) fn name_python_calculations(&mut self) {
         let kept = self.surroundings.notebook.statements(Kept::Calculation).entries();
         let python = kept.iter().filter(|(_, code)| Language::of(code) == Language::Python);
         let names: Vec<&str> = python.map(|(name, _)| name.as_str()).collect();
-        if !names.is_empty() && self.recorder.is_some() && self.history.ended.is_none() {
+        if !names.is_empty() && self.log.is_written() && self.history.ended.is_none() {
             let remark = format!("Calculations in Python run before each week: {}.", names.join(", "));
             self.remarks.push(remark);
         }
     }
 
     /// Keeps or forgets what an accepted call asks for.
-    pub(crate) fn keep(&mut self, change: &NotebookChange) {
+    pub(super) fn keep(&mut self, change: &NotebookChange) {
         self.surroundings.notebook.apply(change);
     }
 }

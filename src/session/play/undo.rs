@@ -7,11 +7,11 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value};
 
+use super::Session;
 use super::act::Marks;
-use super::this_week::Step;
+use crate::company::this_week::Step;
 use crate::figures::changes::{Change, changes};
 use crate::figures::journal::JournalEntry;
-use crate::state::Session;
 use novamind_record::trajectory::record::{Reversal, Via};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::settings::Settings;

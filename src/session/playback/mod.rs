@@ -7,25 +7,19 @@ pub(crate) mod position;
 pub(crate) mod record_view;
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
+use self::position::{Chapter, Goal, PlaybackPosition, SeekResult};
+use self::record_view::RecordView;
 use crate::figures::week::week_of;
 use crate::lesson::over::is_lesson_over;
-use crate::play::projection::Projection;
-use crate::play::simulation::Simulation;
-use crate::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
-use crate::playback::record_view::RecordView;
-use crate::state::Session;
-use novamind_database::{Location, Projector};
+use crate::play::Session;
+use crate::resume::recorded::{Origin, read};
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::{Derived, check_start};
-use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
-use novamind_record::trajectory::record::{Activity, Note};
+use novamind_record::trajectory::record::{Ended, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;
-use novamind_world::params::Params;
 
 /// A line that closes a week or single steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,18 +28,6 @@ struct Stop {
     after: usize,
     day: u32,
     cash: f64,
-}
-
-/// Where the lines come from.
-pub struct Origin {
-    /// The trajectory.
-    pub path: PathBuf,
-    /// Folder of the run; none for a trajectory that stands alone.
-    pub folder: Option<PathBuf>,
-    /// The manifest.
-    pub manifest: Manifest,
-    /// The parameters that the run was recorded with.
-    pub params: Arc<Params>,
 }
 
 /// A recorded run, played again.
@@ -67,7 +49,7 @@ impl Playback {
     /// It is missing, damaged or of another version; the error names the place and what is safe.
     pub fn open(path: &Path) -> Result<Playback, RunError> {
         let (origin, trajectory) = read(path)?;
-        let session = begin(&origin)?;
+        let session = origin.begin()?;
         let good = trajectory.lines.len();
         let mut playback =
             Playback { origin, trajectory, good, stops: Vec::new(), session, applied: 0, follows: false };
@@ -177,7 +159,7 @@ impl Playback {
     /// A session that stands before the line looked for, and the lines it holds: the beginning. Whatever is stored of
     /// later moments may come in here.
     fn session_before(&self) -> Result<(Session, usize), RunError> {
-        begin(&self.origin).map(|session| (session, 0))
+        self.origin.begin().map(|session| (session, 0))
     }
 
     fn end(&mut self, end: Result<ControlFlow<()>, (usize, RunError)>) -> Result<SeekResult, RunError> {
@@ -335,7 +317,7 @@ impl Playback {
             (refusal, _) => return Err(refusal.unwrap_or_else(stands_alone)),
         };
         // What was given up can be gone on with; what reached its end cannot.
-        if self.session.ended().is_some() && !self.session.is_abandoned() {
+        if self.session.ended().is_some() && self.session.ended() != Some(Ended::Abandoned) {
             let message = "nothing comes after this moment: go back to a week first";
             return Err(Refusal::new("run_over", message));
         }
@@ -380,62 +362,6 @@ fn apply(
     (lines.len().max(applied), Ok(ControlFlow::Continue(())))
 }
 
-impl Origin {
-    /// Simulates recorded lines again in memory. After each line, `after_line` sees the session as it was then. With
-    /// `has_database`, the database is complete at each note of a lesson.
-    ///
-    /// # Errors
-    /// The first line whose recorded state does not reproduce, or the first error of `after_line`.
-    pub fn replay(
-        &self,
-        lines: &[Line],
-        has_database: bool,
-        after_line: &mut dyn FnMut(&mut Session, &Line) -> Result<(), RunError>,
-    ) -> Result<Session, RunError> {
-        let start = || Projector::start(Location::memory(), 0, self.params.clone(), |_| false);
-        let projector = has_database.then(start).transpose()?.map(|(projector, _)| projector);
-        let mut session = Session::unwritten(self.manifest.clone(), None, self.params.clone(), projector);
-        for line in lines {
-            session.apply_line(&self.path, line)?;
-            if has_database && matches!(line.record, Record::Activity(Activity::Lesson(_))) {
-                session.commit_projection();
-            }
-            after_line(&mut session, line)?;
-        }
-        Ok(session)
-    }
-}
-
-/// Reads the lines of a run's folder, or of a trajectory file that stands alone.
-pub fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
-    let (file, folder) = match path.is_dir() {
-        true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
-        false => {
-            let beside = path
-                .parent()
-                .map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
-            let is_of_run = path.file_name().is_some_and(|name| name == "trajectory.jsonl");
-            let folder = beside.filter(|folder| is_of_run && folder.join("run.toml").exists());
-            (path.to_owned(), folder.map(Path::to_owned))
-        }
-    };
-    let trajectory = Trajectory::read(&file)?;
-    let manifest = match &folder {
-        Some(folder) => Derived::of(folder)?.manifest,
-        None => Manifest::of_start(&file, trajectory.lines.first())?,
-    };
-    check_start(&file, trajectory.lines.first(), &manifest)?;
-    let params = Arc::new(manifest.params()?);
-    Ok((Origin { path: file, folder, manifest, params }, trajectory))
-}
-
-/// A session before the first line.
-fn begin(origin: &Origin) -> Result<Session, RunError> {
-    let (projector, _) = Projector::start(Location::memory(), 0, origin.params.clone(), |_| false)?;
-    let (manifest, params) = (origin.manifest.clone(), origin.params.clone());
-    Ok(Session::unwritten(manifest, origin.folder.clone(), params, Some(projector)))
-}
-
 fn tail(path: &Path, from: u64) -> Result<Vec<u8>, RunError> {
     use std::io::{Read, Seek, SeekFrom};
     let mut bytes = Vec::new();
@@ -444,19 +370,6 @@ fn tail(path: &Path, from: u64) -> Result<Vec<u8>, RunError> {
         file.read_to_end(&mut bytes)
     });
     read.map(|_| bytes).map_err(RunError::io(path))
-}
-
-impl Session {
-    /// A session on day 0 that writes nothing, for lines to be applied to.
-    pub(super) fn unwritten(
-        manifest: Manifest,
-        folder: Option<PathBuf>,
-        params: Arc<Params>,
-        projector: Option<Projector>,
-    ) -> Session {
-        let simulation = Simulation::open(&manifest, params);
-        Session::assemble(manifest, folder, simulation, Projection::of(projector))
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Played again: every week has the recorded state, in every direction, and the disk stays as it was.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde_json::json;
 
@@ -45,7 +46,7 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
     let ads = json!({"targeted_spend": {"content_marketing": {"S1": 750}}});
     session.call("set_targeted_ad_spend", &ads, Via::Form).expect("ads");
     for week in 0..weeks {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("if it holds", &forecasts, Via::Form, &mut |_| {}).expect("a week");
         if week + 1 < weeks {
             session
@@ -53,7 +54,7 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
                 .expect("spend");
             session.query("SELECT count(*) FROM customers").expect("an answer");
             session.set_memo("remember the ads").expect("notes");
-            session.note_view("cash", "overview", 1_500);
+            session.activity().note_view("cash", "overview", 1_500);
         }
     }
     session
@@ -126,7 +127,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
 fn single_actions_show_the_company_between_the_weeks() {
     let run = recorded(Mode::Sandbox, 2);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    let price = |playback: &Playback| playback.session().current("set_prices")["A"].as_f64();
+    let price = |playback: &Playback| playback.session().company().current("set_prices")["A"].as_f64();
     assert_eq!(price(&playback), Some(0.0));
     go(&mut playback, Goal::Lines(1));
     assert_eq!(price(&playback), Some(12.0));
@@ -201,9 +202,13 @@ fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
     go(&mut playback, Goal::Lines(1));
     let mut branch = playback.take_over(Mode::Debug).expect("a branch");
     assert_eq!((branch.day(), branch.manifest().mode), (14, Mode::Debug));
-    assert_eq!(branch.current("set_daily_spend")["operations"], 10.0, "this week's first call is in it");
+    assert_eq!(
+        branch.company().current("set_daily_spend")["operations"],
+        10.0,
+        "this week's first call is in it"
+    );
     assert_eq!(branch.manifest().parent.as_ref().map(|parent| parent.run.as_str()), Some(run.id.as_str()));
-    let forecasts = branch.naive_forecasts();
+    let forecasts = branch.company().naive_forecasts();
     branch.advance("otherwise", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     let folder = branch.folder().expect("a folder").to_owned();
     drop(branch);
@@ -223,7 +228,7 @@ fn an_unfinished_baseline_is_not_taken_over() {
     let playback = Playback::open(&run.folder).expect("it opens");
     assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
     assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
-    crate::resume::open::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    crate::play::open::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
     let playback = Playback::open(&run.folder).expect("it opens");
     assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
 }
@@ -258,11 +263,11 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     played.call("set_prices", &json!({"A": 15}), Via::Form).expect("a price");
     assert!(playback.look_for_more().expect("no problem"));
     go(&mut playback, Goal::Last);
-    assert_eq!(playback.session().current("set_prices")["A"], 15.0);
+    assert_eq!(playback.session().company().current("set_prices")["A"], 15.0);
     // A line that is half written is not there yet.
     let path = folder.join("trajectory.jsonl");
     let whole = std::fs::read(&path).expect("a trajectory");
-    let forecasts: Forecasts = played.naive_forecasts();
+    let forecasts: Forecasts = played.company().naive_forecasts();
     played.advance("go on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     let after = std::fs::read(&path).expect("a trajectory");
     drop(played);

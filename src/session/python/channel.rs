@@ -7,26 +7,14 @@ use std::os::unix::net::UnixStream;
 use std::thread::sleep;
 use std::time::Duration;
 
-use serde::Deserialize;
 use serde_json::Value;
+
+use super::ScriptRequest;
 
 /// A request may have this many bytes.
 const MOST_REQUEST: usize = 1 << 20;
 /// Time between two attempts to write to a socket that is full.
 const BETWEEN_WRITES: Duration = Duration::from_millis(2);
-
-/// What a script asks.
-#[derive(Debug, PartialEq, Eq, Deserialize)]
-#[serde(tag = "ask", rename_all = "lowercase")]
-pub(super) enum ScriptRequest {
-    /// A statement to the database.
-    Query {
-        /// The statement.
-        sql: String,
-    },
-    /// Where the run stands.
-    Vars,
-}
 
 /// What came up.
 #[derive(Debug, PartialEq, Eq)]

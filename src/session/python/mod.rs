@@ -16,12 +16,46 @@ mod interpreter;
 #[cfg(unix)]
 mod process;
 #[cfg(unix)]
-mod run;
+pub(crate) mod run;
+
+use std::time::Duration;
+
+use serde::Deserialize;
+use serde_json::Value;
 
 use novamind_tools::Refusal;
 
+/// What a script asks.
+#[derive(Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(not(unix), allow(dead_code))]
+#[serde(tag = "ask", rename_all = "lowercase")]
+pub(crate) enum ScriptRequest {
+    /// A statement to the database.
+    Query {
+        /// The statement.
+        sql: String,
+    },
+    /// Where the run stands.
+    Vars,
+}
+
+/// What runs a script: whether the player has stopped it, and the answers to its requests, given the time that is left.
+pub(crate) struct ScriptHost<'a> {
+    pub(crate) is_stopped: &'a dyn Fn() -> bool,
+    pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Refusal>,
+}
+
+/// What code said.
+#[derive(Debug, Default)]
+pub(crate) struct Said {
+    /// Results as tables, or what was printed.
+    pub results: String,
+    /// Warnings and hints.
+    pub remarks: String,
+}
+
 /// Says why a script in Python was not run, or not to its end.
-fn failed(message: impl Into<String>) -> Refusal {
+pub(crate) fn failed(message: impl Into<String>) -> Refusal {
     Refusal::at("code", "script_failed", message)
 }
 
@@ -41,20 +75,17 @@ pub(crate) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
 }
 
 #[cfg(not(unix))]
-mod run {
+pub(crate) mod run {
     //! Systems on which a process cannot be held within bounds.
 
     use std::time::Duration;
 
-    use super::failed;
-    use crate::play::scripts::Said;
-    use crate::state::Session;
+    use super::{Said, ScriptHost, failed};
+    use novamind_record::folder::mode::Mode;
     use novamind_tools::Refusal;
 
-    impl Session {
-        /// Refuses a script in Python.
-        pub(crate) fn run_python(&mut self, _: &str, _: Duration, _: bool) -> Result<Said, Refusal> {
-            Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
-        }
+    /// Refuses a script in Python.
+    pub(crate) fn run_python(_: &str, _: Duration, _: Mode, _: &mut ScriptHost<'_>) -> Result<Said, Refusal> {
+        Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
     }
 }

@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
+use super::ScriptRequest;
 use super::captured::Captured;
-use super::channel::{Channel, Heard, ScriptRequest};
+use super::channel::{Channel, Heard};
 use super::empty_folder::EmptyFolder;
 use super::interpreter::Interpreter;
 

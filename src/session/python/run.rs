@@ -1,21 +1,15 @@
-//! Running a script in Python: what the session answers it, and what its end tells the player.
+//! Running a script in Python: its process, and what its end tells the player.
 
 use std::io::ErrorKind;
 use std::os::unix::process::ExitStatusExt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::channel::ScriptRequest;
-use super::failed;
 use super::interpreter::Interpreter;
 use super::process::{ScriptEnd, ScriptProcess};
-use crate::ask::rows_as_json;
-use crate::play::scripts::Said;
-use crate::state::Session;
-use novamind_database::Rows;
-use novamind_database::query::Limits;
-use novamind_record::trajectory::record::QuerySource;
+use super::{Said, ScriptHost, failed};
+use novamind_record::folder::mode::Mode;
 use novamind_tools::Refusal;
 
 /// Statements that one script may ask.
@@ -25,59 +19,35 @@ const MOST_TRACEBACK: usize = 2000;
 /// Characters of what was printed before that.
 const MOST_PRINTED: usize = 1000;
 
-impl Session {
-    /// What a script in Python says. Its statements are lines of the record where they are `noted`.
-    ///
-    /// # Errors
-    /// `script_failed`, `script_timeout`.
-    pub(crate) fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<Said, Refusal> {
-        let stop = self.interrupt().map_err(|refusal| failed(refusal.message))?;
-        let ticket = stop.ticket();
-        let interpreter = Interpreter::of(self.manifest.mode);
-        let started = ScriptProcess::start(code, interpreter, time);
-        let mut process = started.map_err(|error| not_started(interpreter, &error))?;
-        let mut asked = 0;
-        let end = process.serve(&|| stop.has_stopped(ticket), &mut |request, left| {
-            asked += 1;
-            let answer = match asked <= MOST_QUERIES {
-                true => self.answer_script(request, left, noted),
-                false => {
-                    Err(Refusal::new("sql_error", "a script may ask 10,000 times; ask for more at once"))
-                }
-            };
-            answer.unwrap_or_else(
-                |refusal| json!({ "error": { "code": refusal.code, "message": refusal.message } }),
-            )
-        });
-        told(&end, &process, time)
-    }
-
-    fn answer_script(
-        &mut self,
-        request: Option<ScriptRequest>,
-        left: Duration,
-        noted: bool,
-    ) -> Result<Value, Refusal> {
-        match request {
-            Some(ScriptRequest::Vars) => Ok(json!({ "current_day": self.day() })),
-            Some(ScriptRequest::Query { sql }) => {
-                self.query_of_script(&sql, left, noted).map(|rows| Value::Object(rows_as_json(&rows)))
+/// What a script in Python says.
+///
+/// # Errors
+/// `script_failed`, `script_timeout`.
+pub(crate) fn run_python(
+    code: &str,
+    time: Duration,
+    mode: Mode,
+    host: &mut ScriptHost<'_>,
+) -> Result<Said, Refusal> {
+    let interpreter = Interpreter::of(mode);
+    let started = ScriptProcess::start(code, interpreter, time);
+    let mut process = started.map_err(|error| not_started(interpreter, &error))?;
+    let mut asked = 0;
+    let ScriptHost { is_stopped, answer } = host;
+    let end = process.serve(is_stopped, &mut |request, left| {
+        asked += 1;
+        let answer = match request {
+            _ if asked > MOST_QUERIES => {
+                Err(Refusal::new("sql_error", "a script may ask 10,000 times; ask for more at once"))
             }
+            Some(request) => answer(request, left),
             None => Err(Refusal::new("sql_error", "a script can ask query(sql) and get_vars()")),
-        }
-    }
-
-    fn query_of_script(&mut self, sql: &str, left: Duration, noted: bool) -> Result<Rows, Refusal> {
-        let started = Instant::now();
-        let own = self.query_limits();
-        let limits = Limits { time: own.time.min(left), ..own };
-        let ticket = self.interrupt()?.ticket();
-        let answer = self.answer_within(ticket, sql, limits);
-        if noted {
-            self.note_query(sql, answer.as_ref(), started.elapsed(), QuerySource::Script);
-        }
-        answer
-    }
+        };
+        answer.unwrap_or_else(
+            |refusal| json!({ "error": { "code": refusal.code, "message": refusal.message } }),
+        )
+    });
+    told(&end, &process, time)
 }
 
 fn not_started(interpreter: Interpreter, error: &std::io::Error) -> Refusal {

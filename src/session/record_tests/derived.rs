@@ -1,9 +1,9 @@
 //! Tests of what is derived from the first line of a run.
 
+use crate::play::Session;
+use crate::play::open::Access;
 use crate::playback::tests::recorded;
-use crate::resume::open::Access;
 use crate::resume::verify::verify;
-use crate::state::Session;
 use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{find_run, list_runs};
 use std::path::Path;

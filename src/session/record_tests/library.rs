@@ -1,7 +1,7 @@
 //! Tests of the library of saved queries.
 
 use crate::create::NewRun;
-use crate::state::Session;
+use crate::play::Session;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::library::*;
 use novamind_record::trajectory::record::Via;
@@ -22,7 +22,7 @@ fn all_answer(session: &mut Session) {
 
 fn play(session: &mut Session, weeks: usize) {
     for _ in 0..weeks {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
 }
@@ -47,10 +47,10 @@ fn every_shipped_query_is_answered_in_every_phase() {
     }
     play(&mut session, 3);
     all_answer(&mut session);
-    while session.observe().waiting.is_empty() && session.day() < 140 {
+    while session.company().observe().waiting.is_empty() && session.day() < 140 {
         play(&mut session, 1);
     }
-    let waiting = session.observe().waiting;
+    let waiting = session.company().observe().waiting;
     assert!(!waiting.is_empty(), "there must be threads");
     let deals = json!({"deals": [[waiting[0].customer, [["C", 30.0], ["B", 20.0]]]]});
     session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");

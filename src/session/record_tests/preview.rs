@@ -1,7 +1,7 @@
 //! Tests of the preview of a run.
 
 use crate::create::{NewRun, Storage};
-use crate::state::Session;
+use crate::play::Session;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::preview::*;
 use novamind_record::trajectory::record::Via;
@@ -22,7 +22,7 @@ fn the_course_is_what_the_session_saw() {
     session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     session.call("set_daily_spend", &json!({"operations": 200}), Via::Form).expect("spend");
     for _ in 0..3 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     let preview = run_preview(runs.path(), &id).expect("a preview");
@@ -31,7 +31,7 @@ fn the_course_is_what_the_session_saw() {
     for (day, cash) in &preview.cash {
         assert!((cash - session.cash_by_day()[*day as usize]).abs() < 1e-6, "day {day}");
     }
-    assert_eq!(preview.subscribers, u64::from(session.observe().subscribers));
+    assert_eq!(preview.subscribers, u64::from(session.company().observe().subscribers));
 }
 
 #[test]

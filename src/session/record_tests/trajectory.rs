@@ -13,7 +13,7 @@ fn memo() -> Record {
 }
 
 fn start() -> Record {
-    let manifest = crate::state::Session::create(NewRun::default(), &Configuration::shipped())
+    let manifest = crate::play::Session::create(NewRun::default(), &Configuration::shipped())
         .expect("a run")
         .manifest()
         .clone();

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use super::unnamed::{UnnamedBranch, write_branch};
-use crate::create::new_id;
-use crate::state::Session;
+use crate::play::Session;
+use crate::recording::folders::new_id;
 use novamind_record::error::RunError;
 use novamind_record::folder::durable::create_folder;
 use novamind_record::folder::manifest::{FORMAT, Manifest};
 use novamind_record::folder::mode::Mode;
 use novamind_record::rules::SessionRules;
-use novamind_record::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
+use novamind_record::trajectory::record::{Activity, LessonEvent, Parent, Via};
 use novamind_record::trajectory::{Line, Record, Trajectory, now};
 use novamind_tools::Refusal;
 
@@ -22,27 +22,29 @@ impl Session {
     /// were set in its past or a fault was planted; `guess_first` while the question of a lesson is open; `week_unknown`,
     /// `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
-        self.begin_branch(week, mode)?.name().map_err(not_saved)
+        UnnamedBranch::begin(self, week, mode)?.name().map_err(not_saved)
     }
+}
 
+impl UnnamedBranch {
     /// Begins a branch that has no name yet.
     ///
     /// # Errors
     /// As for [`Session::branch`].
-    pub fn begin_branch(&self, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
-        if self.manifest.mode == Mode::Baseline && self.history.ended.is_none() {
+    pub fn begin(run: &Session, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
+        if run.manifest().mode == Mode::Baseline && run.ended().is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
         }
-        if let Some(lesson) = self.lesson.as_deref().filter(|_| self.history.ended.is_none()) {
-            lesson.refuse_before_guess(self.weeks_passed())?;
+        if let Some(lesson) = run.lesson.as_deref().filter(|_| run.ended().is_none()) {
+            lesson.refuse_before_guess(run.weeks_passed())?;
         }
-        let Some(folder) = &self.folder else {
+        let Some(folder) = run.folder() else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
         };
-        let day = week.saturating_sub(1).saturating_mul(self.simulation.params.run.days_per_week);
-        if week == 0 || day > self.simulation.world.day {
-            let last = self.simulation.world.day / self.simulation.params.run.days_per_week + 1;
+        let day = week.saturating_sub(1).saturating_mul(run.params().run.days_per_week);
+        if week == 0 || day > run.day() {
+            let last = run.day() / run.params().run.days_per_week + 1;
             return Err(Refusal::at(
                 "week",
                 "week_unknown",
@@ -50,12 +52,7 @@ impl Session {
             ));
         }
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
-        unnamed_branch(folder, &self.manifest, before(&trajectory, day), mode)
-    }
-
-    /// Whether the run was given up.
-    pub fn is_abandoned(&self) -> bool {
-        self.history.ended == Some(Ended::Abandoned)
+        unnamed_branch(folder, run.manifest(), before(&trajectory, day), mode)
     }
 }
 

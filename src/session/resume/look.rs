@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use super::open::Access;
-use crate::state::Session;
+use crate::play::Session;
+use crate::play::open::Access;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::manifest_of;
 use novamind_record::folder::lock::lock_run;
@@ -49,7 +49,7 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
         // What a stopped program has left has to be healed first, as when the run is opened for play.
         drop(lock);
         let mut session = Session::open(folder, Access::Write, true)?;
-        session.note_activity(look);
+        session.activity().note(look);
         return session.save();
     }
     let day = trajectory.lines.last().map_or(0, |line| line.day);
@@ -89,7 +89,7 @@ mod tests {
         };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         for _ in 0..weeks {
-            let forecasts = session.naive_forecasts();
+            let forecasts = session.company().naive_forecasts();
             session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         }
         (session.folder().expect("a folder").to_owned(), session)
@@ -124,7 +124,7 @@ mod tests {
         let rows = session.query("SELECT max(day) FROM ledger").expect("rows");
         assert_eq!(rows.rows.len(), 1);
         session.call(crate::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         drop(session);
         assert_eq!(looks(&folder), ["query SELECT 1", "report markdown"]);

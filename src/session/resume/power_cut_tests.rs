@@ -5,11 +5,11 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::open::Access;
-use super::sealing::SealKey;
 use crate::archive::{Export, Imported, import_run};
 use crate::create::{NewRun, Storage};
-use crate::state::Session;
+use crate::play::Session;
+use crate::play::open::Access;
+use crate::snapshot::sealing::SealKey;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::durable::probe;
 use novamind_record::trajectory::record::{Ended, Via};
@@ -25,7 +25,7 @@ fn session(new: NewRun) -> (Session, PageCache) {
     let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let cache = PageCache::holding(std::fs::read(path).expect("bytes"));
-    session.recorder.as_mut().expect("it is written").write_to(Box::new(cache.clone()));
+    session.write_to(Box::new(cache.clone()));
     (session, cache)
 }
 
@@ -38,7 +38,7 @@ fn roll(state: &mut u64, sides: u64) -> u64 {
 fn act(session: &mut Session, chance: &mut u64) -> Result<(), Refusal> {
     match roll(chance, 6) {
         0 => drop(session.query("SELECT COUNT(*) FROM ledger")),
-        1 => session.note_view("cash", "overview", 900),
+        1 => session.activity().note_view("cash", "overview", 900),
         2 => session.set_memo(&format!("note {}", roll(chance, 100)))?,
         _ => {
             let prices = json!({ "A": 5 + roll(chance, 20), "B": 30 });
@@ -49,7 +49,7 @@ fn act(session: &mut Session, chance: &mut u64) -> Result<(), Refusal> {
 }
 
 fn week(session: &mut Session) {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 
@@ -57,7 +57,7 @@ fn week(session: &mut Session) {
 fn after_the_cut(session: &Session, to: &Path, cache: &PageCache, chance: &mut u64) {
     let folder = session.folder().expect("a folder");
     // The database's own care for power cuts is SQLite's affair; here its files are copied while they rest.
-    session.projection.wait().expect("it is written");
+    session.database().wait().expect("it is written");
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let name = entry.file_name();
@@ -149,7 +149,7 @@ fn nothing_confirmed_is_lost_when_syncs_fail_before_the_power_does() {
         cache.fail_syncs(0);
         if number % 3 == 2 {
             let failing = roll(&mut chance, 4) as u32;
-            let forecasts = session.naive_forecasts();
+            let forecasts = session.company().naive_forecasts();
             let week = session.advance("on", &forecasts, Via::Form, &mut |_| cache.fail_syncs(failing));
             let remark = week.expect("a week").remark;
             let is_unsaved = remark.is_some_and(|remark| remark.contains("simulated again"));
@@ -171,7 +171,7 @@ fn a_last_week_whose_lines_miss_the_disk_ends_the_run() {
     let places = tempfile::tempdir().expect("a folder");
     let (mut session, cache) = session(NewRun { days: Some(28), ..new_run(runs.path()) });
     (0..3).for_each(|_| week(&mut session));
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     let last = session.advance("on", &forecasts, Via::Form, &mut |_| cache.set_full(true)).expect("a week");
     assert_eq!((last.ended, session.ended()), (Some(Ended::Horizon), Some(Ended::Horizon)));
     assert!(last.remark.expect("the disk is full").contains("simulated again"));

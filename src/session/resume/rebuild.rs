@@ -3,17 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::integrity::Integrity;
-use super::open::{Access, Keeping, open_projector, usable};
-use super::sealing::SealKey;
-use super::snapshot::SnapshotPlace;
-use crate::inside::permission::may_look_inside;
-use crate::state::Session;
+use crate::permission::may_look_inside;
+use crate::play::Session;
+use crate::play::open::{Access, Keeping, open_projector};
+use crate::snapshot::file::SnapshotPlace;
+use crate::snapshot::integrity::{Integrity, is_as_left};
+use crate::snapshot::sealing::SealKey;
+use novamind_database::{Location, Position, QueryConnection, Scope, query_connection};
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Record, Trajectory};
+use novamind_tools::Refusal;
 
 /// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
 /// and the last day of the run. The key is that of the run's snapshots.
@@ -36,20 +38,20 @@ pub fn rebuild_database(
     let sound = integrity.vouch_for_database(folder);
     let database = open_projector(folder, Access::Write, (&manifest, &params), &trajectory, sound)?;
     let rows = database.1.as_ref().map_or(0, |position| position.seq);
-    let snapshot = usable(&integrity, &manifest, &trajectory, Some(rows));
+    let snapshot = integrity.usable_snapshot(&manifest, &trajectory, Some(rows));
     let days = manifest.days;
     let lines = &trajectory.lines;
     let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
-    session.projection.wait()?;
+    session.database().wait()?;
     let place = SnapshotPlace::of(folder, key);
     if end_may_be_kept(folder, &manifest, &trajectory, key) {
         session.write_snapshot(place, true);
     } else if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
         // The file is another one now: what vouched for the old one would call it damaged.
-        session.projection.then(true, move |digest| closed.vouch_for(&place, digest));
+        session.database().then(true, move |digest| closed.vouch_for(&place, digest));
     }
-    Ok(session.projection.wait()?)
+    Ok(session.database().wait()?)
 }
 
 /// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown, and the
@@ -60,6 +62,19 @@ fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, 
         _ => None,
     });
     ended.is_some() && may_look_inside(manifest, ended, Some(folder)) && SnapshotPlace::may_write(folder, key)
+}
+
+/// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at. The key is
+/// that of the run's snapshots.
+///
+/// # Errors
+/// The file is missing, no database of a run, or not the one that the program left when the run was closed.
+pub fn connection_to_file(folder: &Path, key: &SealKey) -> Result<(QueryConnection, Position), Refusal> {
+    if !is_as_left(folder, key) {
+        return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
+    }
+    query_connection(&Location::File(folder.join("world.db")), Scope::Visible)
+        .map_err(|error| Refusal::new("sql_error", error.to_string()))
 }
 
 impl Session {
@@ -80,8 +95,8 @@ impl Session {
     /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if another program uses the run, or if
     /// its folder cannot be written.
     fn keep_end(&self, folder: &Path) {
-        if let Ok(_lock) = lock_run(folder, &self.manifest.id) {
-            self.write_snapshot(SnapshotPlace::of(folder, &self.seal_key), false);
+        if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
+            self.write_snapshot(SnapshotPlace::of(folder, self.seal_key()), false);
         }
     }
 }
@@ -92,7 +107,7 @@ mod tests {
 
     use super::*;
     use crate::create::{NewRun, Storage};
-    use crate::resume::open::end_run;
+    use crate::play::open::end_run;
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::folder::mode::Mode;
     use novamind_record::trajectory::record::Via;
@@ -107,7 +122,7 @@ mod tests {
         let new = NewRun { seed: Some(5), days, mode, participant, storage, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         for _ in 0..2 {
-            let forecasts = session.naive_forecasts();
+            let forecasts = session.company().naive_forecasts();
             session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
         }
         let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
@@ -132,7 +147,7 @@ mod tests {
         let integrity = Integrity::of(folder, &manifest, &SealKey::default());
         assert_eq!(integrity.remarks, Vec::<String>::new());
         let params = Arc::new(manifest.params().expect("parameters"));
-        let snapshot = usable(&integrity, &manifest, &trajectory, None);
+        let snapshot = integrity.usable_snapshot(&manifest, &trajectory, None);
         let (_, seen) = Session::before_replay(manifest, folder, params, &trajectory.lines, snapshot);
         (trajectory.lines.len() - seen, integrity.finished_database(folder, &trajectory).is_some())
     }
@@ -149,7 +164,10 @@ mod tests {
             let second = Session::open_to_read(&folder, true).expect("it opens");
             for session in [&first, &second] {
                 assert_eq!(session.state_hash(), whole.state_hash());
-                assert_eq!((session.remarks(), session.dashboard()), (whole.remarks(), whole.dashboard()));
+                assert_eq!(
+                    (session.remarks(), session.company().dashboard()),
+                    (whole.remarks(), whole.company().dashboard())
+                );
                 assert_eq!(session.weeks(), whole.weeks());
             }
             drop(Session::open(&folder, Access::Write, true).expect("it opens to be written"));

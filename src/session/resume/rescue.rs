@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::branch::branch_of;
-use super::integrity::Integrity;
-use super::sealing::SealKey;
-use crate::state::Session;
+use crate::play::Session;
+use crate::snapshot::integrity::Integrity;
+use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::manifest::Manifest;

@@ -3,15 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use super::open::Access;
 use crate::lesson::lesson_file::Lesson;
-use crate::state::Session;
+use crate::play::Session;
+use crate::play::open::Access;
+use crate::recording::folders::remove_leftovers;
 use novamind_record::error::RunError;
 use novamind_record::folder::durable::{create_folder, sync_folder};
 use novamind_record::folder::first_line::start_of;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::runs::{UNNAMED, is_unnamed};
+use novamind_record::folder::runs::UNNAMED;
 use novamind_record::trajectory::record::Branch;
 use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 
@@ -97,15 +98,5 @@ pub(super) fn write_branch(folder: &Path, manifest: &Manifest, shared: &[&Line])
 impl Drop for UnnamedBranch {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.folder);
-    }
-}
-
-/// Removes what programs have left that ended while they made a branch. What somebody makes at this moment is locked.
-pub(crate) fn remove_leftovers(runs: &Path) {
-    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
-    for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {
-        if lock_run(&folder, "").is_ok() {
-            let _ = std::fs::remove_dir_all(&folder);
-        }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::integrity::Integrity;
-use super::sealing::SealKey;
-use crate::playback::{Origin, read};
-use crate::state::Session;
+use crate::play::Session;
+use crate::resume::recorded::{Origin, read};
+use crate::snapshot::integrity::Integrity;
+use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 
 /// What a verification found out.

@@ -51,7 +51,7 @@ impl Deed {
             Deed::Undo => drop(session.undo(Via::Form)),
             Deed::Query(sql) => drop(session.query(sql)),
             Deed::Memo(text) => drop(session.set_memo(text)),
-            Deed::View(screen) => session.note_view(screen, "overview", 1500),
+            Deed::View(screen) => session.activity().note_view(screen, "overview", 1500),
         }
     }
 }
@@ -132,7 +132,8 @@ pub fn decide(session: &mut Session, dice: &mut Dice) {
 
 /// One random deed.
 pub fn act(session: &mut Session, dice: &mut Dice) {
-    let waiting: Vec<u32> = session.observe().waiting.iter().map(|thread| thread.customer).collect();
+    let waiting: Vec<u32> =
+        session.company().observe().waiting.iter().map(|thread| thread.customer).collect();
     Deed::any(dice, &waiting).apply(session);
 }
 

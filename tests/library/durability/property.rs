@@ -38,7 +38,7 @@ fn keeps_the_rules(session: &mut Session, seed: u64) {
         "SELECT COUNT(*) FROM subscriptions JOIN customers USING (customer_id) \
          WHERE status = 'subscribed' AND customer_type = 'small'",
     );
-    assert_eq!(subscribed, f64::from(session.observe().subscribers), "game {seed}");
+    assert_eq!(subscribed, f64::from(session.company().observe().subscribers), "game {seed}");
     let odd =
         "SELECT COUNT(*) FROM service_day WHERE error_rate < 0 OR error_rate > 1 OR total_usage_units < 0";
     assert_eq!(number(session, odd), 0.0, "game {seed}");
@@ -71,10 +71,14 @@ fn game(seed: u64) {
             if dice.roll(2) == 0 {
                 session.save().expect("saved");
             }
-            let (before, observed) = (session.state_hash(), session.observe());
+            let (before, observed) = (session.state_hash(), session.company().observe());
             drop(session);
             session = open(&folder);
-            assert_eq!((session.state_hash(), session.observe()), (before, observed), "game {seed}");
+            assert_eq!(
+                (session.state_hash(), session.company().observe()),
+                (before, observed),
+                "game {seed}"
+            );
             act(&mut session, &mut dice);
         }
         week(&mut session);

@@ -79,7 +79,7 @@ fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
         "its answers are compared, whatever form their numbers had"
     );
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
-    assert!(!session.observe().has_own_parameters, "it plays the scenario as its version had it");
+    assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");
 }
 
 /// Runs of format 2, one of every kind: last day, states, beginning of the last state hash.

@@ -50,8 +50,8 @@ pub fn view(session: &mut Session) -> Value {
     ];
     // Not `query`, which would record that it was asked.
     session.wait_for_database().expect("a database");
-    let connection = session.open_connection().expect("a connection");
-    let limits = session.query_limits();
+    let connection = session.database().open_connection().expect("a connection");
+    let limits = session.company().query_limits();
     let rows: Vec<String> = totals
         .iter()
         .map(|sql| {
@@ -63,12 +63,12 @@ pub fn view(session: &mut Session) -> Value {
         .collect();
     json!({
         "state": session.state_hash(),
-        "observation": session.observe(),
+        "observation": session.company().observe(),
         "journal": session.journal(),
-        "decisions": session.decisions(),
-        "notices": session.notices(),
-        "posts": session.posts(),
-        "asked": session.asked(),
+        "decisions": session.company().decisions(),
+        "notices": session.company().notices(),
+        "posts": session.company().posts(),
+        "asked": session.company().asked(),
         "cash": session.cash_by_day(),
         "weeks": session.weeks(),
         "rows": rows,

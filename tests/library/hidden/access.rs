@@ -121,8 +121,8 @@ fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
                 hidden(&mut session, &format!("SELECT * FROM {}", table.name));
             });
         }
-        let connection = session.open_connection().expect("a connection");
-        let limits = session.query_limits();
+        let connection = session.database().open_connection().expect("a connection");
+        let limits = session.company().query_limits();
         for table in hidden_tables() {
             let alone = table.name.strip_prefix("hidden.").expect("a schema");
             for form in FORMS {

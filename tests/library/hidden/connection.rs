@@ -97,8 +97,8 @@ fn the_run_goes_on_and_other_threads_ask_while_the_tables_are_open() {
     let mut session = run_in(folder.path(), Mode::Debug, 60);
     open_wide(&mut session);
     week(&mut session);
-    let mut connection = session.open_connection().expect("a connection");
-    let limits = session.query_limits();
+    let mut connection = session.database().open_connection().expect("a connection");
+    let limits = session.company().query_limits();
     for week_number in 2..=4 {
         session.wait_for_database().expect("written");
         let asking = std::thread::scope(|scope| {

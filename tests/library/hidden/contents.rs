@@ -83,7 +83,7 @@ impl Watched {
 }
 
 fn watched_week(session: &mut Session, watched: &mut Watched) {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session
         .advance("wait", &forecasts, Via::Script, &mut |report: &DayReport<'_>| watched.watch(report))
         .expect("a week");

@@ -50,7 +50,7 @@ fn open_wide(session: &mut Session) {
 
 /// Offers every company that waits what it asked for, or a little more.
 fn make_offers(session: &mut Session) {
-    let waiting = session.observe().waiting;
+    let waiting = session.company().observe().waiting;
     let deal = |(customer, asked): (u32, f64)| json!([customer, [["C", asked * 1.3], ["B", asked * 1.05]]]);
     let deals: Vec<_> = waiting.iter().map(|own| deal((own.customer, own.asked.unwrap_or(40.0)))).collect();
     if !deals.is_empty() {

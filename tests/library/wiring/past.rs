@@ -14,7 +14,7 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
     let mut at_the_beginning = Vec::new();
     // Week by week another price, decided on the first day of the week.
     for number in 1..=4 {
-        at_the_beginning.push((number, parent.current("set_prices"), parent.state_hash().1));
+        at_the_beginning.push((number, parent.company().current("set_prices"), parent.state_hash().1));
         call(&mut parent, "set_prices", json!({"A": 10 + number, "B": 30 - number}));
         call(&mut parent, "set_capacity_tier", json!({"tier": number}));
         week(&mut parent);
@@ -22,8 +22,8 @@ fn a_branch_leaves_out_what_was_decided_on_the_day_it_begins() {
     for (number, prices, parts) in at_the_beginning {
         let branch = parent.branch(number, Mode::Sandbox).expect("a branch");
         assert_eq!(branch.day(), 7 * (number - 1));
-        assert_eq!(branch.current("set_prices"), prices, "week {number}");
-        assert!(branch.changes().is_empty(), "nothing is decided yet in week {number}");
+        assert_eq!(branch.company().current("set_prices"), prices, "week {number}");
+        assert!(branch.company().changes().is_empty(), "nothing is decided yet in week {number}");
         for (part, hash) in &branch.state_hash().1 {
             // The chain of facts goes on with the calls of the week, which the branch does not have.
             if *part != "facts" {

@@ -69,17 +69,17 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
     for tool in setting_tools() {
         let mut session = create(Storage::Memory, &[]);
         let [first, second] = two_calls(tool);
-        let mut states = vec![(settings(&session), session.current(tool))];
+        let mut states = vec![(settings(&session), session.company().current(tool))];
         for arguments in [first, second] {
             call(&mut session, tool, arguments);
-            states.push((settings(&session), session.current(tool)));
+            states.push((settings(&session), session.company().current(tool)));
         }
         assert!(states[0].0 != states[1].0 && states[1].0 != states[2].0, "{tool} changes nothing");
 
         let undone = session.undo(Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-        assert_eq!((settings(&session), session.current(tool)), states[1], "{tool} after undo");
+        assert_eq!((settings(&session), session.company().current(tool)), states[1], "{tool} after undo");
         let redone = session.redo(Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-        assert_eq!((settings(&session), session.current(tool)), states[2], "{tool} after redo");
+        assert_eq!((settings(&session), session.company().current(tool)), states[2], "{tool} after redo");
 
         // What was said of both is the same way, there and back.
         assert!(!undone.is_empty(), "{tool}");
@@ -100,7 +100,7 @@ fn the_change_review_names_every_number_that_was_set() {
         call(&mut session, tool, two_calls(tool)[1].clone());
         let mut expected = Vec::new();
         leaves(&two_calls(tool)[1], &mut expected);
-        let mut told: Vec<f64> = session.changes().iter().map(|change| change.new).collect();
+        let mut told: Vec<f64> = session.company().changes().iter().map(|change| change.new).collect();
         // A number that is what it was is no change.
         expected.retain(|number| *number != 0.0);
         told.retain(|number| *number != 0.0);
@@ -160,7 +160,7 @@ fn numbers_without_bounds_are_refused_by_the_run_itself() {
         assert_eq!(refusal.code, "amount_too_large", "{tool} is checked as it is called");
     }
     week(&mut session);
-    assert!(session.observe().cash.is_finite());
+    assert!(session.company().observe().cash.is_finite());
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn parts_of_a_unit_of_quota_are_kept() {
     call(&mut session, "set_usage_quotas", json!({"A": 59.75, "B": 250000, "C": 1.5}));
     let row = numbers(&mut session, "SELECT quota_A, quota_B, quota_C FROM config_history");
     assert_eq!(row, [[59.75, 250_000.0, 1.5]]);
-    assert_eq!(session.current("set_usage_quotas")["A"], 59.75);
+    assert_eq!(session.company().current("set_usage_quotas")["A"], 59.75);
 }
 
 #[test]

@@ -157,21 +157,21 @@ fn note_every_activity(run: &mut Session) {
     fn of<T: serde::de::DeserializeOwned>(example: Value) -> T {
         serde_json::from_value(example).expect("an example")
     }
-    run.take_up(novamind::session::Interface { name: "console", window: Some((120, 40)) });
-    run.note_presence(PresenceEvent::Idle, Some(90_000), None);
-    run.leave(LeavingCause::Quit);
-    run.note_activity(Activity::Clock(of(example("clock"))));
-    run.note_activity(Activity::Limit(of(example("limit"))));
-    run.note_activity(Activity::View(of(example("view"))));
-    run.note_activity(Activity::Select(of(example("select"))));
-    run.note_activity(Activity::Dialog(of(example("dialog"))));
-    run.note_activity(Activity::Help(of(example("help"))));
-    run.note_activity(Activity::Draft(of(example("draft"))));
-    run.note_activity(Activity::Question(of(example("question"))));
-    run.note_activity(Activity::Answer(of(example("answer"))));
-    run.note_activity(Activity::Lesson(of(example("lesson"))));
-    run.note_activity(Activity::Look(of(example("look"))));
-    run.note_activity(Activity::Xray(of(example("xray"))));
+    run.activity().take_up(novamind::session::Interface { name: "console", window: Some((120, 40)) });
+    run.activity().note_presence(PresenceEvent::Idle, Some(90_000), None);
+    run.activity().leave(LeavingCause::Quit);
+    run.activity().note(Activity::Clock(of(example("clock"))));
+    run.activity().note(Activity::Limit(of(example("limit"))));
+    run.activity().note(Activity::View(of(example("view"))));
+    run.activity().note(Activity::Select(of(example("select"))));
+    run.activity().note(Activity::Dialog(of(example("dialog"))));
+    run.activity().note(Activity::Help(of(example("help"))));
+    run.activity().note(Activity::Draft(of(example("draft"))));
+    run.activity().note(Activity::Question(of(example("question"))));
+    run.activity().note(Activity::Answer(of(example("answer"))));
+    run.activity().note(Activity::Lesson(of(example("lesson"))));
+    run.activity().note(Activity::Look(of(example("look"))));
+    run.activity().note(Activity::Xray(of(example("xray"))));
 }
 
 /// Runs that use every kind of line there is a way to write.
@@ -201,17 +201,17 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     run.call_once("set_prices", &json!({"A": 15}), Via::Http, &json!("a")).expect("a price");
     let week = WeekRequest {
         rationale: &json!("wait"),
-        predictions: &run.naive_forecasts().as_predictions(),
+        predictions: &run.company().naive_forecasts().as_predictions(),
         expected_day: &json!(0),
         id: &json!("b"),
     };
     run.advance_once(&week, Via::Http).expect("a week");
-    let forecasts = run.naive_forecasts();
+    let forecasts = run.company().naive_forecasts();
     run.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     run.step(2, &mut |_| {}).expect("two days");
     let mut branch = run.branch(2, Mode::Sandbox).expect("a branch");
     while branch.ended().is_none() {
-        let forecasts = branch.naive_forecasts();
+        let forecasts = branch.company().naive_forecasts();
         branch.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     run.end().expect("it is given up");

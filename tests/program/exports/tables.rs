@@ -61,10 +61,10 @@ fn watched(home: &Home) {
     let wait = || std::thread::sleep(Duration::from_millis(12));
     let console = Interface { name: "console", window: Some((120, 40)) };
     for week in 0..2 {
-        run.take_up(console);
+        run.activity().take_up(console);
         wait();
-        run.note_view("overview", "", 11);
-        run.note_activity(Activity::Question(Asked {
+        run.activity().note_view("overview", "", 11);
+        run.activity().note(Activity::Question(Asked {
             questionnaire: "mood".to_owned(),
             occasion: format!("week {week}"),
             id: "q1".to_owned(),
@@ -74,7 +74,7 @@ fn watched(home: &Home) {
         }));
         wait();
         if week == 1 {
-            run.note_activity(Activity::Answer(Answered {
+            run.activity().note(Activity::Answer(Answered {
                 questionnaire: "mood".to_owned(),
                 occasion: format!("week {week}"),
                 id: "q1".to_owned(),
@@ -84,23 +84,23 @@ fn watched(home: &Home) {
                 changes: 1,
             }));
         }
-        run.note_presence(PresenceEvent::FocusLost, None, None);
+        run.activity().note_presence(PresenceEvent::FocusLost, None, None);
         wait();
-        run.note_presence(PresenceEvent::FocusGained, None, None);
+        run.activity().note_presence(PresenceEvent::FocusGained, None, None);
         let select =
             Select { screen: "customers".to_owned(), what: "group".to_owned(), which: "S2".to_owned() };
-        run.note_activity(Activity::Select(select));
-        run.note_activity(Activity::Help(Help { term: "churn".to_owned(), place: "customers".to_owned() }));
+        run.activity().note(Activity::Select(select));
+        run.activity().note(Activity::Help(Help { term: "churn".to_owned(), place: "customers".to_owned() }));
         wait();
-        run.note_presence(PresenceEvent::Idle, Some(9), None);
+        run.activity().note_presence(PresenceEvent::Idle, Some(9), None);
         wait();
-        run.note_presence(PresenceEvent::Active, None, None);
+        run.activity().note_presence(PresenceEvent::Active, None, None);
         for event in [ClockEvent::Stopped, ClockEvent::Started] {
-            run.note_activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }));
+            run.activity().note(Activity::Clock(Clock { event, reason: None, stood_ms: None }));
             wait();
         }
         for outcome in [DraftOutcome::Sent, DraftOutcome::Left] {
-            run.note_activity(Activity::Draft(Draft {
+            run.activity().note(Activity::Draft(Draft {
                 place: "rationale".to_owned(),
                 outcome,
                 length: 20,
@@ -114,28 +114,28 @@ fn watched(home: &Home) {
         }
         for outcome in [DialogOutcome::Confirmed, DialogOutcome::Cancelled] {
             let steps = vec![DialogStep { step: "review".to_owned(), for_ms: 5 }];
-            run.note_activity(Activity::Dialog(DialogUse {
+            run.activity().note(Activity::Dialog(DialogUse {
                 what: "next week".to_owned(),
                 outcome,
                 for_ms: 9,
                 steps,
             }));
         }
-        let spent = run.time_spent(LimitScope::Week);
+        let spent = run.log().time_spent(LimitScope::Week);
         assert!(spent.active_ms() >= 12 && spent.idle_seconds() > 0.009, "{spent:?}");
         run.set_memo("if S2 grows,\nwe should follow").expect("notes");
-        run.note_view("cash", "overview", 40);
-        let forecasts = run.naive_forecasts();
+        run.activity().note_view("cash", "overview", 40);
+        let forecasts = run.company().naive_forecasts();
         run.advance("until then", &forecasts, Via::Form, &mut |_| {}).expect("a week");
-        run.leave(LeavingCause::Quit);
+        run.activity().leave(LeavingCause::Quit);
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
     // Somebody looks at how it ended, and leaves.
-    run.take_up(console);
+    run.activity().take_up(console);
     wait();
-    run.note_view("cash", "overview", 11);
-    run.note_presence(PresenceEvent::FocusLost, None, None);
+    run.activity().note_view("cash", "overview", 11);
+    run.activity().note_presence(PresenceEvent::FocusLost, None, None);
     wait();
     run.set_memo("afterwards").expect("notes");
 }

@@ -342,12 +342,12 @@ fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() 
 fn offered() -> novamind_session::Session {
     let mut session = courted();
     for week in 0..3 {
-        for (at, thread) in session.observe().waiting.into_iter().enumerate() {
+        for (at, thread) in session.company().observe().waiting.into_iter().enumerate() {
             let offer = [json!([["C", 16.5]]), json!([["B", 12.0], ["C", 16.5]]), json!([["C", 129.99]])];
             let deals = json!({ "deals": [[thread.customer, offer[(at + week) % 3]]] });
             session.call("send_enterprise_deal", &deals, Via::Form).expect("sent");
         }
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     session

@@ -28,7 +28,7 @@ fn played() -> Company {
     let mut session = session();
     let prices = json!({"A": 12, "B": 25, "C": 55});
     session.call("set_prices", &prices, Via::Form).expect("prices");
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session
         .advance("Cheaper than the others.\nSee who comes.", &forecasts, Via::Form, &mut |_| {})
         .expect("a week");

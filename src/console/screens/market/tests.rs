@@ -31,7 +31,7 @@ fn order(screen: &mut Market, session: &mut Session, action: Action) -> (String,
 }
 
 fn week(session: &mut Session) {
-    let forecasts = session.naive_forecasts();
+    let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 

@@ -28,7 +28,7 @@ fn talked() -> Session {
     let text = "Freelancers: 20% more of your drafts are right at once, measured on 1,200 of them.";
     session.call(POST, &json!({ "content": text }), Via::Form).expect("a post");
     for _ in 0..2 {
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
     session

@@ -206,7 +206,7 @@ fn requests_that_go_around_the_screen_are_refused() {
             ..NewRun::default()
         };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-        let forecasts = session.naive_forecasts();
+        let forecasts = session.company().naive_forecasts();
         session.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
         let file = session.folder().expect("a folder").join("trajectory.jsonl");
         drop(session);

@@ -2,6 +2,7 @@
 
 use super::condition::{Condition, Judged};
 use crate::xray::inspector::Inspector;
+use novamind_session::Look;
 use novamind_tools::Refusal;
 
 /// How a condition stands today, and when that was otherwise.
@@ -65,7 +66,7 @@ impl Inspector<'_> {
 
     /// How a condition stood on each day.
     fn judged_days(&mut self, what: &str, condition: Condition) -> Result<Vec<Judged>, Refusal> {
-        let look = self.run.begin_look(what, &condition.to_string(), None)?;
+        let look = Look::begin(self.run, what, &condition.to_string(), None)?;
         let today = look.day();
         let series = self.measured_up_to(&look)?;
         Ok(series.read(|days| (1..=today).map(|day| condition.judged(days, day)).collect()))

@@ -104,7 +104,7 @@ impl Inspector<'_> {
         let goes_on = |day: u32| hits_on(day, &set, &series).is_empty();
         let looks = ("breakpoint", set.iter().map(|own| own.condition.to_string()).collect());
         let watched = WatchedDays { days, watch: series.clone(), shows_past, goes_on: &goes_on, looks };
-        let week = self.run.step_watched(watched, progress)?;
+        let week = watched.step(self.run, progress)?;
         let (hits, day) = (hits_on(self.run.day(), &set, &series), self.run.day());
         let true_before = true_before(from + 1..=day, &set, &series);
         if !set.is_empty() {

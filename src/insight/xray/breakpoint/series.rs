@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use novamind_session::engine::count_groups;
-use novamind_session::{GroupWeek, MeasuredGroup};
+use novamind_session::GroupWeek;
+use novamind_session::engine::{MeasuredGroup, count_groups};
 use novamind_world::day::watch::DayWatch;
 use novamind_world::events::{DayFigures, Facts};
 use novamind_world::identifiers::{ByGroup, Group};

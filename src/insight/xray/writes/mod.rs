@@ -9,6 +9,7 @@ use diary::WriteDiary;
 use target::WriteTarget;
 
 use crate::xray::inspector::Inspector;
+use novamind_session::Look;
 use novamind_tools::Refusal;
 use novamind_world::events::{Category, EndCause, Source};
 use novamind_world::market::reputation::ReputationCause;
@@ -79,7 +80,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn who_writes(&mut self, target: WriteTarget, day: Option<u32>) -> Result<WhoWrites, Refusal> {
-        let look = self.run.begin_look("who", &target.to_string(), day)?;
+        let look = Look::begin(self.run, "who", &target.to_string(), day)?;
         let day = look.day();
         let opening = match target {
             WriteTarget::Reputation(_) => look.inside(self.run).params().initial.initial_reputation,

@@ -1,0 +1,150 @@
+//! The public conversation as the session keeps it: every post in words, and how the player's posts were taken.
+//!
+//! Words belong to no state: they are made anew, the same, whenever a run is simulated again. Those of a language model are
+//! taken from the record.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use novamind_database::Entry;
+use novamind_tools::PublicPost;
+use novamind_voice::judge::{Judgement, Original};
+use novamind_voice::posts::Writer;
+use novamind_voice::posts::names::profile_name;
+use novamind_world::events::{Facts, Matter, Post, Sender};
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::sentiment::Sentiment;
+use novamind_world::params::Params;
+use novamind_world::random::Streams;
+
+/// Everything that was written so far, and why the player's posts were taken as they were.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub struct Feed {
+    writer: Writer,
+    /// Posts of others as the player sees them, in the order of their numbers.
+    #[serde(with = "kept_posts")]
+    pub posts: Vec<PublicPost>,
+    /// What the built-in voice said where a language model has put it into other words, by number of the post.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    built_in: BTreeMap<u32, String>,
+    /// Whether each of them complains.
+    complains: Vec<bool>,
+    /// Judgements of the player's posts, by their position; empty until they were judged.
+    pub judgements: Vec<Vec<Judgement>>,
+}
+
+/// Posts with everything the session knows of them; what tools show of them leaves some of it out.
+mod kept_posts {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use novamind_tools::PublicPost;
+    use novamind_world::identifiers::Group;
+    use std::borrow::Cow;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(remote = "PublicPost")]
+    struct Kept {
+        post: u32,
+        day: u32,
+        content: String,
+        own_post: Option<u32>,
+        source_group: Option<Group>,
+        written_by: Option<Group>,
+        profile: Option<Cow<'static, str>>,
+    }
+
+    #[derive(Serialize)]
+    struct Borrowed<'a>(#[serde(with = "Kept")] &'a PublicPost);
+
+    #[derive(Deserialize)]
+    struct Owned(#[serde(with = "Kept")] PublicPost);
+
+    pub fn serialize<S: Serializer>(posts: &[PublicPost], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(posts.iter().map(Borrowed))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<PublicPost>, D::Error> {
+        Ok(Vec::<Owned>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
+    }
+}
+
+impl Feed {
+    fn judgement(&self, own_post: u32, group: Group) -> Option<&Judgement> {
+        let of_post = self.judgements.get(own_post as usize - 1)?;
+        of_post.iter().find(|judgement| judgement.group == group)
+    }
+
+    /// Puts a day's posts into words and keeps them.
+    pub(crate) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
+        for post in &facts.posts {
+            let judgement = match post.matter {
+                Matter::Comment { own_post, group, .. } => self.judgement(own_post, group).cloned(),
+                _ => None,
+            };
+            let content = self.writer.write(post, judgement.as_ref(), params, streams);
+            self.complains.push(post.sentiment == Sentiment::Negative);
+            self.posts.push(public_post(post, facts.day, content, streams));
+        }
+    }
+
+    /// Text of each post of these facts, the last ones that were put into words.
+    pub(crate) fn words_of(&self, facts: &Facts) -> Vec<String> {
+        let first = self.posts.len().saturating_sub(facts.posts.len());
+        self.posts[first..].iter().map(|post| post.content.clone()).collect()
+    }
+
+    /// Shows a post in other words; one that is not there stays so.
+    pub(crate) fn reword(&mut self, post: u32, text: &str) {
+        let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
+        let Some(own) = own else { return };
+        let before = std::mem::replace(&mut own.content, text.to_owned());
+        self.built_in.entry(post).or_insert(before);
+    }
+
+    /// The post with this number, as one that is answered: in the words of the built-in voice, whatever is shown, for what
+    /// readers make of an answer is a fact of the world.
+    pub(crate) fn original(&self, post: u32) -> Option<Original<'_>> {
+        let at = (post as usize).checked_sub(1)?;
+        let own = self.posts.get(at)?;
+        let content = self.built_in.get(&post).unwrap_or(&own.content);
+        Some(Original { content, negative: self.complains[at], group: own.written_by })
+    }
+}
+
+fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> PublicPost {
+    let (own_post, source_group) = match post.matter {
+        Matter::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
+        _ => (None, None),
+    };
+    PublicPost {
+        post: post.post,
+        day,
+        content,
+        own_post,
+        source_group,
+        written_by: post.author.map(|author| author.group),
+        profile: post.author.and_then(|author| profile_name(&author, streams)).map(Cow::Borrowed),
+    }
+}
+
+/// The facts of a day or call with the words that belong to them.
+pub(crate) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, params: &Params) -> Entry {
+    let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
+    let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+    let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
+    let personas = &params.personas;
+    Entry {
+        notices,
+        readings: facts.readings.iter().map(novamind_voice::reading).collect(),
+        turns: facts.turns.iter().map(|turn| novamind_voice::message(turn, personas)).collect(),
+        posts: feed.words_of(facts),
+        addresses: named
+            .map(|customer| (customer, novamind_voice::address(customer, &personas.email)))
+            .collect(),
+        facts: facts.clone(),
+        ..Entry::default()
+    }
+}

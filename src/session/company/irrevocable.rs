@@ -1,0 +1,257 @@
+//! What was done that cannot be taken back: purchases, posts, offers, threads that end. Many like ones are one, whether one
+//! call did them or several of a week.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+
+use serde::{Deserialize, Serialize};
+
+use super::simulation::Simulation;
+use novamind_base::notation::{cents, grouped};
+use novamind_world::command::ResolvedCommand;
+use novamind_world::enterprise::letters::Letter;
+use novamind_world::events::Offering;
+use novamind_world::identifiers::{Group, Plan};
+
+/// Offers or threads of one call that are named one by one.
+const NAMED: usize = 5;
+
+/// What cannot be taken back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Irrevocable {
+    /// Something single.
+    Single(String),
+    /// Offers of the same plans to companies of a group.
+    Offered {
+        group: Option<Group>,
+        /// Plan, lowest and highest price.
+        offerings: Vec<(Plan, f64, f64)>,
+        companies: u32,
+    },
+    /// Threads with companies of a group that were ended.
+    Ended { group: Group, companies: u32 },
+}
+
+impl Irrevocable {
+    /// Adds what was done to what was done before it.
+    pub(crate) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
+        for own in more {
+            if !done.iter_mut().any(|before| before.takes_in(&own)) {
+                done.push(own);
+            }
+        }
+    }
+
+    /// Joins another of its kind; false where it is of another kind.
+    fn takes_in(&mut self, other: &Irrevocable) -> bool {
+        use Irrevocable::{Ended, Offered};
+        match (self, other) {
+            (
+                Offered { group, offerings, companies },
+                Offered { group: to, offerings: more, companies: count },
+            ) if group == to && plans(offerings).eq(plans(more)) => {
+                for ((_, least, most), (_, low, high)) in offerings.iter_mut().zip(more) {
+                    (*least, *most) = (least.min(*low), most.max(*high));
+                }
+                *companies += count;
+                true
+            }
+            (Ended { group, companies }, Ended { group: of, companies: count }) if group == of => {
+                *companies += count;
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+fn plans(offerings: &[(Plan, f64, f64)]) -> impl Iterator<Item = Plan> {
+    offerings.iter().map(|(plan, ..)| *plan)
+}
+
+impl Display for Irrevocable {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Irrevocable::Single(words) => out.write_str(words),
+            Irrevocable::Offered { group, offerings, companies } => {
+                let offerings: Vec<String> = offerings.iter().map(offering_in_words).collect();
+                write!(out, "offered {} to {}", offerings.join(" or "), counted(*companies, *group))
+            }
+            Irrevocable::Ended { group, companies } => {
+                write!(out, "threads with {} ended", counted(*companies, Some(*group)))
+            }
+        }
+    }
+}
+
+impl Simulation {
+    /// What cannot be taken back of a command that is about to be applied.
+    pub(crate) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
+        let single = |words: String| vec![Irrevocable::Single(words)];
+        match resolved {
+            ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
+            ResolvedCommand::Post(_) => single("post published".to_owned()),
+            ResolvedCommand::StartResearch(project, _) => {
+                single(format!("R&D project {} started, done on day {}", project.id(), project.due_day))
+            }
+            ResolvedCommand::ResearchMarket(attempt) => single(match attempt.found {
+                Some(group) => format!("market research found group {group}"),
+                None => "market research found nothing".to_owned(),
+            }),
+            ResolvedCommand::ResearchGroup(study, _) => {
+                let (group, level, day) = (study.group, study.target, study.due_day);
+                single(format!("study of {group} to level {level} ordered, done on day {day}"))
+            }
+            ResolvedCommand::SendDeals(letters) => self.offers(letters),
+            ResolvedCommand::RejectDeals(threads) => self.rejections(threads),
+        }
+    }
+
+    fn offers(&self, letters: &[Letter]) -> Vec<Irrevocable> {
+        if letters.len() <= NAMED {
+            return letters.iter().map(|letter| self.offer(letter)).collect();
+        }
+        let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&Letter>> = BTreeMap::new();
+        for letter in letters {
+            let plans = letter.offerings.iter().map(|offering| offering.plan).collect();
+            alike.entry((self.group_of(letter.customer), plans)).or_default().push(letter);
+        }
+        let joined = |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&Letter>)| match letters[..]
+        {
+            [only] => self.offer(only),
+            _ => Irrevocable::Offered {
+                group,
+                offerings: (0..plans.len()).map(|at| offering_of_all(&letters, at)).collect(),
+                companies: letters.len() as u32,
+            },
+        };
+        alike.into_iter().map(joined).collect()
+    }
+
+    fn rejections(&self, threads: &[u32]) -> Vec<Irrevocable> {
+        let all = &self.world.enterprise.threads;
+        let ended = threads.iter().filter_map(|number| {
+            all.binary_search_by_key(number, |thread| thread.number).ok().map(|at| &all[at])
+        });
+        if threads.len() <= NAMED {
+            let words =
+                ended.map(|thread| format!("thread with {} ended", self.names.with_number(thread.customer)));
+            return words.map(Irrevocable::Single).collect();
+        }
+        let mut by_group: BTreeMap<Group, u32> = BTreeMap::new();
+        for thread in ended {
+            *by_group.entry(thread.group).or_default() += 1;
+        }
+        by_group.into_iter().map(|(group, companies)| Irrevocable::Ended { group, companies }).collect()
+    }
+
+    fn offer(&self, letter: &Letter) -> Irrevocable {
+        let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+        let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
+        let company = self.names.with_number(letter.customer);
+        Irrevocable::Single(format!("offered to {company}: {}", offerings.join(", ")))
+    }
+
+    fn group_of(&self, customer: u32) -> Option<Group> {
+        self.world.enterprise.company(customer).map(|company| company.group)
+    }
+}
+
+fn counted(count: u32, group: Option<Group>) -> String {
+    let of = group.map_or(String::new(), |group| format!(" of {group}"));
+    let noun = if count == 1 { "company" } else { "companies" };
+    format!("{} {noun}{of}", grouped(f64::from(count), 0))
+}
+
+/// Plan, lowest and highest price of the offerings at a place of letters with the same plans.
+fn offering_of_all(letters: &[&Letter], at: usize) -> (Plan, f64, f64) {
+    let prices = letters.iter().map(|letter| letter.offerings[at].price);
+    let (least, most) =
+        prices.fold((f64::INFINITY, f64::NEG_INFINITY), |all, price| (all.0.min(price), all.1.max(price)));
+    (letters[0].offerings[at].plan, least, most)
+}
+
+fn offering_in_words(&(plan, least, most): &(Plan, f64, f64)) -> String {
+    match least == most {
+        true => format!("{plan} at {}", cents(least)),
+        false => format!("{plan} at {} to {}", cents(least), cents(most)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::create::NewRun;
+    use crate::play::Session;
+    use novamind_record::folder::configuration::Configuration;
+
+    fn letter(customer: u32, offerings: &[(Plan, f64)]) -> Letter {
+        let offerings =
+            offerings.iter().map(|(plan, price)| Offering { plan: *plan, price: *price }).collect();
+        Letter {
+            customer,
+            thread: customer,
+            begins: false,
+            turn: 1,
+            offerings,
+            relationship: None,
+            reply_day: 9,
+        }
+    }
+
+    #[test]
+    fn few_offers_are_named_and_many_are_counted_by_plan() {
+        let session = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
+        let told = |letters: &[Letter]| {
+            let done = session.simulation().irrevocable(&ResolvedCommand::SendDeals(letters.to_vec()));
+            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>()
+        };
+        let few: Vec<Letter> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
+        assert_eq!(told(&few).len(), 5);
+        let named = |customer: u32| session.company().company_names().with_number(customer);
+        assert_eq!(told(&few)[0], format!("offered to {}: B $35.00", named(1)));
+        let mut many: Vec<Letter> =
+            (1..=3_569).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
+        assert_eq!(told(&many), ["offered B at $35.00 to 3,569 companies"]);
+        many.push(letter(4_000, &[(Plan::B, 70.5)]));
+        many.push(letter(4_001, &[(Plan::A, 8.0), (Plan::C, 54.0)]));
+        assert_eq!(
+            told(&many),
+            [
+                format!("offered to {}: A $8.00, C $54.00", named(4_001)),
+                "offered B at $35.00 to $70.50 to 3,570 companies".to_owned()
+            ]
+        );
+    }
+
+    #[test]
+    fn like_ones_of_several_calls_are_one() {
+        let s1 = Group::parse("E2").expect("a group");
+        let offered = |plan: Plan, price: f64, companies: u32| Irrevocable::Offered {
+            group: Some(s1),
+            offerings: vec![(plan, price, price)],
+            companies,
+        };
+        let mut done = vec![Irrevocable::Single("post published".to_owned())];
+        for more in [
+            vec![offered(Plan::B, 35.0, 900), Irrevocable::Ended { group: s1, companies: 40 }],
+            vec![offered(Plan::C, 60.0, 10), offered(Plan::B, 30.0, 99)],
+            vec![
+                Irrevocable::Ended { group: s1, companies: 2 },
+                Irrevocable::Single("post published".to_owned()),
+            ],
+        ] {
+            Irrevocable::add(&mut done, more);
+        }
+        assert_eq!(
+            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>(),
+            [
+                "post published",
+                "offered B at $30.00 to $35.00 to 999 companies of E2",
+                "threads with 42 companies of E2 ended",
+                "offered C at $60.00 to 10 companies of E2",
+                "post published",
+            ]
+        );
+    }
+}

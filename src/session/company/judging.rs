@@ -1,0 +1,82 @@
+//! What readers make of the player's posts, and what a language model made of them as far as the record tells.
+
+use super::simulation::Simulation;
+use crate::database::Entries;
+use novamind_record::trajectory::record::JudgedPost;
+use novamind_voice::judge::{self, Circumstances, Judgement, Lexicon, Submission};
+use novamind_world::identifiers::Group;
+use novamind_world::market::social::own::OwnPost;
+use novamind_world::market::social::reach::{self, Verdict};
+use novamind_world::params::PostJudge;
+
+impl Simulation {
+    /// Lets the readers judge what the player posted before today.
+    pub fn judge_own_posts(&mut self, entries: Entries<'_>) {
+        if self.params.fidelity.post_judge == PostJudge::None {
+            return;
+        }
+        let own = &self.world.market.social.own;
+        if own.iter().all(|post| post.effects.is_some()) {
+            return;
+        }
+        let lexicon = Lexicon::shipped();
+        let circumstances = Circumstances::of(&self.world, &self.params, lexicon);
+        let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
+        let mut verdicts = Vec::new();
+        self.feed.judgements.resize(own.len(), Vec::new());
+        for (at, post) in own.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
+            let submission = Submission {
+                content: &post.content,
+                day: post.day,
+                original: post.reply_to.and_then(|post| self.feed.original(post)),
+                earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+            };
+            let judgements = judge::judge(&submission, known.iter().copied(), &circumstances, lexicon);
+            let judgements = self.scores.over(post, judgements);
+            let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
+            verdicts.push(Verdict { post: at as u32 + 1, effects });
+            self.feed.judgements[at] = judgements;
+        }
+        let (world, facts, params, streams) = self.between_days(entries);
+        reach::receive(world, &verdicts, params, streams, facts);
+    }
+}
+
+/// Scores by post. A post is known by its day, its text and what it answers, so that scores belong to it in a branch, too,
+/// where posts have other numbers.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RecordedScores(Vec<JudgedPost>);
+
+impl RecordedScores {
+    /// Takes in what a line says.
+    pub(crate) fn take_in(&mut self, judged: JudgedPost) {
+        self.0.push(judged);
+    }
+
+    /// What was said of a post last.
+    fn of(&self, post: &OwnPost) -> Option<&JudgedPost> {
+        self.0.iter().rev().find(|judged| is_of(judged, post))
+    }
+
+    /// Whether there is a score of a post for each of these groups.
+    pub(crate) fn cover(&self, post: &OwnPost, groups: &[Group]) -> bool {
+        self.of(post).is_some_and(|judged| {
+            groups.iter().all(|group| judged.scores.iter().any(|score| score.group == *group))
+        })
+    }
+
+    /// Judgements of a post, with the scores that were recorded in place of those of the built-in judge.
+    pub(crate) fn over(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
+        let Some(judged) = self.of(post) else { return judgements };
+        let scored = |own: Judgement| match judged.scores.iter().find(|score| score.group == own.group) {
+            Some(score) => own.scored_by_model(score),
+            None => own,
+        };
+        judgements.into_iter().map(scored).collect()
+    }
+}
+
+/// Whether something was said of a post.
+pub(crate) fn is_of(judged: &JudgedPost, post: &OwnPost) -> bool {
+    judged.posted == post.day && judged.reply_to == post.reply_to && judged.content == post.content
+}

@@ -1,0 +1,249 @@
+//! The database of a run as its session sees it: entries go to a writer in the background, statements to a connection; and
+//! what is answered to programs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::{Map, Value, json};
+
+use novamind_base::notation::json_number;
+use novamind_database::query::Limits;
+use novamind_database::{
+    Cell, Entry, Interrupt, Location, Position, ProjectionError, Projector, QueryConnection, QueryError,
+    Rows, Scope, Ticket, copy_for_other_programs, query_connection,
+};
+use novamind_record::error::RunError;
+use novamind_tools::Refusal;
+use novamind_world::events::Facts;
+
+/// The rows that follow from what has happened. A run that is played without a database has none: then nothing is
+/// written, and statements are refused.
+#[derive(Default)]
+pub struct RunDatabase {
+    projector: Option<Projector>,
+    /// The database of a run that has ended, as it stands on the disk: nothing is written any more.
+    finished: Option<Location>,
+    /// For statements of this thread; opened with the first of them.
+    connection: Option<QueryConnection>,
+    /// Number of times that it was replaced since the run was opened.
+    replaced: u32,
+}
+
+impl RunDatabase {
+    /// A database with this writer, if it has one.
+    pub(crate) fn of(projector: Option<Projector>) -> RunDatabase {
+        RunDatabase { projector, ..RunDatabase::default() }
+    }
+
+    /// The database of a run that has ended, on the disk.
+    pub(crate) fn finished(location: Location) -> RunDatabase {
+        RunDatabase { finished: Some(location), ..RunDatabase::default() }
+    }
+
+    /// Where entries go.
+    pub fn entries(&self) -> Entries<'_> {
+        Entries(self.projector.as_ref())
+    }
+
+    /// Makes everything handed over visible, as of a line.
+    pub(crate) fn commit(&self, position: &Position) {
+        if let Some(projector) = &self.projector {
+            projector.commit(position.clone());
+        }
+    }
+
+    /// Waits until everything committed is in the database.
+    pub(crate) fn wait(&self) -> Result<(), ProjectionError> {
+        self.projector.as_ref().map_or(Ok(()), Projector::wait)
+    }
+
+    /// Does something once everything handed over so far is written, with the digest of the file if it is asked for; at
+    /// once where there is no database.
+    pub(crate) fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
+        match &self.projector {
+            Some(projector) => projector.then(digest, work),
+            None => work(None),
+        }
+    }
+
+    /// What keeps the database from being written; none where it holds everything, or will soon.
+    pub fn failure(&self) -> Option<ProjectionError> {
+        self.projector.as_ref()?.failure()
+    }
+
+    /// Takes the place of a database that could not be written.
+    pub(crate) fn replace(&mut self, made_anew: RunDatabase) {
+        *self = RunDatabase { replaced: self.replaced + 1, ..made_anew };
+    }
+
+    /// Number of times that the database was replaced since the run was opened. Connections to an earlier database are stale.
+    pub fn replaced(&self) -> u32 {
+        self.replaced
+    }
+
+    /// A connection of its own, for a thread that asks while the session works. What it asks is recorded with
+    /// [`Session::note_query`](crate::Session::note_query).
+    ///
+    /// # Errors
+    /// The run has no database, or it cannot be read.
+    pub fn open_connection(&self) -> Result<QueryConnection, Refusal> {
+        self.open_connection_to(Scope::Visible)
+    }
+
+    /// A connection of its own to the tables of a scope.
+    pub(crate) fn open_connection_to(&self, scope: Scope) -> Result<QueryConnection, Refusal> {
+        let connection = match (&self.projector, &self.finished) {
+            (Some(projector), _) => projector.connection(scope),
+            (None, Some(location)) => query_connection(location, scope).map(|(connection, _)| connection),
+            (None, None) => return Err(Refusal::new("sql_error", "this run is played without a database")),
+        };
+        connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
+    }
+
+    /// The connection of this thread.
+    ///
+    /// # Errors
+    /// The run has no database, or it cannot be read.
+    pub(crate) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
+        let connection = match self.connection.take() {
+            Some(connection) => connection,
+            None => self.open_connection()?,
+        };
+        Ok(self.connection.insert(connection))
+    }
+
+    /// A handle that stops the running query.
+    ///
+    /// # Errors
+    /// The run has no database.
+    pub fn interrupt(&mut self) -> Result<Interrupt, Refusal> {
+        self.connection().map(QueryConnection::interrupt)
+    }
+
+    /// Answers one guarded statement.
+    pub(crate) fn answer(&mut self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, Refusal> {
+        self.connection()?.ask_as(ticket, sql, limits).map_err(query_refusal)
+    }
+
+    /// Writes the rows into a new file that any SQLite tool can open.
+    ///
+    /// # Errors
+    /// The run has no database; the disk refuses.
+    pub(crate) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
+        match (&self.projector, &self.finished) {
+            (Some(projector), _) => Ok(projector.copy_for_other_programs(file)?),
+            (None, Some(location)) => Ok(copy_for_other_programs(location, file)?),
+            (None, None) => Err(RunError::NotPossible("this run is played without a database".to_owned())),
+        }
+    }
+
+    /// Bounds the pages that the database may take beyond those it has.
+    #[cfg(test)]
+    pub(crate) fn bound_pages(&self, more: Option<u32>) {
+        self.projector.as_ref().expect("a database").bound_pages(more);
+    }
+}
+
+/// Where entries go, for whatever thread makes them.
+#[derive(Clone, Copy)]
+pub struct Entries<'a>(Option<&'a Projector>);
+
+impl Entries<'_> {
+    /// Hands an entry over; it is made only if there is a database.
+    pub(crate) fn write(self, entry: impl FnOnce() -> Entry) {
+        if let Some(projector) = self.0 {
+            projector.write(entry());
+        }
+    }
+
+    /// Facts that the writer has done with, to be filled again.
+    pub(crate) fn spare_facts(self) -> Option<Arc<Facts>> {
+        self.0?.spare_facts()
+    }
+}
+
+/// Converts the error of a query into the refusal that the caller of a tool receives.
+pub fn query_refusal(error: QueryError) -> Refusal {
+    let message = match error.position {
+        Some(at) => format!("{} (at character {})", error.message, at + 1),
+        None => error.message,
+    };
+    Refusal::new(error.code, message)
+}
+
+/// The refusal for a record that cannot be read.
+pub fn not_readable(error: &RunError) -> Refusal {
+    Refusal::new("not_readable", error.to_string())
+}
+
+/// Names of columns, each once: the second `n` is `n:2`.
+fn unique_names(columns: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(columns.len());
+    for column in columns {
+        let numbered = (2..).map(|number| format!("{column}:{number}"));
+        let mut free = std::iter::once(column.clone()).chain(numbered).filter(|name| !names.contains(name));
+        names.extend(free.next());
+    }
+    names
+}
+
+/// A result as programs get it: rows as objects; of equal column names the second is `name:2`.
+pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
+    let columns = unique_names(&rows.columns);
+    let object = |row: &Vec<Cell>| {
+        let fields = columns.iter().zip(row).map(|(column, cell)| (column.clone(), cell_as_json(cell)));
+        Value::Object(fields.collect())
+    };
+    let mut data = Map::from_iter([
+        ("columns".to_owned(), json!(columns)),
+        ("rows".to_owned(), rows.rows.iter().map(object).collect()),
+        ("row_count".to_owned(), rows.rows.len().into()),
+    ]);
+    if rows.truncated {
+        data.insert("truncated".to_owned(), true.into());
+    }
+    if let Some(warning) = &rows.warning {
+        data.insert("warning".to_owned(), warning.clone().into());
+    }
+    if let Some(hint) = &rows.hint {
+        data.insert("hint".to_owned(), hint.clone().into());
+    }
+    data
+}
+
+/// A value as JSON; numbers that JSON cannot hold become null.
+fn cell_as_json(cell: &Cell) -> Value {
+    match cell {
+        Cell::Null => Value::Null,
+        Cell::Integer(number) => (*number).into(),
+        Cell::Real(number) if number.fract() == 0.0 => json!(number),
+        Cell::Real(number) => json_number(*number),
+        Cell::Text(text) => text.clone().into(),
+    }
+}
+
+/// What is said of a hidden table where the run may be looked into: it is there, and asked otherwise. Elsewhere nobody learns
+/// that there is such a table.
+pub fn with_the_way_to_hidden_tables(refusal: Refusal) -> Refusal {
+    let named = refusal.message.strip_prefix("there is no table hidden.");
+    let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };
+    let message = format!(
+        "hidden.{name} is not among the visible tables; hidden tables are asked with novamind query --xray, and with \
+         xray sql in plain mode"
+    );
+    Refusal { message, ..refusal }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_equal_names_are_all_kept() {
+        let columns = ["n", "n", "day", "n", "n:2"].map(str::to_owned).to_vec();
+        let rows = Rows { columns, rows: vec![(1..=5).map(Cell::Integer).collect()], ..Rows::default() };
+        let data = rows_as_json(&rows);
+        assert_eq!(data["columns"], json!(["n", "n:2", "day", "n:3", "n:2:2"]));
+        assert_eq!(data["rows"], json!([{ "n": 1, "n:2": 2, "day": 3, "n:3": 4, "n:2:2": 5 }]));
+    }
+}

@@ -1,0 +1,170 @@
+//! Going on with a run: reading its trajectory and simulating it again.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Session;
+use crate::database::RunDatabase;
+use crate::recording::folders::remove_leftovers;
+use crate::recording::recorder::Recorder;
+use crate::snapshot::integrity::Integrity;
+use crate::snapshot::sealing::SealKey;
+use novamind_database::{Location, Position, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::{Derived, check_start};
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::runs::find_run;
+use novamind_record::trajectory::Trajectory;
+use novamind_world::params::Params;
+
+/// What may be done with an opened run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// Go on with it. One program at a time.
+    Write,
+    /// Look at it; nothing of it is changed.
+    Read,
+}
+
+/// How a reading command keeps what it had to simulate.
+#[derive(Clone, Copy)]
+pub(crate) struct Keeping {
+    /// Returns whether the end of the run may be kept.
+    pub(crate) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
+    /// Keeps snapshot and database. Returns whether they were kept.
+    pub(crate) keep_database: fn(&Path, &SealKey) -> bool,
+    /// Keeps the snapshot.
+    pub(crate) keep_snapshot: fn(&Session, &Path),
+}
+
+impl Session {
+    /// Opens the run in a folder and simulates it up to its last line.
+    ///
+    /// # Errors
+    /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
+    pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
+        Session::open_sealed(folder, access, projection, SealKey::default())
+    }
+
+    /// As [`Session::open`], for a run whose snapshots a key seals.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn open_sealed(
+        folder: &Path,
+        access: Access,
+        projection: bool,
+        key: SealKey,
+    ) -> Result<Session, RunError> {
+        Session::open_and_keep(folder, access, projection, key, None)
+    }
+
+    /// As [`Session::open_sealed`]. If `keeping` is given, what a reading command had to simulate is kept.
+    ///
+    /// # Errors
+    /// The same.
+    pub(crate) fn open_and_keep(
+        folder: &Path,
+        access: Access,
+        projection: bool,
+        key: SealKey,
+        keeping: Option<Keeping>,
+    ) -> Result<Session, RunError> {
+        let derived = Derived::of(folder)?;
+        let manifest = derived.manifest.clone();
+        let params = Arc::new(manifest.params()?);
+        let (lock, restored) = match access {
+            Access::Write => {
+                let lock = lock_run(folder, &manifest.id)?;
+                folder.parent().into_iter().for_each(remove_leftovers);
+                (Some(lock), derived.restore(folder)?)
+            }
+            Access::Read => (
+                None,
+                derived.problem.map(|problem| format!("{problem}: the first line of the trajectory counts.")),
+            ),
+        };
+        let path = folder.join("trajectory.jsonl");
+        let mut integrity = Integrity::of(folder, &manifest, &key);
+        let trajectory = Trajectory::read(&path)?;
+        check_start(&path, trajectory.lines.first(), &manifest)?;
+        integrity.check(&path, &trajectory)?;
+        let finished = (projection && access == Access::Read)
+            .then(|| integrity.finished_database(folder, &trajectory))
+            .flatten();
+        let keeping = keeping.filter(|own| (own.may_keep)(folder, &manifest, &trajectory, &key));
+        let simulates = projection && finished.is_none();
+        if simulates && keeping.is_some_and(|own| (own.keep_database)(folder, &key)) {
+            return Session::open_sealed(folder, access, projection, key);
+        }
+        let database = match projection && finished.is_none() {
+            false => None,
+            true => {
+                let sound = access == Access::Write && integrity.vouch_for_database(folder);
+                Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
+            }
+        };
+        // The number of the line up to which rows are there; rows that lack need the facts before them.
+        let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
+        let snapshot = integrity.usable_snapshot(&manifest, &trajectory, rows);
+        let lines = &trajectory.lines;
+        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
+        session.seal_key = key;
+        session.remarks.extend(restored);
+        session.remarks.append(&mut integrity.remarks);
+        session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
+        if let Some(own) = keeping.filter(|_| !projection && seen < trajectory.lines.len()) {
+            (own.keep_snapshot)(&session, folder);
+        }
+        if let Some(location) = finished {
+            session.database = RunDatabase::finished(location);
+        }
+        if let Some(lock) = lock {
+            session.log.resume(Recorder::resume(&path, &trajectory, lock)?);
+        }
+        if trajectory.unfinished > 0 {
+            let bytes = trajectory.unfinished;
+            session.remarks.push(format!(
+                "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
+            ));
+        }
+        session.log.read(&trajectory);
+        session.replay_afterwards(&trajectory);
+        session.check_memo(&trajectory, access);
+        session.resume_lesson(folder, &trajectory.lines)?;
+        session.finish_week(&trajectory);
+        session.finish_beginning(&trajectory.lines)?;
+        session.name_python_calculations();
+        Ok(session)
+    }
+}
+
+/// Starts the database. What it holds already counts only if `sound` says so.
+pub(crate) fn open_projector(
+    folder: &Path,
+    access: Access,
+    (manifest, params): (&Manifest, &Arc<Params>),
+    trajectory: &Trajectory,
+    sound: bool,
+) -> Result<(Projector, Option<Position>), RunError> {
+    let location = match access {
+        Access::Write => Location::File(folder.join("world.db")),
+        // Somebody else may be writing the file; a reader makes its own.
+        Access::Read => Location::memory(),
+    };
+    let known = |position: &Position| {
+        let line = trajectory.lines.get(position.seq as usize);
+        sound && line.is_some_and(|line| line.hash == position.line_hash)
+    };
+    Ok(Projector::start(location, manifest.number(), params.clone(), known)?)
+}
+
+/// Ends an unfinished run for good.
+///
+/// # Errors
+/// It is over already, in use, or cannot be read.
+pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
+    let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
+    session.end().map_err(|refusal| RunError::NotPossible(refusal.message))
+}

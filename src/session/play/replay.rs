@@ -1,0 +1,208 @@
+//! Applying the lines of a trajectory again.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Session;
+use crate::company::facts_chain::StateHash;
+use crate::company::reports::DayReport;
+use crate::company::surroundings::RunSurroundings;
+use crate::database::RunDatabase;
+use crate::recording::afterwards::lines_afterwards;
+use crate::snapshot::file::{Recalled, Snapshot};
+use novamind_database::{Entry, Position, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::{Closing, Outcome};
+use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
+use novamind_world::params::Params;
+
+impl Session {
+    /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
+    pub(crate) fn before_replay(
+        manifest: Manifest,
+        folder: &Path,
+        params: Arc<Params>,
+        lines: &[Line],
+        snapshot: Option<&Snapshot>,
+    ) -> (Session, usize) {
+        let own = Some(folder.to_owned());
+        let recall = |snapshot: &Snapshot| snapshot.recall(&manifest, &params, lines);
+        let recalled = snapshot.and_then(|snapshot| Some((recall(snapshot)?, snapshot)));
+        let Some((Recalled { simulation, history, notebook }, snapshot)) = recalled else {
+            return (Session::unwritten(manifest, own, params, None), 0);
+        };
+        let position = snapshot.position();
+        let seen = position.seq as usize + 1;
+        let surroundings = RunSurroundings { notebook, ..RunSurroundings::default() };
+        let mut session = Session::assemble(manifest, own, simulation, RunDatabase::default());
+        session.log.move_to(position);
+        (Session { history, surroundings, ..session }, seen)
+    }
+
+    /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
+    /// `reached` is told the day after each line.
+    pub(crate) fn replay(
+        &mut self,
+        path: &Path,
+        trajectory: &Trajectory,
+        seen: usize,
+        database: Option<(Projector, Option<Position>)>,
+        reached: &mut dyn FnMut(u32),
+    ) -> Result<(), RunError> {
+        let (mut projector, projected): (Option<Projector>, _) = database.unzip();
+        let projected = projected.flatten();
+        for line in trajectory.lines.iter().skip(seen) {
+            let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
+            if missing && projector.is_some() {
+                self.go_on_with(projector.take());
+            }
+            self.apply_line(path, line)?;
+            reached(self.simulation.world.day);
+        }
+        if projector.is_some() {
+            self.go_on_with(projector);
+        }
+        Ok(())
+    }
+
+    /// From here on rows are made, with the parameters in force.
+    fn go_on_with(&mut self, projector: Option<Projector>) {
+        self.database = RunDatabase::of(projector);
+        if self.simulation.overrides.is_used() {
+            let params = self.simulation.params.clone();
+            self.database.entries().write(|| Entry { params: Some(params), ..Entry::default() });
+        }
+    }
+
+    /// Applies a line of a file again.
+    pub(crate) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
+        self.apply_line_telling(path, line, &mut |_| {})
+    }
+
+    /// The same, and tells of each day that it simulates.
+    pub(crate) fn apply_line_telling(
+        &mut self,
+        path: &Path,
+        line: &Line,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
+        self.log.move_to(line.position());
+        let damaged = damaged_at(path);
+        self.replay_line(line, tell).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+    }
+
+    fn replay_line(&mut self, line: &Line, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
+        match &line.record {
+            Record::Start(_) => self.project_opening(),
+            Record::Call(call) => {
+                self.history.first_answers.note_call(call);
+                if let Outcome::Accepted(answer) = &call.outcome {
+                    self.replay_call(call, answer)?;
+                }
+            }
+            Record::Advance(filed) => {
+                self.history.first_answers.begin_week(filed.request.clone());
+                self.replay_forecasts(filed, &line.at)?;
+            }
+            Record::Week(closing) | Record::Step(closing) => {
+                let from = self.simulation.world.day;
+                let state = self.run_days(from.saturating_add(closing.days_run), tell);
+                self.compare(from, &state, closing)?;
+                self.note_answered_week();
+                self.commit_projection();
+            }
+            Record::End(end) => {
+                self.note_end(end.reason);
+                self.history.ended = Some(end.reason);
+                self.commit_projection();
+            }
+            Record::Override(change) => self.replay_override(line.seq, change)?,
+            Record::Voice(said) => self.replay_voice(said)?,
+            Record::Query(query) => self.remember_query(query),
+            Record::Activity(_)
+            | Record::Memo(_)
+            | Record::Note(_)
+            | Record::Branch(_)
+            | Record::Unknown(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Settles the figures of days that ran again and compares the state with the recorded one.
+    fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
+        let figures = self.settle_figures();
+        let reached = self.closing(from, &figures, state);
+        self.simulation.facts_chain.close();
+        if reached.state_hash == recorded.state_hash {
+            return same_figures(&reached, recorded);
+        }
+        let differs = |(name, hash): &(&String, &String)| recorded.parts.get(*name) != Some(*hash);
+        let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
+        let differing: Vec<&str> = differing.collect();
+        Err(format!(
+            "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
+             version recorded it",
+            self.simulation.world.day,
+            differing.join(", ")
+        ))
+    }
+
+    /// A week that was confirmed but not finished is simulated now.
+    pub(super) fn finish_week(&mut self, trajectory: &Trajectory) {
+        let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
+            Record::Advance(_) => Some(true),
+            Record::End(_) | Record::Week(_) | Record::Step(_) => Some(false),
+            _ => None,
+        });
+        if open == Some(true) {
+            let week = self.run_week(&mut |_| {});
+            self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
+        } else if self.history.ended.is_none() && self.simulation.world.is_over(&self.simulation.params) {
+            // The program ended between the last week and the line that closes the run.
+            let remark = self.close_if_over();
+            self.commit_projection();
+            self.remarks.extend(remark);
+        }
+    }
+
+    /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
+    pub(crate) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
+        let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
+        match lines_afterwards(&folder, trajectory) {
+            Ok(after) => {
+                self.log.read_answers(trajectory.lines.iter().chain(&after.lines));
+                after.lines.iter().for_each(|line| self.keep_again(line));
+            }
+            Err(problem) => self.remarks.push(format!("{problem} What was done after the end is not shown.")),
+        }
+    }
+
+    /// Statements that were kept and answers to requests, and nothing else: the company is as it ended.
+    fn keep_again(&mut self, line: &Line) {
+        match &line.record {
+            Record::Query(query) => self.remember_query(query),
+            Record::Call(call) => {
+                self.history.first_answers.note_call(call);
+                if let Outcome::Accepted(answer) = &call.outcome {
+                    let _ = self.replay_call(call, answer);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The figures that stand beside a state are derived from it.
+fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
+    let name = if reached.days_run != recorded.days_run {
+        "days_run"
+    } else if reached.figures != recorded.figures {
+        "figures"
+    } else if reached.cash != recorded.cash {
+        "cash"
+    } else {
+        return Ok(());
+    };
+    Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
+}

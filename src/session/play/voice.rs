@@ -1,0 +1,232 @@
+//! The language model of a run: asking it how readers take a post of the player, on the day after it, and for the posts of a
+//! week in other words, at its end; applying again what it said; joining a run that began with it.
+
+use std::path::Path;
+
+use super::Session;
+use super::open::Access;
+use crate::company::judging::is_of;
+use crate::model_voice::speaker::{Reply, Speaker};
+use novamind_database::Entry;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::{
+    AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts,
+};
+use novamind_record::trajectory::{Durability, Record};
+use novamind_tools::PublicPost;
+use novamind_voice::model::ModelPrompt;
+use novamind_voice::model::scoring::{self, ModelScore, PostForReaders};
+use novamind_voice::model::settings::ModelSettings;
+use novamind_voice::model::wording::{self, BuiltInPost, MOST_POSTS};
+use novamind_world::identifiers::Group;
+use novamind_world::params::PostJudge;
+
+impl Session {
+    /// Asks for scores of the player's posts that are judged next and have none on record. What is not on the disk afterwards
+    /// was never said: then the built-in judge judges.
+    pub(super) fn ask_readers(&mut self) {
+        let is_judged = self.simulation.params.fidelity.post_judge != PostJudge::None;
+        let can_ask = self.voice.speaker.is_some() || !self.voice.inherited.is_empty();
+        if !self.log.is_written() || !is_judged || !can_ask {
+            return;
+        }
+        for at in self.unscored_posts() {
+            let Some(judged) = self.inherited_scores(at).or_else(|| self.scores_of_model(at)) else {
+                continue;
+            };
+            let record = Record::Voice(VoiceAnswer::Scores(judged.clone()));
+            if self.append(&record, Durability::Synced).is_ok() {
+                self.simulation.scores.take_in(judged);
+            }
+        }
+    }
+
+    fn known_groups(&self) -> Vec<Group> {
+        Group::all().filter(|group| self.simulation.world.market.is_known(*group)).collect()
+    }
+
+    /// Positions of the player's posts that nobody has judged and of which no score is on record.
+    fn unscored_posts(&self) -> Vec<usize> {
+        let (known, simulation) = (self.known_groups(), &self.simulation);
+        let own = simulation.world.market.social.own.iter().enumerate();
+        own.filter(|(_, post)| post.effects.is_none() && !simulation.scores.cover(post, &known))
+            .map(|(at, _)| at)
+            .collect()
+    }
+
+    /// Uses recorded scores for posts that are published again.
+    pub fn inherit_scores(&mut self, judged: Vec<JudgedPost>) {
+        self.voice.inherited = judged;
+    }
+
+    fn inherited_scores(&self, at: usize) -> Option<JudgedPost> {
+        let post = self.simulation.world.market.social.own.get(at)?;
+        let said = self.voice.inherited.iter().rev().find(|judged| is_of(judged, post))?;
+        Some(JudgedPost { post: at as u32 + 1, took_ms: 0.0, ..said.clone() })
+    }
+
+    fn scores_of_model(&mut self, at: usize) -> Option<JudgedPost> {
+        if !self.voice.speaker.as_ref()?.settings.judge {
+            return None;
+        }
+        let known = self.known_groups();
+        let prompt = self.prompt_for_readers(at, &known)?;
+        let speaker = self.voice.speaker.as_mut()?;
+        let Reply { answer, took_ms } = speaker.ask(&prompt, |answer| scoring::read(answer, &known));
+        let post = self.simulation.world.market.social.own.get(at)?;
+        match answer {
+            Ok(scores) => Some(JudgedPost {
+                post: at as u32 + 1,
+                posted: post.day,
+                content: post.content.clone(),
+                reply_to: post.reply_to,
+                scores,
+                took_ms,
+            }),
+            Err(problem) => {
+                self.note_failure(AskedOfModel::Scores, problem, took_ms);
+                None
+            }
+        }
+    }
+
+    fn prompt_for_readers(&self, at: usize, known: &[Group]) -> Option<ModelPrompt> {
+        let own = &self.simulation.world.market.social.own;
+        let (post, posts) = (own.get(at)?, &self.simulation.feed.posts);
+        let shown = |number: u32| Some(posts.get((number as usize).checked_sub(1)?)?.content.as_str());
+        let who = |group: &Group| (*group, self.simulation.params.group(*group).description.as_str());
+        Some(scoring::prompt(&PostForReaders {
+            content: &post.content,
+            day: post.day,
+            original: post.reply_to.and_then(shown),
+            earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+            groups: known.iter().map(who).collect(),
+        }))
+    }
+
+    fn note_failure(&mut self, asked: AskedOfModel, problem: String, took_ms: f64) {
+        self.note(Record::Voice(VoiceAnswer::Failed(FailedAnswer { asked, problem, took_ms })));
+    }
+
+    /// Asks for the newest posts after a day in other words. Without an answer all of them keep the words they have.
+    pub(super) fn word_days_after(&mut self, day: u32) {
+        let Some(speaker) = self.voice.speaker.as_mut().filter(|speaker| speaker.settings.words) else {
+            return;
+        };
+        let feed = &self.simulation.feed.posts;
+        let newest = feed.iter().rev().take_while(|post| post.day > day && !post.content.is_empty());
+        let newest: Vec<&PublicPost> = newest.take(MOST_POSTS).collect();
+        if newest.is_empty() {
+            return;
+        }
+        let built_in: Vec<BuiltInPost<'_>> = newest.iter().map(|post| as_built_in(post)).collect();
+        let prompt = wording::prompt(&built_in);
+        let Reply { answer, took_ms } = speaker.ask(&prompt, |answer| wording::read(answer, &built_in));
+        match answer {
+            Ok(texts) => {
+                let numbers = newest.iter().map(|post| post.post);
+                let posts = numbers.zip(texts).map(|(post, text)| WordedPost { post, text }).collect();
+                let worded = WordedPosts { posts, took_ms };
+                let record = Record::Voice(VoiceAnswer::Words(worded.clone()));
+                if self.append(&record, Durability::Synced).is_ok() {
+                    self.take_words(&worded.posts);
+                }
+            }
+            Err(problem) => self.note_failure(AskedOfModel::Words, problem, took_ms),
+        }
+    }
+
+    /// Shows posts in these words from now on.
+    fn take_words(&mut self, posts: &[WordedPost]) {
+        for WordedPost { post, text } in posts {
+            self.simulation.feed.reword(*post, text);
+        }
+        let rewordings = || posts.iter().map(|own| (own.post, own.text.clone())).collect();
+        self.database.entries().write(|| Entry { rewordings: rewordings(), ..Entry::default() });
+    }
+
+    /// Applies a `voice` line again.
+    ///
+    /// # Errors
+    /// The run has no model that could have said it, or none could have.
+    pub(crate) fn replay_voice(&mut self, said: &VoiceAnswer) -> Result<(), String> {
+        let Some(model) = &self.manifest.voice else {
+            return Err("the run has no language model: the line was put in".to_owned());
+        };
+        match said {
+            VoiceAnswer::Scores(judged) => {
+                let fits =
+                    model.judge && judged.scores.iter().all(|score: &ModelScore| score.check().is_ok());
+                if !fits {
+                    return Err("no language model of this run can have given these scores".to_owned());
+                }
+                self.simulation.scores.take_in(judged.clone());
+            }
+            VoiceAnswer::Words(worded) => {
+                let feed = &self.simulation.feed;
+                let is_there = |post: u32| post > 0 && post as usize <= feed.posts.len();
+                let mut posts = worded.posts.iter();
+                let fits = posts.all(|own| is_there(own.post) && wording::check(&own.text).is_ok());
+                if !(model.words && fits) {
+                    return Err("no language model of this run can have said these words".to_owned());
+                }
+                self.take_words(&worded.posts);
+                self.commit_projection();
+            }
+            VoiceAnswer::Failed(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Opens a run to go on with it, with its language model if the configuration names that.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
+        let mut session = Session::open(folder, Access::Write, true)?;
+        session.join_model(configuration.voice.as_ref());
+        Ok(session)
+    }
+
+    /// Lets a language model speak in a run that began with it; where it cannot, a remark says so and the built-in voice goes
+    /// on.
+    pub fn join_model(&mut self, named: Option<&ModelSettings>) {
+        if self.history.ended.is_some() || !self.log.is_written() {
+            return;
+        }
+        let problem = match (&self.manifest.voice, named) {
+            (None, None) => return,
+            (None, Some(_)) => {
+                self.remarks.push(
+                    "This run began with the built-in voice and keeps it: --voice is not used.".to_owned(),
+                );
+                return;
+            }
+            (Some(_), None) => "name its file with --voice to hear it".to_owned(),
+            (Some(model), Some(named)) if named.stamp() != *model => {
+                format!("--voice names another: {}", named.stamp().in_words())
+            }
+            (Some(_), Some(named)) => match Speaker::open(named) {
+                Ok(speaker) => {
+                    self.voice.speaker = Some(speaker);
+                    return;
+                }
+                Err(problem) => problem,
+            },
+        };
+        let model = self.manifest.voice.as_ref().map(|model| model.in_words()).unwrap_or_default();
+        self.remarks.push(format!(
+            "In this run {model}; from here on the built-in voice does ({problem}). What the model said is kept."
+        ));
+    }
+
+    /// The settings of the language model that can be asked.
+    pub fn model_settings(&self) -> Option<&ModelSettings> {
+        self.voice.speaker.as_ref().map(|speaker| &speaker.settings)
+    }
+}
+
+fn as_built_in(post: &PublicPost) -> BuiltInPost<'_> {
+    BuiltInPost { text: &post.content, group: post.written_by, profile: post.profile.as_deref() }
+}

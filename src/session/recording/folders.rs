@@ -1,0 +1,26 @@
+//! Names of new folders of runs, and folders that were never finished.
+
+use std::path::Path;
+
+use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::runs::is_unnamed;
+
+/// Eight hexadecimal digits that no other run has, as good as certainly.
+pub fn new_id() -> String {
+    static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let moment =
+        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
+    let mix = format!("{moment} {} {count}", std::process::id());
+    blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
+}
+
+/// Removes what programs have left that ended while they made a branch. What somebody makes at this moment is locked.
+pub(crate) fn remove_leftovers(runs: &Path) {
+    let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
+    for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {
+        if lock_run(&folder, "").is_ok() {
+            let _ = std::fs::remove_dir_all(&folder);
+        }
+    }
+}

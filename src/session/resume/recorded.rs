@@ -1,0 +1,81 @@
+//! A recorded run to be simulated again: where its lines come from, and what it began with.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::play::Session;
+use novamind_database::{Location, Projector};
+use novamind_record::error::RunError;
+use novamind_record::folder::derived::{Derived, check_start};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::Activity;
+use novamind_record::trajectory::{Line, Record, Trajectory};
+use novamind_world::params::Params;
+
+/// Where the lines come from.
+pub struct Origin {
+    /// The trajectory.
+    pub path: PathBuf,
+    /// Folder of the run; none for a trajectory that stands alone.
+    pub folder: Option<PathBuf>,
+    /// The manifest.
+    pub manifest: Manifest,
+    /// The parameters that the run was recorded with.
+    pub params: Arc<Params>,
+}
+
+impl Origin {
+    /// A session before the first line, whose database is in memory.
+    pub(crate) fn begin(&self) -> Result<Session, RunError> {
+        let (projector, _) = Projector::start(Location::memory(), 0, self.params.clone(), |_| false)?;
+        let (manifest, params) = (self.manifest.clone(), self.params.clone());
+        Ok(Session::unwritten(manifest, self.folder.clone(), params, Some(projector)))
+    }
+
+    /// Simulates recorded lines again in memory. After each line, `after_line` sees the session as it was then. With
+    /// `has_database`, the database is complete at each note of a lesson.
+    ///
+    /// # Errors
+    /// The first line whose recorded state does not reproduce, or the first error of `after_line`.
+    pub fn replay(
+        &self,
+        lines: &[Line],
+        has_database: bool,
+        after_line: &mut dyn FnMut(&mut Session, &Line) -> Result<(), RunError>,
+    ) -> Result<Session, RunError> {
+        let start = || Projector::start(Location::memory(), 0, self.params.clone(), |_| false);
+        let projector = has_database.then(start).transpose()?.map(|(projector, _)| projector);
+        let mut session = Session::unwritten(self.manifest.clone(), None, self.params.clone(), projector);
+        for line in lines {
+            session.apply_line(&self.path, line)?;
+            if has_database && matches!(line.record, Record::Activity(Activity::Lesson(_))) {
+                session.commit_projection();
+            }
+            after_line(&mut session, line)?;
+        }
+        Ok(session)
+    }
+}
+
+/// Reads the lines of a run's folder, or of a trajectory file that stands alone.
+pub fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
+    let (file, folder) = match path.is_dir() {
+        true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
+        false => {
+            let beside = path
+                .parent()
+                .map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
+            let is_of_run = path.file_name().is_some_and(|name| name == "trajectory.jsonl");
+            let folder = beside.filter(|folder| is_of_run && folder.join("run.toml").exists());
+            (path.to_owned(), folder.map(Path::to_owned))
+        }
+    };
+    let trajectory = Trajectory::read(&file)?;
+    let manifest = match &folder {
+        Some(folder) => Derived::of(folder)?.manifest,
+        None => Manifest::of_start(&file, trajectory.lines.first())?,
+    };
+    check_start(&file, trajectory.lines.first(), &manifest)?;
+    let params = Arc::new(manifest.params()?);
+    Ok((Origin { path: file, folder, manifest, params }, trajectory))
+}

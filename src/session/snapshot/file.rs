@@ -1,0 +1,373 @@
+//! `snapshot.bin`: the whole state at one line of the trajectory, so that a long run opens at once.
+//!
+//! Never the truth: a snapshot is used only if it is whole, was written by this version for this run and these
+//! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
+//! beginning, which costs time and nothing else (docs/formats/snapshot.md).
+//!
+//! The file is a title line, an envelope, and the sealed rest, which is canonical bytes: header and notes as JSON texts,
+//! the notes deflated, then what the world and the session hold as numbers.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flate2::Compression;
+use flate2::read::DeflateDecoder;
+use flate2::write::DeflateEncoder;
+use serde::{Deserialize, Serialize};
+
+use super::sealing::{Envelope, RunKeys, SealKey};
+use crate::company::facts_chain::FactsChain;
+use crate::company::feed::Feed;
+use crate::company::first_answers::FirstAnswers;
+use crate::company::history::History;
+use crate::company::irrevocable::Irrevocable;
+use crate::company::overrides::Overrides;
+use crate::company::reports::Week;
+use crate::company::simulation::Simulation;
+use crate::company::this_week::{Step, ThisWeek};
+use crate::figures::changes::Decisions;
+use crate::figures::journal::JournalEntry;
+use crate::figures::week::WeekFigures;
+use novamind_database::Position;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::{Calculated, Ended, RequestId};
+use novamind_record::trajectory::{Line, Record, hash_of_first_line};
+use novamind_tools::Notebook;
+use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
+use novamind_world::params::Params;
+
+const TITLE: &[u8] = b"novamind snapshot 6\n";
+/// After the title: whether the secret of a study is needed to open it.
+const OF_RUN: u8 = b'r';
+const OF_STUDY: u8 = b's';
+/// The file whose first line the keys are made of.
+const TRAJECTORY: &str = "trajectory.jsonl";
+/// Name of the file in a run's folder.
+pub(crate) const FILE: &str = "snapshot.bin";
+/// Room for a subscriber: columns and the facts of a day need 190 bytes or so. Room that nobody takes costs nothing;
+/// room that is too small costs a copy of everything.
+const BYTES_OF_A_SUBSCRIBER: usize = 320;
+/// Weeks between two snapshots of a run that is played.
+pub(crate) const WEEKS_BETWEEN: usize = 4;
+
+/// What a snapshot is of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Header {
+    /// Version of the program that wrote it.
+    version: String,
+    run: String,
+    parameters_digest: String,
+    /// Line of the trajectory it stands at.
+    seq: u64,
+    line_hash: String,
+    /// Hash of the state it holds.
+    state_hash: String,
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    database: Option<String>,
+}
+
+/// What a session knows in words: borrowed when it is kept, owned when it is read back.
+#[derive(Serialize, Deserialize)]
+struct Notes<'a> {
+    weeks: Cow<'a, [WeekFigures]>,
+    running_week: Cow<'a, WeekFigures>,
+    decisions: Cow<'a, [Decisions]>,
+    notices: Cow<'a, [(u32, String)]>,
+    feed: Cow<'a, Feed>,
+    done: Cow<'a, [Irrevocable]>,
+    journal: Cow<'a, [JournalEntry]>,
+    asked: Cow<'a, [String]>,
+    notebook: Cow<'a, Notebook>,
+    calculated: Cow<'a, [Calculated]>,
+    #[serde(default)]
+    last_dashboard: Option<Cow<'a, str>>,
+    facts_chain: (String, bool),
+    ended: Option<Ended>,
+    /// Answers to weeks whose requests carried an id.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    answered_weeks: Vec<(RequestId, Week)>,
+}
+
+impl Notes<'_> {
+    /// Deflated JSON: a journal of thousands of offers repeats itself.
+    fn packed(&self) -> Vec<u8> {
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
+        let written = encoder.write_all(&serde_json::to_vec(self).unwrap_or_default());
+        written.and_then(|()| encoder.finish()).unwrap_or_default()
+    }
+
+    fn unpacked(bytes: &[u8]) -> Option<Notes<'static>> {
+        let mut text = String::new();
+        DeflateDecoder::new(bytes).read_to_string(&mut text).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
+    /// No days have run yet.
+    fn cannot_have_a_dashboard(&self) -> bool {
+        self.weeks.is_empty() && self.running_week.days_run == 0
+    }
+}
+
+/// A snapshot file that is whole.
+pub(crate) struct Snapshot {
+    header: Header,
+    /// Title, envelope and everything after them, opened.
+    file: Vec<u8>,
+    /// Where the notes begin.
+    notes_at: usize,
+}
+
+/// What a session gets back from a snapshot.
+pub(crate) struct Recalled {
+    pub(crate) simulation: Simulation,
+    pub(crate) history: History,
+    pub(crate) notebook: Notebook,
+}
+
+impl Snapshot {
+    /// The snapshot in a run's folder; none if there is none.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
+        let mut file = match std::fs::read(folder.join(FILE)) {
+            Ok(file) => file,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(_) => return Err("cannot be read"),
+        };
+        let sealed = open_file(&mut file, folder, key)?;
+        let mut reader = CanonicalReader::new(&file[sealed..]);
+        let header: Option<String> = reader.read();
+        let header =
+            header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
+        let notes_at = file.len() - reader.left();
+        Ok(Some(Snapshot { header, file, notes_at }))
+    }
+
+    /// The line of the trajectory it stands at.
+    pub(crate) fn position(&self) -> Position {
+        Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
+    }
+
+    /// Digest of the database's file as it was then, if the run was closed in order.
+    pub(crate) fn database(&self) -> Option<&str> {
+        self.header.database.as_deref()
+    }
+
+    /// Vouches for a database that was made anew as of the same line.
+    pub(crate) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
+        let header = Header { database, ..self.header };
+        place.write(&header, &mut self.file[self.notes_at..]);
+    }
+
+    /// Whether it is one of this run.
+    pub(crate) fn is_of(&self, run: &str) -> bool {
+        self.header.run == run
+    }
+
+    /// Whether it was written by this version under these parameters.
+    pub(crate) fn fits(&self, manifest: &Manifest) -> bool {
+        self.header.version == env!("CARGO_PKG_VERSION")
+            && self.header.parameters_digest == manifest.parameters_digest
+    }
+
+    /// The state of a run that began with some parameters and has these lines; none if it is not the one it claims to be.
+    pub(crate) fn recall(
+        &self,
+        manifest: &Manifest,
+        params: &Arc<Params>,
+        lines: &[Line],
+    ) -> Option<Recalled> {
+        let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
+        let notes = Notes::unpacked(&reader.read::<Vec<u8>>()?)?;
+        // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
+        if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
+            return None;
+        }
+        let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
+        let past = (reader.read()?, reader.read()?);
+        let mut simulation = Simulation::of(manifest, params.clone(), past);
+        let seen = lines.get(..=self.header.seq as usize)?;
+        (simulation.params, simulation.overrides) = Overrides::after(params, seen, simulation.world.day)?;
+        simulation.trace = reader.read()?;
+        simulation.facts_chain = FactsChain::resume(chain, notes.facts_chain.1);
+        simulation.feed = notes.feed.into_owned();
+        let mut first_answers = FirstAnswers::of_weeks(notes.answered_weeks);
+        for line in seen {
+            if let Record::Call(call) = &line.record {
+                first_answers.note_call(call);
+            }
+        }
+        let history = History {
+            cash_by_day: reader.read()?,
+            group_weeks: reader.read()?,
+            running_groups: reader.read()?,
+            called: reader.read()?,
+            this_week: ThisWeek {
+                settings: reader.read()?,
+                undo: reader.read()?,
+                redo: reader.read()?,
+                done: notes.done.into_owned(),
+            },
+            weeks: notes.weeks.into_owned(),
+            running_week: notes.running_week.into_owned(),
+            decisions: notes.decisions.into_owned(),
+            notices: notes.notices.into_owned(),
+            journal: notes.journal.into_owned(),
+            asked: notes.asked.into_owned(),
+            calculated: notes.calculated.into_owned(),
+            last_dashboard: notes.last_dashboard.map(Cow::into_owned),
+            ended: notes.ended,
+            first_answers,
+        };
+        let same = reader.left() == 0 && simulation.state_hash().0 == self.header.state_hash;
+        same.then(|| Recalled { simulation, history, notebook: notes.notebook.into_owned() })
+    }
+}
+
+impl Canonical for Step {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        self.seq.feed(hasher);
+        self.tool.name().to_owned().feed(hasher);
+        self.restores.feed(hasher);
+    }
+}
+
+impl Restore for Step {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        let (seq, tool): (u64, String) = reader.read()?;
+        Some(Step { seq, tool: tool.parse().ok()?, restores: reader.read()? })
+    }
+}
+
+/// The state of a session as a snapshot keeps it.
+pub(crate) struct KeptState<'a> {
+    pub(crate) manifest: &'a Manifest,
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) history: &'a History,
+    pub(crate) notebook: &'a Notebook,
+    /// The line of the trajectory at which it stands.
+    pub(crate) position: Position,
+}
+
+impl KeptState<'_> {
+    /// Returns a function that writes the snapshot, given the digest of the database's file if it vouches for that. The state
+    /// is copied now, so the function can run on another thread while the company changes.
+    pub(crate) fn writer(
+        &self,
+        state_hash: String,
+        place: SnapshotPlace,
+    ) -> impl FnOnce(Option<String>) + Send + 'static {
+        let (header, mut state) = (self.header(state_hash), self.bytes());
+        move |database| place.write(&Header { database, ..header }, &mut state)
+    }
+
+    fn header(&self, state_hash: String) -> Header {
+        Header {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            run: self.manifest.id.clone(),
+            parameters_digest: self.manifest.parameters_digest.clone(),
+            seq: self.position.seq,
+            line_hash: self.position.line_hash.clone(),
+            state_hash,
+            database: None,
+        }
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let KeptState { simulation, history, notebook, .. } = self;
+        let chain = &simulation.facts_chain;
+        let notes = Notes {
+            weeks: Cow::Borrowed(&history.weeks),
+            running_week: Cow::Borrowed(&history.running_week),
+            decisions: Cow::Borrowed(&history.decisions),
+            notices: Cow::Borrowed(&history.notices),
+            feed: Cow::Borrowed(&simulation.feed),
+            done: Cow::Borrowed(&history.this_week.done),
+            journal: Cow::Borrowed(&history.journal),
+            asked: Cow::Borrowed(&history.asked),
+            notebook: Cow::Borrowed(*notebook),
+            calculated: Cow::Borrowed(&history.calculated),
+            last_dashboard: history.last_dashboard.as_deref().map(Cow::Borrowed),
+            facts_chain: (chain.hash().to_hex().to_string(), chain.is_closed()),
+            ended: history.ended,
+            answered_weeks: history.first_answers.weeks(),
+        };
+        let rows: u32 = simulation.world.customers.active().iter().sum();
+        let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
+        notes.packed().feed(&mut bytes);
+        simulation.world.feed(&mut bytes);
+        simulation.facts.feed(&mut bytes);
+        simulation.trace.feed(&mut bytes);
+        history.cash_by_day.feed(&mut bytes);
+        history.group_weeks.feed(&mut bytes);
+        history.running_groups.feed(&mut bytes);
+        history.called.feed(&mut bytes);
+        history.this_week.settings.feed(&mut bytes);
+        history.this_week.undo.feed(&mut bytes);
+        history.this_week.redo.feed(&mut bytes);
+        bytes.into_bytes()
+    }
+}
+
+/// Opens the sealed part of a file in its place; returns where it begins.
+fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
+    let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
+    let (&of, rest) = rest.split_first().ok_or("is cut short")?;
+    let (envelope, _) = rest.split_first_chunk().ok_or("is cut short")?;
+    let envelope = Envelope::of(envelope);
+    if of == OF_STUDY && !key.has_secret() {
+        return Err("is sealed with the key of a study");
+    }
+    let own = if of == OF_RUN { &SealKey::default() } else { key };
+    let first =
+        hash_of_first_line(&folder.join(TRAJECTORY)).ok_or("belongs to a trajectory that is not there")?;
+    let at = TITLE.len() + 1 + Envelope::LENGTH;
+    own.for_run(&first).open(&envelope, &mut file[at..]).then_some(at).ok_or("is damaged or of another run")
+}
+
+/// Where the snapshots of a run go, and what seals them.
+pub(crate) struct SnapshotPlace {
+    path: PathBuf,
+    of: u8,
+    /// None where the trajectory is not in its place: then nothing is kept of the run.
+    keys: Option<RunKeys>,
+}
+
+impl SnapshotPlace {
+    /// That of the run in a folder.
+    pub(crate) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
+        let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
+        let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
+        SnapshotPlace { path: folder.join(FILE), of, keys }
+    }
+
+    /// Whether a program with a key may replace the snapshot of a folder: without the secret of a study it keeps one that only the
+    /// secret opens.
+    pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
+        let mut begin = [0; TITLE.len() + 1];
+        let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut begin));
+        key.has_secret() || read.is_err() || begin[TITLE.len()] != OF_STUDY
+    }
+
+    /// Writes a snapshot in place of the old one; the state is sealed in its place. Not synced: after a power cut its tag
+    /// tells whether it is whole.
+    fn write(&self, header: &Header, state: &mut [u8]) {
+        let Some(keys) = &self.keys else { return };
+        let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
+        let envelope = keys.seal(&mut header, state).bytes();
+        let draft = self.path.with_extension("draft");
+        // Piece by piece: a large state is a good part of the memory already.
+        let pieces = [TITLE, &[self.of], &envelope, &header, state];
+        let written = File::create(&draft)
+            .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
+            .and_then(|()| std::fs::rename(&draft, &self.path));
+        if written.is_err() {
+            // Half a file helps nobody, least of all on a disk that is full.
+            let _ = std::fs::remove_file(&draft);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The parameters of a debug run, as its player may read them (docs/debugging.md#parameters).
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::CompanyView;
+use crate::company::overrides::{json_of_value, unknown};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::mode::Mode;
+use novamind_tools::Refusal;
+use novamind_world::params::Params;
+
+/// A parameter whose value is, or will be, another than that of the scenario.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChangedParameter {
+    /// Full key.
+    pub key: String,
+    /// Value before, or in the scenario.
+    pub old: Value,
+    /// Value from then on.
+    pub new: Value,
+    /// First day that is simulated with it; none: it is in force.
+    pub from_day: Option<u32>,
+}
+
+/// What differs from the scenario of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChangedParameters {
+    /// What the values are held against: a shipped scenario, or none: the start of the run.
+    pub scenario: Option<String>,
+    /// Parameters in force with another value, by key.
+    pub in_force: Vec<ChangedParameter>,
+    /// Changes that wait for their day, the first one first.
+    pub waiting: Vec<ChangedParameter>,
+}
+
+/// The parameters of a debug run.
+pub struct DebugParameters<'a>(CompanyView<'a>);
+
+impl<'a> CompanyView<'a> {
+    /// The parameters of a debug run, to be read; whether it may be depends on nothing but the mode of the run.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`.
+    pub fn debug_parameters(&self) -> Result<DebugParameters<'a>, Refusal> {
+        if self.manifest.mode == Mode::Debug {
+            return Ok(DebugParameters(*self));
+        }
+        Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only"))
+    }
+}
+
+impl DebugParameters<'_> {
+    /// The value of a parameter, or of a list or table of them, as it is in force.
+    ///
+    /// # Errors
+    /// `parameter_unknown`.
+    pub fn value(&self, key: &str) -> Result<Value, Refusal> {
+        self.0.simulation.params.value(key).map(|value| json_of_value(&value)).map_err(unknown)
+    }
+
+    /// Everything that differs from the scenario, and what waits for its day.
+    ///
+    /// # Errors
+    /// `not_readable`: the parameters at the start of the run.
+    pub fn changed(&self) -> Result<ChangedParameters, Refusal> {
+        let CompanyView { manifest, simulation, .. } = self.0;
+        let shipped = Configuration::shipped();
+        let scenario = shipped.scenario(&manifest.scenario).ok();
+        let of_scenario = scenario.as_ref().and_then(|own| shipped.parameters(own, &[], false).ok());
+        let scenario = of_scenario.as_ref().and(scenario.map(|own| own.name));
+        let base = of_scenario.map_or_else(|| manifest.params(), Ok);
+        let base = base.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
+        let as_json = |value: Option<toml::Value>| value.as_ref().map_or(Value::Null, json_of_value);
+        let in_force = base.differences(&simulation.params).into_iter().map(|found| ChangedParameter {
+            key: found.key,
+            old: as_json(found.old),
+            new: as_json(found.new),
+            from_day: None,
+        });
+        let old = |key: &str, params: &Params| as_json(params.value(key).ok());
+        let waiting = simulation.overrides.waiting().map(|change| ChangedParameter {
+            key: change.key.clone(),
+            old: old(&change.key, &base),
+            new: json_of_value(&change.value),
+            from_day: change.from_day,
+        });
+        Ok(ChangedParameters { scenario, in_force: in_force.collect(), waiting: waiting.collect() })
+    }
+}

@@ -1,0 +1,245 @@
+//! What a player may read of a company at a moment: a read-only view without files, lines or hidden state.
+
+pub(crate) mod alike_plans;
+pub(crate) mod debug_parameters;
+pub(crate) mod observe;
+pub(crate) mod research_outlook;
+pub(crate) mod tool_limits;
+
+use std::time::Duration;
+
+use serde_json::{Map, Value};
+
+use crate::company::derived::DerivedOfParameters;
+use crate::company::history::History;
+use crate::company::simulation::Simulation;
+use crate::company::surroundings::RunSurroundings;
+use crate::figures::capacity_by_usage::UsageRule;
+use crate::figures::changes::{Change, Decisions, daily_cost};
+use crate::figures::dashboard::{DeliveredQuality, delivered_quality};
+use crate::figures::estimates::Estimates;
+use crate::figures::groups::GroupWeek;
+use crate::figures::naive;
+use crate::figures::pace::Pace;
+use crate::figures::scored_forecast::{ForecastScore, filed_forecasts};
+use crate::figures::week::{Forecasts, WeekFigures};
+use novamind_database::query::Limits;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::{Calculated, Ended};
+use novamind_tools::{GetGroupInsights, Kind, PublicPost, Tool, View, find};
+use novamind_voice::CompanyNames;
+use novamind_world::customers::numbers::CustomerNumbers;
+use novamind_world::identifiers::{ByGroup, Channel, Group};
+use novamind_world::market::surges::week_end;
+use novamind_world::params::Params;
+use novamind_world::settings::Settings;
+
+/// The company of a run at a moment, as its player may see it.
+#[derive(Clone, Copy)]
+pub struct CompanyView<'a> {
+    pub(crate) manifest: &'a Manifest,
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) history: &'a History,
+    pub(crate) surroundings: &'a RunSurroundings,
+    pub(crate) derived: &'a DerivedOfParameters,
+}
+
+impl<'a> CompanyView<'a> {
+    /// Settings changed since the last week, old -> new.
+    pub fn changes(&self) -> Vec<Change> {
+        self.history.changes(&self.simulation.world)
+    }
+
+    /// The present values of a tool's arguments, as a call would send them.
+    pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
+        find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
+    }
+
+    /// Answers a reading tool without recording that it was asked, for screens that always show what it says; none
+    /// where the tool refuses, or does more than read.
+    pub fn look_up<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
+        if tool.spec().kind != Kind::Read {
+            return None;
+        }
+        let planned = tool.plan(&self.for_tools(), args).ok()?;
+        let resolved = self.simulation.resolve(planned.command);
+        planned.reply.without_running(&resolved)
+    }
+
+    /// What tools may look at.
+    pub(crate) fn for_tools(&self) -> View<'a> {
+        View::new(&self.simulation.world, &self.simulation.params)
+            .within(self.surroundings)
+            .with_posts(&self.simulation.feed.posts)
+    }
+
+    /// The day on which the week that holds the next day ends.
+    pub fn next_decision_day(&self) -> u32 {
+        week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
+    }
+
+    /// Every post of others so far, in the order of their numbers.
+    pub fn posts(&self) -> &'a [PublicPost] {
+        &self.simulation.feed.posts
+    }
+
+    /// What the calculations said before the last week.
+    pub fn calculated(&self) -> &'a [Calculated] {
+        &self.history.calculated
+    }
+
+    /// What was decided before each week that ran, in order; single steps count for themselves.
+    pub fn decisions(&self) -> &'a [Decisions] {
+        &self.history.decisions
+    }
+
+    /// What the last days put into the inbox: day and text.
+    pub fn notices(&self) -> &'a [(u32, String)] {
+        &self.history.notices
+    }
+
+    /// Figures of the groups for every week that ran.
+    pub fn group_weeks(&self) -> &'a [ByGroup<GroupWeek>] {
+        &self.history.group_weeks
+    }
+
+    /// The last statements the database was asked in this run, each once, the newest last.
+    pub fn asked(&self) -> &'a [String] {
+        &self.history.asked
+    }
+
+    /// Limits of a query in this run.
+    pub fn query_limits(&self) -> Limits {
+        let own = &self.simulation.params.limits;
+        Limits {
+            rows: own.query_row_limit as usize,
+            time: Duration::from_secs(u64::from(own.query_timeout_seconds)),
+            steps: None,
+        }
+    }
+
+    /// What the companies of the run are called.
+    pub fn company_names(&self) -> &'a CompanyNames {
+        &self.simulation.names
+    }
+
+    /// The customers that customer numbers refer to.
+    pub fn customer_numbers(&self) -> &'a CustomerNumbers {
+        &self.simulation.world.customers.numbers
+    }
+
+    /// Score: cash after the last day, 0 after a bankruptcy, none before the end or when abandoned.
+    pub(crate) fn score(&self) -> Option<f64> {
+        match self.history.ended {
+            Some(Ended::Horizon) => Some(self.simulation.world.finance.cash),
+            Some(Ended::Bankruptcy) => Some(0.0),
+            Some(Ended::Abandoned | Ended::Lesson) | None => None,
+        }
+    }
+
+    /// Running costs that follow from settings alone, dollars a day.
+    pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
+        let capacity = self.simulation.params.capacity(settings.core.capacity_tier);
+        daily_cost(settings, f64::from(capacity.cost_per_day))
+    }
+
+    /// Quality delivered to every known group, as the dashboard shows it.
+    pub fn delivered_quality(&self) -> Vec<DeliveredQuality> {
+        delivered_quality(&self.simulation.world, &self.simulation.params)
+    }
+
+    /// Quality before any improvement, and what development has added for everybody.
+    pub fn quality_base(&self) -> (f64, f64) {
+        (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
+    }
+
+    /// Estimates of every known group, in their fixed order; not recorded.
+    pub fn estimates(&self) -> Vec<Estimates> {
+        let limits = self.tool_limits();
+        let of = |group: Group| {
+            let insights = self.look_up(&GetGroupInsights, group)?;
+            let (level, estimates) = (insights.info_level, insights.estimates);
+            let [least, most] = estimates.seat_range.unwrap_or([1, 1]);
+            Some(Estimates {
+                group,
+                level,
+                as_of: self.simulation.world.market.knowledge[group].snapshot?.day,
+                noise: limits.level(level)?.noise,
+                budget: estimates.willingness_to_pay,
+                usage: estimates.usage_volume,
+                floor: estimates.quality_floor_q_min,
+                seats: (least as f64, most as f64),
+            })
+        };
+        Group::all().filter(|group| self.simulation.world.market.is_known(*group)).filter_map(of).collect()
+    }
+
+    /// Scores of the forecasts so far, one per horizon.
+    pub fn forecast_scores(&self) -> Vec<ForecastScore> {
+        let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
+        let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
+        horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
+    }
+
+    /// How money goes on from here.
+    pub(crate) fn pace(&self) -> Pace {
+        let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
+        let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
+        Pace::of(self.daily_cost(&self.simulation.world.settings), &weeks)
+    }
+
+    /// The naive forecasts of cash.
+    pub fn naive_forecasts(&self) -> Forecasts {
+        let horizons = &self.simulation.params.limits.prediction_horizons_days;
+        let cash = self.simulation.world.finance.cash;
+        naive::forecasts(cash, &self.pace(), &self.history.weeks, horizons)
+    }
+
+    /// The capacity tier that a rule sets now.
+    pub fn tier_by(&self, rule: UsageRule) -> u8 {
+        let now = self.simulation.world.settings.core.capacity_tier;
+        rule.tier(now, self.history.weeks.last(), &self.simulation.params)
+    }
+
+    /// The capacity tier one step towards the smallest that holds the mean use of the last week at 80 %.
+    pub fn capacity_towards_usage(&self) -> u8 {
+        self.tier_by(UsageRule::StepByStep)
+    }
+
+    /// The channel that brought a group most leads per dollar when the run began: what no player sees, so only runs that
+    /// are over tell it.
+    pub fn truly_best_channel(&self, group: Group) -> Option<Channel> {
+        self.history.ended.map(|_| best_starting_channel(group, &self.simulation.params))
+    }
+}
+
+/// The channel with the highest starting yield for a group; the first in channel order on a tie.
+pub fn best_starting_channel(group: Group, params: &Params) -> Channel {
+    let yields = params.starting_yields();
+    let better =
+        |best: Channel, next: Channel| if yields[next][group] > yields[best][group] { next } else { best };
+    Channel::ALL.into_iter().reduce(better).unwrap_or(Channel::ALL[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::create::{NewRun, Storage};
+    use crate::play::Session;
+    use novamind_record::folder::configuration::Configuration;
+
+    #[test]
+    fn estimates_are_those_of_the_tool_and_their_range_holds_the_mean() {
+        let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
+        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let all = session.company().estimates();
+        assert_eq!(all.len(), 6);
+        let s1 = all[0];
+        let answer = session.company().look_up(&GetGroupInsights, all[0].group).expect("an answer");
+        assert_eq!((s1.group.id(), s1.level, s1.noise), ("S1", 1, 0.65));
+        assert_eq!(s1.budget, answer.estimates.willingness_to_pay);
+        let mean = session.params().group(s1.group).c_max_mean;
+        let (least, most) = s1.range(s1.budget);
+        assert!(least <= mean + 0.01 && mean <= most + 0.01, "{least} {mean} {most}");
+    }
+}

@@ -1,0 +1,268 @@
+//! What a player can see at a glance.
+
+use serde::Serialize;
+
+use super::CompanyView;
+use super::alike_plans::AlikePlans;
+use super::research_outlook::LateProject;
+use crate::company::irrevocable::Irrevocable;
+use crate::figures::changes::Change;
+use crate::figures::dashboard::{self, Waiting};
+use crate::figures::pace::Pace;
+use crate::figures::week::{Booked, WeekFigures, week_of};
+use novamind_record::folder::mode::Mode;
+use novamind_record::trajectory::record::Ended;
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::day::closing_figures;
+use novamind_world::identifiers::{Group, Plan};
+
+/// The company at a glance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Observation {
+    /// Run.
+    pub run: String,
+    /// Mode.
+    pub mode: Mode,
+    /// Seed; none in a study, whose participants do not learn it.
+    pub seed: Option<u64>,
+    /// Scenario.
+    pub scenario: String,
+    /// The parameters are others than those of the shipped scenario of that name.
+    pub has_own_parameters: bool,
+    /// The language model that lends its voice.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
+    /// It goes on from weeks of another run.
+    pub is_branch: bool,
+    /// Who plays.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Week that holds the day.
+    pub week: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Cash on day 0, before anything was bought, dollars.
+    pub starting_cash: f64,
+    /// Change of cash over the last week, from the end of the week before to its own, or over the days of a week that was begun,
+    /// dollars; 0 before the first.
+    pub cash_change: f64,
+    /// Days of that change: fewer than a week where days were run one by one, or the run ended within one.
+    pub cash_change_days: u32,
+    /// What was booked since the end of the last week: purchases, and days of a week that was begun.
+    pub booked_since: Booked,
+    /// How money goes on.
+    pub pace: Pace,
+    /// What the settings at the end of the last week committed to, dollars a day.
+    pub committed_before: f64,
+    /// Weeks until cash is gone at this pace; none where it lasts to the last day.
+    pub runway_weeks: Option<f64>,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Active companies.
+    pub companies: u32,
+    /// Seats of active companies.
+    pub seats: u32,
+    /// Groups the company knows, in their fixed order.
+    pub known_groups: Vec<Group>,
+    /// How the run ended, if it did.
+    pub ended: Option<Ended>,
+    /// Score of a run that is over.
+    pub score: Option<f64>,
+    /// Figures of the last week, none before the first.
+    pub last_week: Option<WeekFigures>,
+    /// The dashboard of the last week, or a fresh one before the first.
+    pub dashboard: String,
+    /// Settings changed since the last week.
+    pub changes: Vec<Change>,
+    /// Purchases since the last week, in words.
+    pub purchases: Vec<String>,
+    /// Plans that differ in nothing but price.
+    pub alike_plans: Vec<AlikePlans>,
+    /// Threads that wait for an answer.
+    pub waiting: Vec<WaitingThread>,
+    /// R&D projects that run.
+    pub running_research: u32,
+    /// Those of them that run beyond the last day.
+    pub late_projects: Vec<LateProject>,
+}
+
+/// A thread that waits for an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaitingThread {
+    /// Number of the thread.
+    pub thread: u32,
+    /// The company.
+    pub customer: u32,
+    /// Its group.
+    pub group: &'static str,
+    /// Whole seats.
+    pub seats: u32,
+    /// How the thread began.
+    pub kind: &'static str,
+    /// Number of its last turn.
+    pub turn: u32,
+    /// Offers of the player in it.
+    pub offers_so_far: u32,
+    /// What the player offered last: plans with dollars a month and seat.
+    pub last_offer: Vec<(Plan, f64)>,
+    /// Price that the company named last, dollars a month and seat.
+    pub asked: Option<f64>,
+    /// Days left before it is lost.
+    pub days_left: u32,
+}
+
+impl Observation {
+    /// Active subscriptions: those of individuals, and one for each company.
+    pub fn active_subscriptions(&self) -> u32 {
+        self.subscribers + self.companies
+    }
+
+    /// Whole weeks that cash lasts at this pace; none where it lasts to the last day.
+    pub fn weeks_of_cash(&self) -> Option<u32> {
+        self.runway_weeks.map(|weeks| weeks as u32)
+    }
+}
+
+impl CompanyView<'_> {
+    /// The company at a glance.
+    pub fn observe(&self) -> Observation {
+        let (closing, pace) = (closing_figures(&self.simulation.world), self.pace());
+        Observation {
+            run: self.manifest.id.clone(),
+            mode: self.manifest.mode,
+            seed: Some(self.manifest.seed).filter(|_| self.manifest.study.is_none()),
+            scenario: self.manifest.scenario.clone(),
+            has_own_parameters: self.derived.has_own_parameters(self.simulation, self.manifest),
+            voice: self.manifest.voice.clone(),
+            is_branch: self.manifest.parent.is_some(),
+            participant: self.manifest.participant.clone(),
+            day: self.simulation.world.day,
+            last_day: self.manifest.days,
+            week: week_of(self.simulation.world.day),
+            cash: self.simulation.world.finance.cash,
+            starting_cash: self.manifest.cash,
+            cash_change: self.latest_days().map_or(0.0, |week| week.cash_change),
+            cash_change_days: self.latest_days().map_or(0, |week| week.days_run),
+            booked_since: self.booked_since(),
+            pace,
+            committed_before: self.daily_cost(&self.history.this_week.settings),
+            runway_weeks: self.runway_weeks(&pace),
+            subscribers: closing.individual_subscribers,
+            companies: self.companies(),
+            seats: closing.enterprise_seats,
+            known_groups: Group::all()
+                .filter(|group| self.simulation.world.market.is_known(*group))
+                .collect(),
+            ended: self.history.ended,
+            score: self.score(),
+            last_week: self.history.weeks.last().copied(),
+            dashboard: self.dashboard(),
+            changes: self.changes(),
+            purchases: self.history.this_week.done.iter().map(Irrevocable::to_string).collect(),
+            alike_plans: self.alike_plans(),
+            waiting: self.waiting(),
+            running_research: self.running_research(),
+            late_projects: self.late_projects(),
+        }
+    }
+
+    /// The weekly dashboard as text: as it was when the last days had run, whatever was set since. Before the first days
+    /// it is built of what is.
+    pub fn dashboard(&self) -> String {
+        self.history
+            .last_dashboard
+            .clone()
+            .unwrap_or_else(|| self.build_dashboard(self.simulation.open_issues()))
+    }
+
+    /// The dashboard of the company as it is.
+    pub(crate) fn build_dashboard(&self, open_issues: u32) -> String {
+        let closing = closing_figures(&self.simulation.world);
+        let stocks = WeekFigures {
+            cash: closing.cash,
+            individual_subscribers: closing.individual_subscribers,
+            enterprise_seats: closing.enterprise_seats,
+            open_issues,
+            ..WeekFigures::default()
+        };
+        let waiting = self.waiting();
+        let waiting = Waiting {
+            threads: waiting.len() as u32,
+            days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
+        };
+        let week = if self.history.running_week.days_run > 0 {
+            Some(&self.history.running_week)
+        } else {
+            self.history.weeks.last()
+        };
+        dashboard::build(
+            &self.simulation.world,
+            &self.simulation.params,
+            week,
+            &stocks,
+            &self.history.calculated,
+            waiting,
+        )
+    }
+
+    /// Threads that wait for an answer, the first to be lost first.
+    fn waiting(&self) -> Vec<WaitingThread> {
+        let patience = self.simulation.params.enterprise.agent_response_timeout_days;
+        let enterprise = &self.simulation.world.enterprise;
+        let threads = enterprise.threads.iter().filter(|thread| thread.awaits_agent());
+        let waiting = threads.map(|thread| {
+            let company = enterprise.company(thread.customer);
+            let row = company.and_then(|company| company.row(&self.simulation.world.customers));
+            WaitingThread {
+                thread: thread.number,
+                customer: thread.customer,
+                group: thread.group.id(),
+                seats: row.map_or(1, |row| row.seats as u32),
+                kind: thread.kind.id(),
+                turn: thread.last().number,
+                offers_so_far: thread.agent_turns(),
+                last_offer: thread.offerings().iter().map(|own| (own.plan, own.price)).collect(),
+                asked: thread.asked(),
+                days_left: (thread.last().day + patience).saturating_sub(self.simulation.world.day),
+            }
+        });
+        let mut waiting: Vec<WaitingThread> = waiting.collect();
+        waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));
+        waiting
+    }
+
+    fn companies(&self) -> u32 {
+        let enterprise = Group::all().filter(|group| group.is_enterprise());
+        enterprise.map(|group| self.simulation.world.customers.groups[group].active()).sum()
+    }
+
+    fn running_research(&self) -> u32 {
+        self.simulation
+            .world
+            .product
+            .research
+            .iter()
+            .filter(|project| project.completed_day.is_none())
+            .count() as u32
+    }
+
+    /// The days of a week that was begun, or else the last week.
+    fn latest_days(&self) -> Option<&WeekFigures> {
+        let running = &self.history.running_week;
+        if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }
+    }
+
+    fn runway_weeks(&self, pace: &Pace) -> Option<f64> {
+        let left = f64::from(self.manifest.days.saturating_sub(self.simulation.world.day));
+        pace.runway_weeks(self.simulation.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
+    }
+
+    fn booked_since(&self) -> Booked {
+        let mut booked = self.history.running_week.booked;
+        self.history.called.iter().for_each(|entry| booked.add(entry.category, entry.amount));
+        booked
+    }
+}

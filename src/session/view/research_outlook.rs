@@ -1,0 +1,124 @@
+//! What an R&D project can be expected to take and to gain before it is paid for. It follows from the parameters in force
+//! and from nothing that was drawn for this run.
+
+use serde::Serialize;
+
+use super::CompanyView;
+use novamind_record::folder::mode::Mode;
+use novamind_world::params::ResearchTier;
+use novamind_world::product::research_spread::{
+    days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,
+};
+
+/// When a project that is started now can be done.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ResearchOutlook {
+    /// First day on which it can be done.
+    pub earliest: u32,
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Means of its tier.
+    pub means: ResearchMeans,
+    /// How projects of its tier spread; none in a baseline session, because agents are not told.
+    pub spread: Option<ResearchSpread>,
+}
+
+/// Mean duration and gain of the projects of a tier, with the least duration and gain applied.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ResearchMeans {
+    /// Days.
+    pub days: f64,
+    /// Quality.
+    pub gain: f64,
+    /// Both are lower bounds, as in a baseline session: they follow from what agents are told, which leaves out the spread.
+    pub are_lower_bounds: bool,
+}
+
+/// How the projects of a tier spread that are started now.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ResearchSpread {
+    /// Share that is done on the first day on which it can be, 0..=1.
+    pub at_earliest: f64,
+    /// Days by which a quarter, half and three quarters are done.
+    pub quartile_days: [u32; 3],
+    /// Share that is done by the last day of the run, 0..=1.
+    pub by_last_day: f64,
+    /// Quality that a quarter, half and three quarters do not exceed.
+    pub quartile_gains: [f64; 3],
+    /// The least gain.
+    pub least_gain: f64,
+    /// Share that gains no more than the least, 0..=1.
+    pub at_least_gain: f64,
+}
+
+/// A project that runs beyond the last day.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LateProject {
+    /// Its identifier.
+    pub id: String,
+    /// Day on which it would be done.
+    pub due_day: u32,
+    /// It was started since the last week.
+    pub is_new: bool,
+}
+
+const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
+
+impl CompanyView<'_> {
+    /// What a project of a tier, 1..=20, can be expected to take and to gain if it is started now.
+    pub fn research_outlook(&self, tier: u8) -> ResearchOutlook {
+        let (today, last_day) = (self.simulation.world.day, self.manifest.days);
+        let (law, development) = (self.simulation.params.research(tier), &self.simulation.params.development);
+        let spread = || {
+            let left = last_day.saturating_sub(today);
+            ResearchSpread {
+                at_earliest: done_within(development.rd_min_duration_days, law, development),
+                quartile_days: QUARTERS.map(|share| today + days_for(share, law, development)),
+                by_last_day: done_within(left, law, development),
+                quartile_gains: QUARTERS.map(|share| gain_at(share, law, development)),
+                least_gain: development.rd_min_quality_boost,
+                at_least_gain: share_of_least_gain(law, development),
+            }
+        };
+        ResearchOutlook {
+            earliest: today + development.rd_min_duration_days,
+            last_day,
+            means: self.means_of(law),
+            spread: (self.manifest.mode != Mode::Baseline).then(spread),
+        }
+    }
+
+    /// Means of every R&D tier, the first tier first.
+    pub fn research_means(&self) -> Vec<ResearchMeans> {
+        self.simulation.params.research_tier.iter().map(|law| self.means_of(law)).collect()
+    }
+
+    fn means_of(&self, law: &ResearchTier) -> ResearchMeans {
+        let development = &self.simulation.params.development;
+        match self.manifest.mode {
+            Mode::Baseline => ResearchMeans {
+                days: law.mean_days.max(f64::from(development.rd_min_duration_days)),
+                gain: law.mean_quality_boost.max(development.rd_min_quality_boost),
+                are_lower_bounds: true,
+            },
+            _ => ResearchMeans {
+                days: mean_days(law, development),
+                gain: mean_gain(law, development),
+                are_lower_bounds: false,
+            },
+        }
+    }
+
+    /// Projects whose day of completion, which the answer to their start told, lies beyond the last day.
+    pub(crate) fn late_projects(&self) -> Vec<LateProject> {
+        let (today, last_day) = (self.simulation.world.day, self.manifest.days);
+        let projects = self.simulation.world.product.research.iter();
+        let late = projects.filter(|project| project.completed_day.is_none() && project.due_day > last_day);
+        let told = |project: &novamind_world::events::Project| LateProject {
+            id: project.id(),
+            due_day: project.due_day,
+            is_new: project.started_day == today,
+        };
+        late.map(told).collect()
+    }
+}

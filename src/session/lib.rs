@@ -33,8 +33,9 @@ pub use company::xray::Xray;
 pub use create::baseline::baseline_terms;
 pub use create::{NewRun, Storage, StudyEntry};
 pub use database::{RunDatabase, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
-pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
-pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
+pub use figures::attendance::{
+    Attendance, AttendedTime, AttendedWeek, Attention, BREAK_SECONDS, FAST_WEEK_SECONDS, TimeSpent,
+};
 pub use figures::changes::{Change, Decisions};
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, truth_behind};
@@ -69,6 +70,53 @@ pub use lesson::reference::{PartPlay, play_part, play_part_telling};
 pub use lesson::standing::LessonStanding;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{Manner, Stub};
+pub use permission::{REFUSED_LOOK, may_look_inside};
+pub use play::act::Preview;
+pub use play::companion::Companion;
+pub use play::drafts::{Drafts, UnsentTexts};
+pub use play::once::WeekRequest;
+pub use play::open::{Access, end_run};
+pub use play::undo::undone_calls;
+pub use play::{AnswersCompanies, Session};
+pub use playback::Playback;
+pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
+pub use playback::record_view::RecordView;
+pub use python::PYTHON_NOT_RUN;
+pub use recording::RunLog;
+pub use recording::activity::{ActivityLog, IDLE_AFTER, Interface, TIME_LIMIT};
+pub use recording::folders::new_id;
+pub use recording::machine::Machine;
+pub use recording::personal_clock::TimeLeft;
+pub use recording::recorder::lines_afterwards;
+pub use resume::branch::{not_saved, write_past};
+pub use resume::look::record_look;
+pub use resume::rebuild::{connection_to_file, rebuild_database};
+pub use resume::recorded::{Origin, read as read_recorded};
+pub use resume::rescue::{Rescued, rescue};
+pub use resume::unnamed::UnnamedBranch;
+pub use resume::verify::{Verification, verify, verify_sealed};
+pub use snapshot::integrity::Integrity;
+pub use snapshot::sealing::SealKey;
+pub use view::alike_plans::AlikePlans;
+pub use view::debug_parameters::{ChangedParameter, ChangedParameters, DebugParameters};
+pub use view::observe::{Observation, WaitingThread};
+pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
+pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
+pub use view::{CompanyView, best_starting_channel};
+
+pub use novamind_voice::CompanyNames;
+pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_world::enterprise::Answer as CompanyAnswer;
+pub use novamind_world::events::{Category, EndCause, Severity, Source};
+pub use novamind_world::fault::Fault;
+pub use novamind_world::identifiers;
+pub use novamind_world::market::competitors::Event as RivalEvent;
+pub use novamind_world::market::drift::Expectation;
+pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
+pub use novamind_world::market::surges::Surge;
+pub use novamind_world::settings::{CoreSettings, Settings};
+
+pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use novamind_record::error::RunError;
 pub use novamind_record::folder::configuration::{
     Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
@@ -94,54 +142,8 @@ pub use novamind_record::trajectory::{
     Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
     policy_rationale, record, steady, written_moment,
 };
-pub use permission::{REFUSED_LOOK, may_look_inside};
-pub use play::act::Preview;
-pub use play::companion::Companion;
-pub use play::drafts::{Drafts, UnsentTexts};
-pub use play::once::WeekRequest;
-pub use play::open::{Access, end_run};
-pub use play::undo::undone_calls;
-pub use play::{AnswersCompanies, Session};
-pub use playback::Playback;
-pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
-pub use playback::record_view::RecordView;
-pub use python::PYTHON_NOT_RUN;
-pub use recording::RunLog;
-pub use recording::activity::{ActivityLog, IDLE_AFTER, Interface, TIME_LIMIT};
-pub use recording::afterwards::lines_afterwards;
-pub use recording::folders::new_id;
-pub use recording::machine::Machine;
-pub use recording::personal_clock::TimeLeft;
-pub use resume::branch::{not_saved, write_past};
-pub use resume::look::record_look;
-pub use resume::rebuild::{connection_to_file, rebuild_database};
-pub use resume::recorded::{Origin, read as read_recorded};
-pub use resume::rescue::{Rescued, rescue};
-pub use resume::unnamed::UnnamedBranch;
-pub use resume::verify::{Verification, verify, verify_sealed};
-pub use snapshot::integrity::Integrity;
-pub use snapshot::sealing::SealKey;
-pub use view::alike_plans::AlikePlans;
-pub use view::debug_parameters::{ChangedParameter, ChangedParameters, DebugParameters};
-pub use view::observe::{Observation, WaitingThread};
-pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
-pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
-pub use view::{CompanyView, best_starting_channel};
-
-pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
 pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
-pub use novamind_voice::CompanyNames;
 pub use novamind_voice::judge::Judgement;
-pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
-pub use novamind_world::enterprise::Answer as CompanyAnswer;
-pub use novamind_world::events::{Category, EndCause, Severity, Source};
-pub use novamind_world::fault::Fault;
-pub use novamind_world::identifiers;
-pub use novamind_world::market::competitors::Event as RivalEvent;
-pub use novamind_world::market::drift::Expectation;
-pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
-pub use novamind_world::market::surges::Surge;
-pub use novamind_world::settings::{CoreSettings, Settings};
 
 /// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the
 /// results.

@@ -15,7 +15,7 @@ use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::play::Session;
 use crate::play::memo::notes_file;
 use crate::play::open::Access;
-use crate::recording::afterwards::{AFTERWARDS, lines_afterwards};
+use crate::recording::recorder::{AFTERWARDS, lines_afterwards};
 use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;

@@ -34,7 +34,7 @@ pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 
 use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
-use crate::recording::afterwards::AFTERWARDS;
+use crate::recording::recorder::AFTERWARDS;
 use novamind_record::error::RunError;
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.

@@ -1,6 +1,5 @@
 //! The company of a run in memory: the simulation, what has happened so far, and its words. No files, no lines, no permission.
 
-pub(crate) mod derived;
 pub(crate) mod facts_chain;
 pub(crate) mod feed;
 pub(crate) mod first_answers;

@@ -1,15 +1,18 @@
-//! Parameters that a debug run changes while it goes on, and those changes that wait for their day.
+//! Parameters that a debug run changes while it goes on, those changes that wait for their day, and facts that follow from the
+//! parameters in force.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
+use super::simulation::Simulation;
 use novamind_base::notation::json_number;
+use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Line, Record};
-use novamind_tools::Refusal;
+use novamind_tools::{Numbers, Refusal};
 use novamind_world::params::{ParameterError, Params};
 
 /// A parameter that is set to another value.
@@ -175,6 +178,26 @@ pub fn json_of_value(value: &Value) -> Json {
         Value::Table(table) => {
             Json::Object(table.iter().map(|(name, value)| (name.clone(), json_of_value(value))).collect())
         }
+    }
+}
+
+/// What follows from the parameters in force; replaced when they change.
+#[derive(Default)]
+pub(crate) struct DerivedOfParameters {
+    numbers: OnceLock<Arc<Numbers>>,
+    are_own: OnceLock<bool>,
+}
+
+impl DerivedOfParameters {
+    /// The numbers that documentation names.
+    pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<Numbers> {
+        self.numbers.get_or_init(|| Numbers::of(&simulation.params).into()).clone()
+    }
+
+    /// Whether the parameters are, or were, others than those of the shipped scenario.
+    pub(crate) fn has_own_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
+        let is_other = || simulation.overrides.is_used() || manifest.has_own_parameters();
+        *self.are_own.get_or_init(is_other)
     }
 }
 

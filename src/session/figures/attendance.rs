@@ -7,7 +7,6 @@
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use super::attended_week::AttendedWeek;
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
 use novamind_record::trajectory::{Line, Record};
 
@@ -350,6 +349,12 @@ impl Attendance {
             }
         }
     }
+
+    /// Weeks that were decided implausibly fast.
+    pub fn fast_weeks(&self) -> u32 {
+        let is_fast = |week: &&AttendedWeek| week.is_implausibly_fast(&self.between(week.from, week.to));
+        self.weeks().iter().filter(is_fast).count() as u32
+    }
 }
 
 fn presence_of(record: &Record) -> Option<PresenceEvent> {
@@ -372,6 +377,27 @@ fn is_act(record: &Record) -> bool {
                 | Activity::Answer(_)
         ),
         _ => false,
+    }
+}
+
+/// Active seconds below which a week was decided implausibly fast: nobody reads a week in them.
+pub const FAST_WEEK_SECONDS: f64 = 10.0;
+
+/// What came before the end of a week, or of single days, on the axis of the run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct AttendedWeek {
+    /// Where the week before it ended, nanoseconds.
+    pub from: i64,
+    /// Where it ended, nanoseconds.
+    pub to: i64,
+    /// It was taken over from the run that this one branched from: nobody played it here.
+    pub inherited: bool,
+}
+
+impl AttendedWeek {
+    /// Whether it was decided here, in less than [`FAST_WEEK_SECONDS`] active seconds.
+    pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
+        !self.inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }
 }
 

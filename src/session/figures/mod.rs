@@ -2,7 +2,6 @@
 //! presence. Nothing here reads a run or a file.
 
 pub(crate) mod attendance;
-pub(crate) mod attended_week;
 pub(crate) mod capacity_by_usage;
 pub(crate) mod changes;
 pub(crate) mod dashboard;

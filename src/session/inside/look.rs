@@ -253,7 +253,9 @@ mod tests {
         let new = NewRun { mode: Mode::Baseline, days: Some(28), storage, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
         let forecasts = session.company().naive_forecasts();
-        session.advance("wait", &forecasts, crate::Via::Script, &mut |_| {}).expect("a week");
+        session
+            .advance("wait", &forecasts, novamind_record::trajectory::record::Via::Script, &mut |_| {})
+            .expect("a week");
         session.end().expect("it ends");
         let sql = "SELECT count(*) FROM hidden.groups";
         for (practice, results, is_shown) in [

@@ -5,7 +5,6 @@
 //! stand beside the world: nothing that is simulated reads them.
 
 mod endpoint;
-pub(crate) mod joining;
 pub(crate) mod speaker;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub(crate) mod stub;

@@ -4,6 +4,8 @@
 use std::time::{Duration, Instant};
 
 use super::endpoint::Endpoint;
+use novamind_record::error::RunError;
+use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::settings::ModelSettings;
@@ -90,5 +92,28 @@ impl Speaker {
         }
         self.is_failing = answer.is_err();
         Reply { answer, took_ms: (took.as_secs_f64() * 1e6).round() / 1e3 }
+    }
+}
+
+/// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that
+/// was named.
+///
+/// # Errors
+/// It must not have the one that was named.
+pub(crate) fn model_of(
+    mode: Mode,
+    study: Option<Option<&ModelSettings>>,
+    named: Option<&ModelSettings>,
+) -> Result<Option<ModelSettings>, RunError> {
+    match (mode, study, named) {
+        (Mode::Baseline, Some(laid_down), _) => Ok(laid_down.cloned()),
+        (Mode::Baseline, None, Some(_)) => Err(RunError::NotPossible(
+            "a baseline run speaks with the built-in voice, unless the configuration of its study names a language model \
+             ([voice] in study.toml): leave out --voice, or take another mode. Nothing was recorded"
+                .to_owned(),
+        )),
+        // A lesson is the same on every machine.
+        (Mode::Lesson, ..) => Ok(None),
+        (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.cloned()),
     }
 }

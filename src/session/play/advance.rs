@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::Session;
 use super::act::not_saved;
-use crate::company::derived::DerivedOfParameters;
 use crate::company::facts_chain::StateHash;
+use crate::company::overrides::DerivedOfParameters;
 use crate::company::reports::{DayReport, Week};
 use crate::company::simulation::Simulation;
 use crate::figures::journal::JournalEntry;

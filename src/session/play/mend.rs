@@ -46,9 +46,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::Cell;
     use crate::company::reports::Week;
     use crate::create::{NewRun, Storage};
+    use novamind_database::Cell;
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::trajectory::record::Via;
 

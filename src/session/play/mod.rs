@@ -26,8 +26,8 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use self::companion::Companion;
-use crate::company::derived::DerivedOfParameters;
 use crate::company::history::History;
+use crate::company::overrides::DerivedOfParameters;
 use crate::company::simulation::Simulation;
 use crate::company::surroundings::RunSurroundings;
 use crate::company::xray::Xray;

@@ -4,8 +4,9 @@ use serde_json::Value;
 
 use super::Session;
 use super::act::not_saved;
-use crate::company::derived::DerivedOfParameters;
-use crate::company::overrides::{ParameterChange, Taken, json_of_value, not_allowed, unknown, value_of_json};
+use crate::company::overrides::{
+    DerivedOfParameters, ParameterChange, Taken, json_of_value, not_allowed, unknown, value_of_json,
+};
 use crate::figures::journal::JournalEntry;
 use crate::view::debug_parameters::ChangedParameter;
 use novamind_record::folder::mode::Mode;

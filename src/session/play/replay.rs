@@ -8,7 +8,7 @@ use crate::company::facts_chain::StateHash;
 use crate::company::reports::DayReport;
 use crate::company::surroundings::RunSurroundings;
 use crate::database::RunDatabase;
-use crate::recording::afterwards::lines_afterwards;
+use crate::recording::recorder::lines_afterwards;
 use crate::snapshot::file::{Recalled, Snapshot};
 use novamind_database::{Entry, Position, Projector};
 use novamind_record::error::RunError;

@@ -89,7 +89,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
         assert_eq!(playback.place().week, week);
         assert_eq!(playback.session().state_hash().0, recorded[&(7 * week)], "week {week}");
         let days = playback.session_mut().query("SELECT max(day) FROM ledger").expect("an answer");
-        assert_eq!(days.rows[0][0], crate::Cell::Integer(i64::from(7 * week)), "the database");
+        assert_eq!(days.rows[0][0], novamind_database::Cell::Integer(i64::from(7 * week)), "the database");
     };
     for week in 1..=5 {
         assert_eq!(go(&mut playback, Goal::Weeks(1)), SeekResult::There);

@@ -1,7 +1,6 @@
 //! The lines of an open run: what writes them, when they have to be on the disk, and what they say about the person who plays.
 
 pub(crate) mod activity;
-pub(crate) mod afterwards;
 pub(crate) mod folders;
 pub(crate) mod machine;
 pub(crate) mod personal_clock;

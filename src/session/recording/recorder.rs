@@ -3,14 +3,21 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use super::afterwards::AFTERWARDS;
 use crate::figures::attendance::Attendance;
 use novamind_database::Position;
 use novamind_record::error::RunError;
 use novamind_record::folder::first_line::start_of;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
+use novamind_record::trajectory::{
+    Durability, Line, Record, Trajectory, TrajectoryWriter, nanoseconds, now, read_regular_file,
+};
+
+/// File in the folder of a run with what is done once it is over: lines like those of the trajectory that go on from its last.
+///
+/// The end is the last line of a trajectory, so that a finished run never changes. Notes, statements that are kept, looks and
+/// answers to questions come after it.
+pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";
 
 /// What a run has that is played, and a run that is only read has not.
 pub(crate) struct Recorder {
@@ -162,5 +169,20 @@ impl Recorder {
     #[cfg(test)]
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.trajectory.write_to(medium);
+    }
+}
+
+/// Lines after the end of a run; none if nothing was done. They go on from the last line of the trajectory.
+///
+/// # Errors
+/// The file cannot be read, or is damaged.
+pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajectory, RunError> {
+    let path = folder.join(AFTERWARDS);
+    let last = trajectory.lines.last().map(Line::position);
+    match (read_regular_file(&path), last) {
+        (Ok(bytes), Some(last)) => Trajectory::of_file_after(&path, last, &bytes),
+        (Ok(_), None) => Ok(Trajectory::default()),
+        (Err(error), _) if error.kind() == std::io::ErrorKind::NotFound => Ok(Trajectory::default()),
+        (Err(error), _) => Err(RunError::Io { path, error }),
     }
 }

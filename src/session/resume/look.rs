@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are as they were left");
         let rows = session.query("SELECT max(day) FROM ledger").expect("rows");
         assert_eq!(rows.rows.len(), 1);
-        session.call(crate::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
+        session.call(novamind_tools::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
         let forecasts = session.company().naive_forecasts();
         session.advance("wait", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         drop(session);

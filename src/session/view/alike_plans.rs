@@ -78,7 +78,9 @@ mod tests {
 
     use super::*;
     use crate::play::Session;
-    use crate::{Configuration, NewRun, Storage, Via};
+    use crate::{NewRun, Storage};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
 
     #[test]
     fn every_setting_of_a_plan_tells_plans_apart() {

@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use serde_json::{Map, Value};
 
-use crate::company::derived::DerivedOfParameters;
 use crate::company::history::History;
+use crate::company::overrides::DerivedOfParameters;
 use crate::company::simulation::Simulation;
 use crate::company::surroundings::RunSurroundings;
 use crate::figures::capacity_by_usage::UsageRule;

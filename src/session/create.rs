@@ -2,14 +2,15 @@
 
 pub(crate) mod agreement;
 pub(crate) mod baseline;
+pub(crate) mod lesson_entry;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use self::agreement::agreed;
+use self::lesson_entry::LessonEntry;
 use crate::inside::companion::Companion;
-use crate::lesson::conduct::LessonEntry;
 use crate::model_voice::joining::model_of;
 use crate::model_voice::speaker::{ModelVoice, Speaker};
 use crate::play::advance::DayReport;

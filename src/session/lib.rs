@@ -26,56 +26,40 @@ pub use archive::{
 pub use ask::{connection_to_file, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
+pub use create::lesson_entry::LessonEntry;
 pub use create::{NewRun, Storage, StudyEntry, new_id};
 pub use figures::alike_plans::AlikePlans;
 pub use figures::attendance::{Attendance, AttendedTime, Attention, BREAK_SECONDS, TimeSpent};
 pub use figures::attended_week::{AttendedWeek, FAST_WEEK_SECONDS};
 pub use figures::best_channels::best_starting_channel;
-pub use figures::booked::Booked;
 pub use figures::changes::{Change, Decisions};
-pub use figures::churn::churn_of_last_week;
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::Estimates;
 pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
-pub use figures::measured_group::MeasuredGroup;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::observe::{Observation, WaitingThread};
 pub use figures::pace::Pace;
 pub use figures::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId, setting_values};
-pub use figures::simulated_week::{GroupOfWeek, SimulatedWeek};
 pub use figures::sitting_count::SittingCount;
 pub use figures::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use figures::truth::truth_behind;
-pub use figures::week::{Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
-pub use figures::week_figure::{FigureUnit, WeekFigure};
+pub use figures::week::{Forecasts, WEEK_OF_ENTRY, entries_of_weeks, naively, week_of};
 pub use inside::last_day::Xray;
 pub use inside::look::{Look, WatchedDays};
 pub use inside::permission::{REFUSED_LOOK, may_look_inside};
 pub use inside::shadow::Shadow;
-pub use lesson::conduct::LessonEntry;
-pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
-    PlayedPart, ReferenceCurve,
-};
-pub use lesson::decisions::{DecisionContrast, PartedDecision, SettingContrast};
-pub use lesson::definition::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
-    LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked,
-    ReferencePlay, ScheduledCalls,
-};
-pub use lesson::lesson_call::LessonCall;
-pub use lesson::lesson_file::Lesson;
-pub use lesson::measurement::{Measurement, NumberSource, Over};
-pub use lesson::over::is_lesson_over;
-pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
-pub use lesson::reference::{PartPlay, play_part, play_part_telling};
-pub use lesson::standing::LessonStanding;
+pub use lesson::judging::measure;
+pub use lesson::reference::{PartPlay, play_part, play_part_watched};
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{Manner, Stub};
 pub use novamind_record::error::RunError;
+pub use novamind_record::figures::{
+    Booked, FigureUnit, GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure, WeekFigures,
+    churn_of_last_week,
+};
 pub use novamind_record::folder::configuration::{
     Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
 };
@@ -116,7 +100,7 @@ pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
 pub use playback::record_view::RecordView;
 pub use playback::{Origin, Playback, read as read_recorded};
 pub use python::PYTHON_NOT_RUN;
-pub use resume::branch::{not_saved, write_past};
+pub use resume::branch::{branch_of_lesson, not_saved, write_past};
 pub use resume::integrity::Integrity;
 pub use resume::look::record_look;
 pub use resume::open::{Access, end_run};
@@ -147,9 +131,8 @@ pub use novamind_world::settings::{CoreSettings, Settings};
 pub mod engine {
     pub use crate::figures::capacity_by_usage::UsageRule;
     pub use crate::figures::changes::changes;
-    pub use crate::figures::churn::churn;
     pub use crate::figures::groups::count as count_groups;
-    pub use crate::figures::mood::mood_of;
+    pub use crate::figures::mood::{measured_group, mood_of};
     pub use crate::play::facts_chain::StateHash;
     pub use crate::play::feed::Feed;
     pub use crate::play::overrides::{

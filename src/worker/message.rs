@@ -9,15 +9,14 @@ use crate::company::Company;
 use crate::look_inside::{DaysRan, LookFound};
 use crate::readings::Reading;
 use crate::resimulation::BranchesFound;
-use novamind_course::CollectedClass;
+use novamind_course::{CollectedClass, Debrief};
 use novamind_insight::{CurveExplorer, HiddenValues, Kin, Why, WhyProgress};
 use novamind_report::Story;
 use novamind_report::class::Shown;
 use novamind_report::opponents::Opponents;
 use novamind_session::record::Limit;
 use novamind_session::{
-    Change, Debrief, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts,
-    Week,
+    Change, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts, Week,
 };
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, ToolId};

@@ -4,9 +4,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use novamind::course::{Lesson, begin_part, try_step_again};
 use novamind::insight::{Inspect, WeekQuestion, look_at_figure, open_to_look_inside};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Lesson, PartPlay, Playback, SealKey, Session, may_look_inside, play_part};
+use novamind::session::{Access, PartPlay, Playback, SealKey, Session, may_look_inside, play_part};
 use novamind::world::identifiers::Group;
 
 use crate::support::lessons::{begin, code, lesson_of, week};
@@ -86,7 +87,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
         assert!(!may_look_inside(session.manifest(), session.ended(), session.folder()));
     };
     hidden(&mut first);
-    let mut second = first.begin_part(1).expect("the second part");
+    let mut second = begin_part(&first, 1).expect("the second part");
     hidden(&mut first);
     drop(first);
     let playback = Playback::open(&own).expect("a replay");
@@ -128,7 +129,7 @@ fn a_try_that_was_cut_before_its_step_began_is_counted_when_it_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path(), "gates", PARTS);
     week(&mut session).expect("a week");
-    let again = session.try_step_again(0).expect("another try");
+    let again = try_step_again(&session, 0).expect("another try");
     let own = folder_of(&again);
     let standing = again.lesson().expect("a lesson").clone();
     assert_eq!(standing.tries(0), 2);

@@ -31,8 +31,9 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::Look;
 use super::effect::Effect;
+use novamind_course::Debrief;
 use novamind_report::Story;
-use novamind_session::{Debrief, Refusal};
+use novamind_session::Refusal;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::message::News;
 

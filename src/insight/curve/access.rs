@@ -62,7 +62,7 @@ impl CurveExplorer {
     /// `group_not_discovered`, `guess_first`.
     pub fn estimated(run: &Session, group: Group) -> Result<CurveExplorer, Refusal> {
         if let Some(lesson) = run.lesson() {
-            lesson.refuse_before_guess(run.weeks_passed())?;
+            lesson.refuse_before_guess(run.day() / run.params().run.days_per_week)?;
         }
         let all = run.estimates();
         let delivered = run.delivered_quality();

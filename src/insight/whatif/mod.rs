@@ -37,8 +37,9 @@ use crate::counterfactual::past::Past;
 use crate::counterfactual::script::{Move, PastDecision};
 use crate::why::{Sight, sight};
 use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::LessonStanding;
 use novamind_session::engine::UsageRule;
-use novamind_session::{LessonStanding, Session, WeekFigures, not_readable};
+use novamind_session::{Session, WeekFigures, not_readable};
 use novamind_tools::{Refusal, highest_named};
 use novamind_world::events::DayFigures;
 

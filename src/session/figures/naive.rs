@@ -6,8 +6,9 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 use super::pace::Pace;
-use super::week::{Forecasts, WeekFigures};
+use super::week::Forecasts;
 use crate::state::Session;
+use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
@@ -287,7 +288,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::booked::Booked;
+    use novamind_record::figures::Booked;
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 

@@ -3,14 +3,14 @@
 use serde::Serialize;
 
 use super::alike_plans::AlikePlans;
-use super::booked::Booked;
 use super::changes::Change;
 use super::dashboard::{self, DeliveredQuality, Waiting, delivered_quality};
 use super::pace::Pace;
 use super::research_outlook::LateProject;
-use super::week::{WeekFigures, week_of};
+use super::week::week_of;
 use crate::play::irrevocable::Irrevocable;
 use crate::state::Session;
+use novamind_record::figures::{Booked, WeekFigures};
 use novamind_record::folder::mode::Mode;
 use novamind_record::trajectory::record::Ended;
 use novamind_voice::model::settings::ModelStamp;

@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 use super::scored_forecast::{ForecastScore, filed_forecasts};
-use super::week::WeekFigures;
 use crate::state::Session;
+use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
 /// Weeks that are recent.
@@ -77,7 +77,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::booked::Booked;
+    use novamind_record::figures::Booked;
 
     fn week(income: f64, compute: f64) -> WeekFigures {
         let mut booked = Booked::default();

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::lesson::over::is_lesson_over;
 use crate::state::Session;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::is_lesson_over;
 use novamind_record::trajectory::record::Ended;
 use novamind_tools::Refusal;
 

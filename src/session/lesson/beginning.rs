@@ -4,14 +4,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::conduct::LessonEntry;
-use super::lesson_call::LessonCall;
-use super::lesson_file::Lesson;
-use super::standing::LessonStanding;
-use crate::play::act::not_saved;
+use crate::create::lesson_entry::LessonEntry;
 use crate::play::advance::DayReport;
 use crate::state::Session;
 use novamind_record::error::RunError;
+use novamind_record::lesson::{Lesson, LessonCall, LessonStanding};
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
@@ -85,7 +82,7 @@ impl Session {
         }
         let note =
             LessonNote { number: Some(number), ..LessonNote::about(LessonEvent::Begun, step as u32 + 1) };
-        self.note_lesson(note).map_err(not_saved)
+        self.note_lesson(note)
     }
 
     /// Takes up the lesson of a run that was opened again.
@@ -153,15 +150,10 @@ impl Session {
         let read = parent.and_then(|(parent, runs)| {
             Trajectory::read(&runs.join(&parent.run).join("trajectory.jsonl")).ok()
         });
-        let of = |line: &Line| match &line.record {
-            Record::Activity(Activity::Lesson(note))
-                if note.event == LessonEvent::Begun && note.step == step as u32 + 1 =>
-            {
-                note.number
-            }
-            _ => None,
-        };
-        read.iter().flat_map(|parent| &parent.lines).filter_map(of).max().unwrap_or(1)
+        let own = read
+            .zip(self.lesson.as_deref())
+            .map(|(parent, own)| LessonStanding::of(own.lesson.clone(), own.part, &parent.lines).tries(step));
+        own.unwrap_or(1).max(1)
     }
 }
 

@@ -10,11 +10,12 @@ use super::recorder::Recorder;
 use super::simulation::Simulation;
 use super::week::Week;
 use crate::figures::journal::JournalEntry;
-use crate::figures::week::{Forecasts, WeekFigures};
+use crate::figures::week::Forecasts;
 use crate::inside::last_day::Xray;
 use crate::resume::snapshot::WEEKS_BETWEEN;
 use crate::state::Session;
 use novamind_database::{Entry, ForecastRow, ProjectionError};
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
 use novamind_record::trajectory::{Durability, Record, seconds};
 use novamind_tools::{Kind, Refusal, ToolId};
@@ -93,7 +94,8 @@ impl Session {
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
         let allowed = allowed.and_then(|()| self.refuse_unexpected_day(expected_day));
         let unasked = Value::from(UNASKED);
-        let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
+        let asks_none = self.lesson().is_some_and(|lesson| lesson.access().asks_no_rationale());
+        let rationale = if asks_none { &unasked } else { rationale };
         let checked = allowed.and_then(|()| {
             let text = novamind_tools::rationale(rationale)?;
             let all = novamind_tools::forecasts(

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use crate::figures::week::WeekFigures;
 use novamind_base::notation::json_number;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 
 /// A week, or the rest of one, that was simulated.

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::figures::week::week_of;
-use crate::lesson::over::is_lesson_over;
 use crate::play::projection::Projection;
 use crate::play::simulation::Simulation;
 use crate::playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
@@ -22,6 +21,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::is_lesson_over;
 use novamind_record::trajectory::record::{Activity, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;

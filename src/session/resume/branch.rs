@@ -120,7 +120,7 @@ fn unnamed_branch(
 ///
 /// # Errors
 /// `not_saved`.
-pub(crate) fn branch_of_lesson(
+pub fn branch_of_lesson(
     folder: &Path,
     parent: &Manifest,
     trajectory: &Trajectory,

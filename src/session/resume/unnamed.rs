@@ -4,7 +4,6 @@
 use std::path::{Path, PathBuf};
 
 use super::open::Access;
-use crate::lesson::lesson_file::Lesson;
 use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::folder::durable::{create_folder, sync_folder};
@@ -12,6 +11,7 @@ use novamind_record::folder::first_line::start_of;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::runs::{UNNAMED, is_unnamed};
+use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Branch;
 use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 

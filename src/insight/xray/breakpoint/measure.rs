@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::series::MeasuredDay;
+use novamind_record::figures::churn;
 use novamind_session::MeasuredGroup;
-use novamind_session::engine::churn;
 use novamind_world::identifiers::Group;
 
 /// How a figure goes with time.

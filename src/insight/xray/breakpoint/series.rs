@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use novamind_session::engine::count_groups;
+use novamind_session::engine::{count_groups, measured_group};
 use novamind_session::{GroupWeek, MeasuredGroup};
 use novamind_world::day::watch::DayWatch;
 use novamind_world::events::{DayFigures, Facts};
@@ -34,7 +34,7 @@ impl MeasuredDay {
         let surge = surge_factor(world.day, &world.market.surges, params.fidelity.surge_start);
         MeasuredDay {
             figures: *figures,
-            groups: ByGroup::from_fn(|group| MeasuredGroup::of(group, &counted[group], world)),
+            groups: ByGroup::from_fn(|group| measured_group(group, &counted[group], world)),
             rival: world.market.competitors.last().is_some_and(|event| event.day == world.day),
             drift: is_drift_day(world.day, &params.drift),
             surge: surge > 1.0,

@@ -10,7 +10,7 @@ pub struct Booked([f64; Category::ALL.len()]);
 
 impl Booked {
     /// Books an amount.
-    pub(crate) fn add(&mut self, category: Category, dollars: f64) {
+    pub fn add(&mut self, category: Category, dollars: f64) {
         self.0[category as usize] += dollars;
     }
 

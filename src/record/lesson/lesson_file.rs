@@ -3,21 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::definition::LessonPlan;
+use super::definition::{GuessForm, LessonPlan, MeasuredFigure};
+use super::measurement::NumberSource;
 use super::soundness::unsound;
-use crate::figures::week_figure::FigureUnit;
-use crate::lesson::definition::MeasuredFigure;
-use crate::lesson::measurement::NumberSource;
+use crate::error::RunError;
+use crate::figures::FigureUnit;
+use crate::folder::configuration::Configuration;
+use crate::folder::durable::write_whole;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
-use novamind_record::error::RunError;
-use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::durable::write_whole;
 use novamind_world::params::{ParameterError, ParameterSource};
 
 /// Name of the plan in the folder of a run.
-pub(crate) const PLAN_FILE: &str = "lesson.toml";
+pub const PLAN_FILE: &str = "lesson.toml";
 /// Name of the texts in the folder of a run.
-pub(crate) const TEXTS_FILE: &str = "lesson.md";
+pub const TEXTS_FILE: &str = "lesson.md";
 
 /// A lesson.
 #[derive(Debug, Clone, PartialEq)]
@@ -173,6 +172,18 @@ impl Lesson {
             part.parameters.extend(figure.parameters.clone());
         }
         Arc::new(other)
+    }
+
+    /// Whether a goal, a guess or a pitfall is measured by a statement.
+    pub fn asks_database(&self) -> bool {
+        let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
+        let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
+        let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
+            GuessForm::Number { outcome, .. } => Some(outcome),
+            GuessForm::Choice { .. } => None,
+        });
+        let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
+        goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
     }
 
     /// A text with the measured figures that it names.

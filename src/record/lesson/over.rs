@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::lesson_file::Lesson;
-use novamind_record::folder::derived::Derived;
-use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::runs::last_lines;
-use novamind_record::stamp::LessonStamp;
-use novamind_record::trajectory::Record;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::last_lines;
+use crate::stamp::LessonStamp;
+use crate::trajectory::Record;
 
 /// Whether the last part of the lesson that a run belongs to is over: in this run, or in another one that the same person has
 /// in the folder of runs. True of runs that belong to no lesson; false where the lesson that is kept with the run is another.

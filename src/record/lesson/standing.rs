@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::definition::{GuessForm, LessonPart, LessonStep};
+use super::definition::{GuessForm, LessonAccess, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
-use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
-use novamind_record::trajectory::{Line, Record};
+use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::trajectory::{Line, Record};
 use novamind_tools::{Refusal, ToolId};
 
 /// A lesson that is played, and what happened in it.
@@ -16,7 +16,7 @@ pub struct LessonStanding {
     /// The part that this run is, counted from 0.
     pub part: usize,
     /// Whether goals and pitfalls are looked at.
-    pub(crate) is_judged: bool,
+    pub is_judged: bool,
     /// What happened, in order, each with its day.
     pub notes: Vec<(u32, LessonNote)>,
 }
@@ -63,6 +63,11 @@ impl LessonStanding {
     /// The part that this run is.
     pub fn own_part(&self) -> &LessonPart {
         &self.lesson.plan.parts[self.part]
+    }
+
+    /// What of the program the student has.
+    pub fn access(&self) -> &LessonAccess {
+        &self.lesson.plan.access
     }
 
     /// A step of it, counted from 0.

@@ -5,9 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::figures::journal::JournalEntry;
-use crate::state::Session;
-use novamind_tools::{Kind, ToolId};
+use novamind_session::{JournalEntry, Session, ToolId};
+use novamind_tools::Kind;
 
 /// What holds in a week, and what was done at its start.
 #[derive(Debug, Clone, PartialEq)]

@@ -51,6 +51,18 @@ pub struct LessonAccess {
     pub rationale: RationaleAsked,
 }
 
+impl LessonAccess {
+    /// Whether the lesson fills in the forecasts of a week naively.
+    pub fn fills_forecasts(&self) -> bool {
+        self.forecasts == ForecastsAsked::Naive
+    }
+
+    /// Whether a week runs without a rationale.
+    pub fn asks_no_rationale(&self) -> bool {
+        self.rationale == RationaleAsked::Off
+    }
+}
+
 /// What is asked of forecasts before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -129,7 +141,7 @@ pub enum CapacityMover {
 }
 
 fn default_scenario() -> String {
-    novamind_record::folder::configuration::DEFAULT_SCENARIO.to_owned()
+    crate::folder::configuration::DEFAULT_SCENARIO.to_owned()
 }
 
 /// A step of a lesson: a task over some weeks.
@@ -258,6 +270,26 @@ pub enum GoalBound {
     OfGoodPlay(f64),
 }
 
+impl GoalBound {
+    /// Whether it depends on the good play.
+    pub fn is_relative(self) -> bool {
+        matches!(self, GoalBound::OfGoodPlay(_))
+    }
+
+    /// The value to reach, given that of the good play; `None` if it depends on that and there is none.
+    pub fn value(self, good: Option<f64>) -> Option<f64> {
+        match self {
+            GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
+            GoalBound::OfGoodPlay(share) => good.map(|good| share * good),
+        }
+    }
+
+    /// Whether a value reaches a bound.
+    pub fn is_reached(self, value: f64, bound: f64) -> bool {
+        if matches!(self, GoalBound::AtMost(_)) { value <= bound } else { value >= bound }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GoalFile {
@@ -318,6 +350,23 @@ pub enum PitfallBound {
     Above(f64),
     /// Below this.
     Below(f64),
+}
+
+impl PitfallBound {
+    /// The bound itself.
+    pub fn limit(self) -> f64 {
+        match self {
+            PitfallBound::Above(limit) | PitfallBound::Below(limit) => limit,
+        }
+    }
+
+    /// Whether a value is beyond it.
+    pub fn is_met_by(self, value: f64) -> bool {
+        match self {
+            PitfallBound::Above(limit) => value > limit,
+            PitfallBound::Below(limit) => value < limit,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -479,7 +528,7 @@ impl TryFrom<ScheduleFile> for ScheduledCalls {
 
 impl ScheduledCalls {
     /// Whether they are made at the beginning of a week of a part.
-    pub(super) fn are_due(&self, part: usize, week: u32) -> bool {
+    pub fn are_due(&self, part: usize, week: u32) -> bool {
         let repeats = |every| week >= self.week && (week - self.week).is_multiple_of(every);
         let in_time = self.until.is_none_or(|until| week <= until);
         self.part == part && in_time && self.every.map_or(week == self.week, repeats)

@@ -7,20 +7,18 @@ use serde::{Serialize, Serializer};
 
 use std::thread;
 
+use super::answers::lesson_step;
 use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::definition::{LessonGoal, ReferencePlay, ScheduledCalls};
-use super::lesson_call::LessonCall;
-use super::measurement::{NumberSource, Over};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
-use super::reference::{PartPlay, play_part_watched};
-use super::standing::LessonStanding;
-use crate::figures::journal::JournalEntry;
-use crate::figures::week::WeekFigures;
-use crate::figures::week_figure::WeekFigure;
-use crate::state::{AnswersCompanies, Session};
+use novamind_record::lesson::{
+    LessonCall, LessonGoal, LessonStanding, NumberSource, Over, ReferencePlay, ScheduledCalls,
+};
 use novamind_record::trajectory::record::Ended;
-use novamind_tools::{Refusal, ToolId, highest_named};
-use novamind_voice::CompanyNames;
+use novamind_session::{
+    AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Refusal, Session, ToolId, WeekFigure,
+    WeekFigures, play_part_watched,
+};
+use novamind_tools::highest_named;
 use novamind_world::params::Params;
 
 /// A part of a lesson that was played: what its debrief is found from.
@@ -184,56 +182,25 @@ fn used_of<S: Serializer>((used, of): &(usize, usize), serializer: S) -> Result<
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-impl Session {
-    /// What the debrief of a part that is over is found from.
-    ///
-    /// # Errors
-    /// `not_in_a_lesson`, `lesson_not_over`.
-    pub fn played_part(&self) -> Result<PlayedPart, Refusal> {
-        let Some(standing) = self.lesson() else {
-            let message = "this run belongs to no lesson; novamind lesson list names them";
-            return Err(Refusal::new("not_in_a_lesson", message));
-        };
-        if self.lesson_step().is_some() {
-            let message = "the debrief comes once this part of the lesson is over; lesson shows the task";
-            return Err(Refusal::new("lesson_not_over", message));
-        }
-        Ok(PlayedPart {
-            standing: standing.clone(),
-            run: self.manifest.id.clone(),
-            participant: self.manifest.participant.clone(),
-            seed: self.manifest.seed,
-            cash_by_day: self.cash_by_day().to_vec(),
-            weeks: self.weeks().to_vec(),
-            days_per_week: self.params().run.days_per_week,
-            ended: self.ended(),
-            own: self.own_calls(standing),
-        })
-    }
-
-    /// What the student called, by week: every call but those of the start and of the lesson itself.
-    fn own_calls(&self, standing: &LessonStanding) -> Vec<ScheduledCalls> {
-        let part = standing.own_part();
-        let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
-        let starts = part.start.iter().flat_map(|own| &own.calls);
-        let starts =
-            starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
-        let days = self.params().run.days_per_week;
-        let calls = self.journal().iter().filter_map(|entry| match entry {
-            JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => {
-                Some((*day, *tool, args.clone()))
-            }
-            _ => None,
-        });
-        let scheduled = |(day, tool, args)| ScheduledCalls {
-            part: standing.part,
-            week: day / days,
-            every: None,
-            until: None,
-            calls: vec![LessonCall::Tool(tool, args)],
-        };
-        calls.skip(starts).map(scheduled).collect()
-    }
+/// What the student called, by week: every call but those of the start and of the lesson itself.
+fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls> {
+    let part = standing.own_part();
+    let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
+    let starts = part.start.iter().flat_map(|own| &own.calls);
+    let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
+    let days = session.params().run.days_per_week;
+    let calls = session.journal().iter().filter_map(|entry| match entry {
+        JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => Some((*day, *tool, args.clone())),
+        _ => None,
+    });
+    let scheduled = |(day, tool, args)| ScheduledCalls {
+        part: standing.part,
+        week: day / days,
+        every: None,
+        until: None,
+        calls: vec![LessonCall::Tool(tool, args)],
+    };
+    calls.skip(starts).map(scheduled).collect()
 }
 
 /// A figure at the end of each week that has it.
@@ -249,6 +216,33 @@ struct Played {
 }
 
 impl PlayedPart {
+    /// The part that a run is, once it is over.
+    ///
+    /// # Errors
+    /// `not_in_a_lesson`, `lesson_not_over`.
+    pub fn of(session: &Session) -> Result<PlayedPart, Refusal> {
+        let Some(standing) = session.lesson() else {
+            let message = "this run belongs to no lesson; novamind lesson list names them";
+            return Err(Refusal::new("not_in_a_lesson", message));
+        };
+        if lesson_step(session).is_some() {
+            let message = "the debrief comes once this part of the lesson is over; lesson shows the task";
+            return Err(Refusal::new("lesson_not_over", message));
+        }
+        let manifest = session.manifest();
+        Ok(PlayedPart {
+            standing: standing.clone(),
+            run: manifest.id.clone(),
+            participant: manifest.participant.clone(),
+            seed: manifest.seed,
+            cash_by_day: session.cash_by_day().to_vec(),
+            weeks: session.weeks().to_vec(),
+            days_per_week: session.params().run.days_per_week,
+            ended: session.ended(),
+            own: own_calls(session, standing),
+        })
+    }
+
     /// The debrief. The part is played again four times, in memory; companies are answered by rules where a reference play
     /// says so.
     pub fn debrief(&self, answers: AnswersCompanies) -> Debrief {
@@ -320,7 +314,7 @@ impl PlayedPart {
         };
         let mut weeks = Vec::new();
         let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
-        let played = play_part_watched(&play, answers, &mut watch).ok()?;
+        let played = play_part_watched(&play, answers, &mut watch, &mut |_, _| Ok(())).ok()?;
         let (cash_by_day, figures) = (played.cash_by_day().to_vec(), played.weeks().to_vec());
         Some(Played { cash_by_day, figures, weeks })
     }
@@ -393,22 +387,20 @@ impl PlayedPart {
     fn steps(&self) -> Vec<DebriefStep> {
         let standing = &self.standing;
         let begun = (0..standing.own_part().steps.len()).filter(|step| standing.has_begun(*step));
-        begun.filter_map(|step| standing.came_to(step)).collect()
+        begun.filter_map(|step| result_of_step(standing, step)).collect()
     }
 }
 
-impl LessonStanding {
-    /// What was asked in a step, and what came of it; none where there is no such step.
-    pub(super) fn came_to(&self, step: usize) -> Option<DebriefStep> {
-        let own = self.step(step)?;
-        let judged = self.goals(step);
-        let page = |(at, goal): (usize, &LessonGoal)| self.goal_page(goal, judged.get(at).copied());
-        Some(DebriefStep {
-            title: own.title.clone(),
-            tries: self.tries(step),
-            hints: (self.hints(step), own.hints.len()),
-            question: question(self, step),
-            goals: own.goals.iter().enumerate().map(page).collect(),
-        })
-    }
+/// What was asked in a step, and its result; `None` if there is no such step.
+pub(super) fn result_of_step(standing: &LessonStanding, step: usize) -> Option<DebriefStep> {
+    let own = standing.step(step)?;
+    let judged = standing.goals(step);
+    let page = |(at, goal): (usize, &LessonGoal)| GoalPage::of(standing, goal, judged.get(at).copied());
+    Some(DebriefStep {
+        title: own.title.clone(),
+        tries: standing.tries(step),
+        hints: (standing.hints(step), own.hints.len()),
+        question: question(standing, step),
+        goals: own.goals.iter().enumerate().map(page).collect(),
+    })
 }

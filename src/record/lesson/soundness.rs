@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::definition::{LessonPart, MeasuredFigure, ReferencePlay, ScheduledCalls};
 use super::lesson_file::Lesson;
-use novamind_record::folder::configuration::Configuration;
+use crate::folder::configuration::Configuration;
 
 /// What is wrong with a lesson.
 pub(super) struct Unsound {

@@ -2,12 +2,11 @@
 
 use serde::Serialize;
 
-use super::debrief::DebriefStep;
-use super::definition::{ForecastsAsked, GoalBound, GuessForm, GuessTold, LessonGoal, RationaleAsked};
-use super::standing::LessonStanding;
-use crate::state::Session;
+use super::answers::{lesson_step, weeks_passed};
+use super::debrief::{DebriefStep, result_of_step};
+use novamind_record::lesson::{GoalBound, GuessForm, GuessTold, LessonGoal, LessonStanding};
 use novamind_record::trajectory::record::LessonNote;
-use novamind_tools::ToolId;
+use novamind_session::{Session, ToolId, measure};
 
 /// What a student sees of a lesson.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,16 +93,16 @@ pub struct GoalPage {
     pub met: Option<bool>,
 }
 
-impl Session {
-    /// What a student sees of the lesson; none outside lessons.
-    pub fn lesson_page(&mut self) -> Option<LessonPage> {
-        let standing = self.lesson.as_deref()?.clone();
+impl LessonPage {
+    /// The page of a run; `None` outside lessons.
+    pub fn of(session: &mut Session) -> Option<LessonPage> {
+        let standing = session.lesson()?.clone();
         let part = standing.own_part();
-        let going = self.lesson_step();
+        let going = lesson_step(session);
         let step = going.unwrap_or_else(|| standing.last_begun());
         let own = part.steps.get(step)?;
         let (begin, end) = part.weeks_of(step);
-        let passed = self.weeks_passed().clamp(begin, end) - begin;
+        let passed = weeks_passed(session).clamp(begin, end) - begin;
         let plan = &standing.lesson.plan;
         let filled = |text: &String| standing.lesson.filled(text);
         let next_part = (standing.part as u32 + 2, plan.parts.len() as u32);
@@ -117,58 +116,56 @@ impl Session {
             weeks: (passed, own.weeks),
             try_number: standing.tries(step),
             question: question(&standing, step),
-            goals: self.goal_pages(&standing, step, begin, passed),
+            goals: goal_pages(session, &standing, step, (begin, passed)),
             hints: own.hints.iter().take(standing.hints(step)).map(filled).collect(),
             hints_in_all: own.hints.len(),
             pitfalls: pitfalls(&standing),
-            before: step.checked_sub(1).filter(|_| passed == 0).and_then(|before| standing.came_to(before)),
+            before: step
+                .checked_sub(1)
+                .filter(|_| passed == 0)
+                .and_then(|before| result_of_step(&standing, before)),
             is_over: going.is_none(),
             has_opponents: going.is_none() && next_part.0 > next_part.1 && standing.own_part().begins_empty(),
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
             tools: plan.access.tools.clone(),
-            runs_at_once: plan.access.forecasts == ForecastsAsked::Naive
-                && plan.access.rationale == RationaleAsked::Off,
+            runs_at_once: plan.access.fills_forecasts() && plan.access.asks_no_rationale(),
         })
-    }
-
-    fn goal_pages(
-        &mut self,
-        standing: &LessonStanding,
-        step: usize,
-        begin: u32,
-        passed: u32,
-    ) -> Vec<GoalPage> {
-        let from = begin * self.params().run.days_per_week;
-        let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
-        let judged = standing.goals(step);
-        let page = |(at, goal): (usize, LessonGoal)| {
-            let note = judged.get(at).copied();
-            let page = standing.goal_page(&goal, note);
-            // What is not judged yet stands where the weeks so far have brought it.
-            let is_open = note.is_none() && passed > 0;
-            let so_far = is_open.then(|| goal.measurement.of(self, from).ok().flatten()).flatten();
-            GoalPage { value: page.value.or(so_far), ..page }
-        };
-        goals.into_iter().enumerate().map(page).collect()
     }
 }
 
-impl LessonStanding {
-    /// A goal, and what it came to if it is judged.
-    pub(super) fn goal_page(&self, goal: &LessonGoal, judged: Option<&LessonNote>) -> GoalPage {
-        let stated = match goal.bound {
-            GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
-            GoalBound::OfGoodPlay(_) => None,
-        };
+/// The goals of a step. Those that are not judged yet have the value up to the present week.
+fn goal_pages(
+    session: &mut Session,
+    standing: &LessonStanding,
+    step: usize,
+    (begin, passed): (u32, u32),
+) -> Vec<GoalPage> {
+    let from = begin * session.params().run.days_per_week;
+    let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
+    let judged = standing.goals(step);
+    let page = |(at, goal): (usize, LessonGoal)| {
+        let note = judged.get(at).copied();
+        let page = GoalPage::of(standing, &goal, note);
+        // What is not judged yet stands where the weeks so far have brought it.
+        let is_open = note.is_none() && passed > 0;
+        let so_far = is_open.then(|| measure(&goal.measurement, session, from).ok().flatten()).flatten();
+        GoalPage { value: page.value.or(so_far), ..page }
+    };
+    goals.into_iter().enumerate().map(page).collect()
+}
+
+impl GoalPage {
+    /// A goal, and its result if it is judged.
+    pub(super) fn of(standing: &LessonStanding, goal: &LessonGoal, judged: Option<&LessonNote>) -> GoalPage {
         let of_good_play = match goal.bound {
             GoalBound::OfGoodPlay(share) => Some(share),
             GoalBound::AtLeast(_) | GoalBound::AtMost(_) => None,
         };
         GoalPage {
-            text: self.lesson.filled(&goal.text),
+            text: standing.lesson.filled(&goal.text),
             value: judged.and_then(|note| note.value),
-            bound: stated.or(judged.and_then(|note| note.bound)),
+            bound: goal.bound.value(None).or(judged.and_then(|note| note.bound)),
             wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
             of_good_play,
             in_dollars: goal.in_dollars,

@@ -2,8 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::figures::week::WeekFigures;
-use crate::figures::week_figure::{FigureUnit, WeekFigure};
+use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
 
 /// What is measured over some weeks.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,15 +84,48 @@ impl Measurement {
         }
     }
 
+    /// The statement that measures the days from `from_day` to `to_day`; `None` if it is a figure.
+    pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
+        match &self.source {
+            NumberSource::Sql(sql) => Some(filled(sql, from_day, to_day)),
+            NumberSource::Cash | NumberSource::Figure(_) => None,
+        }
+    }
+
+    /// The value of a figure over some weeks; `None` if no week has it, and of a statement.
+    pub fn of_weeks<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
+        let value = |week: &WeekFigures| match &self.source {
+            NumberSource::Cash => Some(week.cash),
+            NumberSource::Figure(figure) => figure.of_week(week),
+            NumberSource::Sql(_) => None,
+        };
+        let values: Vec<f64> = weeks.filter_map(value).filter(|value| value.is_finite()).collect();
+        let sum: f64 = values.iter().sum();
+        match self.over {
+            Over::End => values.last().copied(),
+            Over::Sum => Some(sum),
+            Over::Mean => (!values.is_empty()).then(|| sum / values.len() as f64),
+        }
+    }
+
     /// Whether it asks the database.
     pub fn needs_database(&self) -> bool {
         matches!(self.source, NumberSource::Sql(_))
     }
 }
 
+fn filled(sql: &str, from_day: u32, to_day: u32) -> String {
+    sql.replace("{from_day}", &from_day.to_string()).replace("{to_day}", &to_day.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn days_stand_in_for_their_names() {
+        assert_eq!(filled("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
+    }
 
     fn read(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
         let own = |text: Option<&str>| text.map(str::to_owned);

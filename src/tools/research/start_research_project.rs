@@ -1,8 +1,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::super::arguments::Arguments;
-use super::super::plain::plain;
+use super::super::arguments::{Arguments, plain};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };

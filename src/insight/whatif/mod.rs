@@ -36,7 +36,7 @@ use crate::counterfactual::one_each::one_each;
 use crate::counterfactual::past::Past;
 use crate::counterfactual::script::{Move, PastDecision};
 use crate::why::{Sight, sight};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_session::engine::UsageRule;
 use novamind_session::{LessonStanding, Session, WeekFigures, not_readable};
 use novamind_tools::{Refusal, highest_named};

@@ -11,7 +11,7 @@ use super::quality_equation::QualityEquation;
 use super::satisfaction_equation::MoodTerm;
 use crate::xray::inspector::Inspect;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{Access, NewRun, Session, Storage, Xray};
 use novamind_world::customers::columns::Block;

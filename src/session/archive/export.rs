@@ -19,8 +19,8 @@ use crate::resume::open::Access;
 use crate::resume::sealing::SealKey;
 use crate::state::Session;
 use novamind_record::error::RunError;
+use novamind_record::files::{folder_of, sync_folder};
 use novamind_record::folder::derived::{Derived, check_start};
-use novamind_record::folder::durable::{folder_of, sync_folder};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Line, Trajectory};
 

@@ -5,7 +5,7 @@ use crate::create::{NewRun, Storage};
 use crate::resume::branch::branch_of_lesson;
 use crate::state::Session;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};

@@ -10,8 +10,8 @@ use crate::lesson::definition::MeasuredFigure;
 use crate::lesson::measurement::NumberSource;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
 use novamind_record::error::RunError;
+use novamind_record::files::write_whole;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::durable::write_whole;
 use novamind_world::params::{ParameterError, ParameterSource};
 
 /// Name of the plan in the folder of a run.

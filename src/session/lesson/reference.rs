@@ -11,7 +11,7 @@ use crate::create::NewRun;
 use crate::state::{AnswersCompanies, Session};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_tools::Refusal;
 

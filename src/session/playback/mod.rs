@@ -21,7 +21,7 @@ use novamind_database::{Location, Projector};
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{Activity, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;

@@ -132,14 +132,14 @@ pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
 pub use novamind_voice::CompanyNames;
 pub use novamind_voice::judge::Judgement;
 pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_world::customers::drift::Expectation;
 pub use novamind_world::enterprise::Answer as CompanyAnswer;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
 pub use novamind_world::market::competitors::Event as RivalEvent;
-pub use novamind_world::market::drift::Expectation;
-pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::market::surges::Surge;
+pub use novamind_world::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::settings::{CoreSettings, Settings};
 
 /// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the

@@ -150,7 +150,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
     } else {
         "stepped".to_owned()
     };
-    if session.rules().hide_result(week.ended) {
+    if session.rules().hide_result(week.ended.is_some()) {
         return over(command, session, week);
     }
     let mut text = week.dashboard.trim_end().to_owned();

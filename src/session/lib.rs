@@ -55,34 +55,34 @@ pub use lesson::judging::measure;
 pub use lesson::reference::{PartPlay, play_part, play_part_watched};
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{Manner, Stub};
+pub use novamind_record::clock::{ScriptedClock, nanoseconds as nanoseconds_of, steady, written_moment};
+pub use novamind_record::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use novamind_record::error::RunError;
 pub use novamind_record::figures::{
     Booked, FigureUnit, GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure, WeekFigures,
     churn_of_last_week,
 };
+pub use novamind_record::files::{folder_of, write_whole};
 pub use novamind_record::folder::configuration::{
     Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
 };
-pub use novamind_record::folder::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
 pub use novamind_record::folder::derived::{manifest_of, manifest_text};
-pub use novamind_record::folder::durable::{folder_of, write_whole};
 pub use novamind_record::folder::library::{self, Library};
 pub use novamind_record::folder::lock::{SERVER_FILE, is_being_played};
 pub use novamind_record::folder::manifest::{FORMAT, Manifest};
-pub use novamind_record::folder::mode::Mode;
 pub use novamind_record::folder::preview::{RunPreview, run_preview};
 pub use novamind_record::folder::runs::{
     RunSummary, all_run_folders, base_of_runs, delete_run, find_run, find_run_to_read, list_runs,
     participant_folder, run_folder,
 };
+pub use novamind_record::mode::Mode;
 pub use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
 pub use novamind_record::stamp::{EarlierRun, LessonStamp, StudyStamp};
 pub use novamind_record::trajectory::record::{
     Activity, Calculated, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via,
 };
 pub use novamind_record::trajectory::{
-    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
-    policy_rationale, record, steady, written_moment,
+    Line, Record, Trajectory, end_of, policy_of, policy_rationale, record,
 };
 pub use play::act::Preview;
 pub use play::advance::DayReport;
@@ -116,14 +116,14 @@ pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
 pub use novamind_voice::CompanyNames;
 pub use novamind_voice::judge::Judgement;
 pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_world::customers::drift::Expectation;
 pub use novamind_world::enterprise::Answer as CompanyAnswer;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
 pub use novamind_world::market::competitors::Event as RivalEvent;
-pub use novamind_world::market::drift::Expectation;
-pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::market::surges::Surge;
+pub use novamind_world::reputation::{ReputationCause, Spill, SpillOver};
 pub use novamind_world::settings::{CoreSettings, Settings};
 
 /// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the

@@ -397,7 +397,7 @@ impl App {
         let ended = week.ended;
         let unfiled = self.end_limit_of_week();
         let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
-        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended));
+        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended.is_some()));
         self.say(if hides_result { "the run is over".to_owned() } else { text });
         match ended {
             Some(_) => self.show_end(),

@@ -1,7 +1,7 @@
 //! Further runs of a lesson: another try of a step, and another part.
 
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::*;
 use crate::counterfactual::test_kit::{WEEKS, played};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure};
 use novamind_tools::ToolId;

@@ -8,8 +8,8 @@ use super::measurement::NumberSource;
 use super::soundness::unsound;
 use crate::error::RunError;
 use crate::figures::FigureUnit;
+use crate::files::write_whole;
 use crate::folder::configuration::Configuration;
-use crate::folder::durable::write_whole;
 use novamind_base::notation::{cents, grouped, percent, short_dollars};
 use novamind_world::params::{ParameterError, ParameterSource};
 

@@ -11,7 +11,7 @@ use super::week::week_of;
 use crate::play::irrevocable::Irrevocable;
 use crate::state::Session;
 use novamind_record::figures::{Booked, WeekFigures};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Ended;
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::day::closing_figures;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::figures::mood::mood_of;
 use crate::play::simulation::Simulation;
 use crate::state::Session;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_voice::judge::Judgement;
 use novamind_world::customers::columns::Block;

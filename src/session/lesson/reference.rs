@@ -7,8 +7,8 @@ use crate::create::lesson_entry::LessonEntry;
 use crate::state::{AnswersCompanies, Session};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
 use novamind_record::lesson::{Lesson, LessonCall, ScheduledCalls};
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
 use novamind_tools::Refusal;
 

@@ -7,7 +7,7 @@ use crate::resume::open::Access;
 use crate::state::Session;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_voice::model::settings::ModelSettings;
 
 /// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that

@@ -15,9 +15,10 @@ use crate::inside::last_day::Xray;
 use crate::resume::snapshot::WEEKS_BETWEEN;
 use crate::state::Session;
 use novamind_database::{Entry, ForecastRow, ProjectionError};
+use novamind_record::clock::seconds;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
-use novamind_record::trajectory::{Durability, Record, seconds};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal, ToolId};
 use novamind_world::events::DayFigures;
 use novamind_world::held::Held;
@@ -179,7 +180,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `run_over`.
     pub(crate) fn refuse_to_step(&self) -> Result<(), Refusal> {
-        if self.manifest.mode != novamind_record::folder::mode::Mode::Debug {
+        if self.manifest.mode != novamind_record::mode::Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
         self.refuse_if_over(Kind::Time)
@@ -242,7 +243,7 @@ impl Session {
             self.simulation.judge_own_posts(self.projection.entries());
             let notices = self.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
-            let debug = self.manifest.mode == novamind_record::folder::mode::Mode::Debug;
+            let debug = self.manifest.mode == novamind_record::mode::Mode::Debug;
             let xray = (debug || self.is_shadow).then(|| Xray::new(self));
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();

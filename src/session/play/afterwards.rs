@@ -8,8 +8,9 @@ use std::path::Path;
 use crate::state::Session;
 use novamind_record::answer_book::AnswerBook;
 use novamind_record::error::RunError;
+use novamind_record::files::read_regular_file;
 use novamind_record::trajectory::record::Outcome;
-use novamind_record::trajectory::{Line, Record, Trajectory, read_regular_file};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 
 /// Name of the file in the folder of the run.
 pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";

@@ -2,8 +2,8 @@
 
 use super::personal_clock::TimeLeft;
 use crate::state::Session;
+use novamind_record::clock::{now, seconds};
 use novamind_record::trajectory::record::{Activity, Clock, ClockEvent, Limit, LimitEvent, LimitScope};
-use novamind_record::trajectory::{now, seconds};
 use novamind_tools::Refusal;
 
 /// Rationale of a week that is filed because its time is over.

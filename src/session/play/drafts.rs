@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::state::Session;
-use novamind_record::folder::durable::write_whole;
+use novamind_record::files::write_whole;
 use novamind_tools::ToolId;
 
 /// Name of the file in the folder of the run.

@@ -10,7 +10,7 @@ use super::overrides::{ParameterChange, Taken, Unfit, json_of_value, value_of_js
 use crate::figures::journal::JournalEntry;
 use crate::state::Session;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal};

@@ -6,8 +6,9 @@ use crate::figures::attendance::TimeSpent;
 use crate::play::machine::Machine;
 use crate::play::recorder::Recorder;
 use crate::state::Session;
+use novamind_record::clock::{nanoseconds, now};
 use novamind_record::trajectory::record::{Activity, LeavingCause, LimitScope, Presence, PresenceEvent};
-use novamind_record::trajectory::{Durability, Record, nanoseconds, now};
+use novamind_record::trajectory::{Durability, Record};
 
 /// Time without a key after which a person counts as idle, where keys are watched.
 pub const IDLE_AFTER: Duration = Duration::from_secs(60);

@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use crate::figures::attendance::Attendance;
 use crate::play::afterwards::AFTERWARDS;
 use novamind_database::Position;
+use novamind_record::clock::{nanoseconds, now};
 use novamind_record::error::RunError;
-use novamind_record::folder::first_line::start_of;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter, nanoseconds, now};
+use novamind_record::folder::manifest::start_of;
+use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
 /// What a run has that is played, and a run that is only read has not.
 pub(crate) struct Recorder {

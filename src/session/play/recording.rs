@@ -4,9 +4,10 @@ use super::entry::entry_of;
 use super::recorder::Recorder;
 use crate::state::Session;
 use novamind_database::Entry;
+use novamind_record::clock::{now, seconds};
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::{Activity, View};
-use novamind_record::trajectory::{Durability, Record, now, seconds};
+use novamind_record::trajectory::{Durability, Record};
 
 impl Session {
     /// The facts of day 0 with the words that belong to them.

@@ -5,13 +5,14 @@ use std::path::Path;
 use super::unnamed::{UnnamedBranch, write_branch};
 use crate::create::new_id;
 use crate::state::Session;
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::create_folder;
+use novamind_record::files::create_folder;
 use novamind_record::folder::manifest::{FORMAT, Manifest};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, Ended, LessonEvent, Parent, Via};
-use novamind_record::trajectory::{Line, Record, Trajectory, now};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
 
 impl Session {

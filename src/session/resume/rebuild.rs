@@ -94,7 +94,7 @@ mod tests {
     use crate::create::{NewRun, Storage};
     use crate::resume::open::end_run;
     use novamind_record::folder::configuration::Configuration;
-    use novamind_record::folder::mode::Mode;
+    use novamind_record::mode::Mode;
     use novamind_record::trajectory::record::Via;
 
     const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];

@@ -4,10 +4,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use novamind_session::engine::{count_groups, measured_group};
 use novamind_session::{GroupWeek, MeasuredGroup};
+use novamind_world::customers::drift::is_drift_day;
 use novamind_world::day::watch::DayWatch;
 use novamind_world::events::{DayFigures, Facts};
 use novamind_world::identifiers::{ByGroup, Group};
-use novamind_world::market::drift::is_drift_day;
 use novamind_world::market::surges::surge_factor;
 use novamind_world::params::Params;
 use novamind_world::state::World;

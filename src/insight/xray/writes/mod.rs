@@ -11,7 +11,7 @@ use target::WriteTarget;
 use crate::xray::inspector::Inspector;
 use novamind_tools::Refusal;
 use novamind_world::events::{Category, EndCause, Source};
-use novamind_world::market::reputation::ReputationCause;
+use novamind_world::reputation::ReputationCause;
 
 /// What wrote.
 #[derive(Debug, Clone, Copy, PartialEq)]

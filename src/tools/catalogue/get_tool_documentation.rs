@@ -2,11 +2,11 @@ use indexmap::IndexMap;
 
 use super::super::arguments::Arguments;
 use super::super::describe::{ToolDocument, document};
+use super::super::documentation::Choice;
 use super::super::{
-    Argument, ArgumentKind, CATALOGUE, Kind, Module, Numbers, Output, Planned, Refusal, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, Kind, Module, Numbers, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
 };
-use super::Choice;
+use super::CATALOGUE;
 
 /// Documents tools.
 pub struct GetToolDocumentation;

@@ -3,7 +3,7 @@
 //! The text is the experimenter's: `consent.md` in the configuration folder. It is shown once to a participant; a
 //! text that was changed is shown again. Without the file nothing is asked.
 
-use crate::trajectory::now;
+use crate::clock::now;
 use serde::{Deserialize, Serialize};
 
 /// That somebody has agreed.

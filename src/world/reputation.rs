@@ -1,12 +1,29 @@
 //! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
 
+use std::ops::AddAssign;
+
 use serde::Serialize;
 
 use crate::canonical::canonical;
 use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Params, Reputation};
-use crate::retention::satisfaction::Mood;
+
+/// What some subscribers contribute to the reputation of their group today.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mood {
+    /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
+    pub sum: f64,
+    /// How many contributed.
+    pub count: u32,
+}
+
+impl AddAssign for Mood {
+    fn add_assign(&mut self, other: Mood) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
 
 /// Reputation by group, 0.001..=1 after the first write.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,6 +13,7 @@ use super::screens::Screen;
 use novamind_session::{Rows, Session};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Theme;
+use novamind_worker::asking::{Ask, Question};
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
 pub use novamind_worker::test_kit::{courted, played, session};
@@ -55,6 +56,18 @@ pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
 pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
     let keys = Keys::shipped();
     screen.act(action, &Look { company, keys: &keys, page: 5 })
+}
+
+/// The question that effects ask, and none but it.
+pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
+    let mut asks = effects.iter().filter_map(|effect| match effect {
+        Effect::Ask(ask) => Some(ask),
+        _ => None,
+    });
+    match (asks.next().and_then(Ask::question), asks.next()) {
+        (Some(question), None) => question,
+        _ => panic!("{effects:?}"),
+    }
 }
 
 /// Draws a screen in a window; the lines of text that are seen.

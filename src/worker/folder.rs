@@ -5,14 +5,34 @@ use std::sync::Arc;
 
 use super::run::tell_days;
 use super::{Open, SessionThread};
+use crate::asking::{Question, Reply};
 use crate::company::Company;
 use crate::message::{Instead, News};
 use novamind_rules::answers_to_companies;
 use novamind_session::record::LeavingCause;
 use novamind_session::{
-    Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
-    find_run, find_run_to_read, list_runs, rescue, run_preview,
+    Access, NewRun, Refusal, RunError, RunPreview, RunSummary, SealKey, Session, Storage, all_run_folders,
+    delete_run, end_run, find_run, find_run_to_read, list_runs, rescue, run_preview,
 };
+
+/// How a run of the folder went.
+#[derive(Debug, Clone)]
+pub struct PreviewQuestion {
+    /// Id of the run.
+    pub id: String,
+}
+
+impl Question for PreviewQuestion {
+    type Answer = RunPreview;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let found = thread.lists_everybody.then(|| find_run_to_read(&thread.runs, &self.id).ok()).flatten();
+        let runs = found.as_deref().and_then(Path::parent).unwrap_or(&thread.runs);
+        let told = |error: RunError| Refusal::new("not_readable", error.to_string());
+        reply.answer(run_preview(runs, &self.id).map_err(told));
+    }
+}
 
 impl SessionThread {
     pub(super) fn list_runs(&self) {
@@ -30,16 +50,6 @@ impl SessionThread {
         }
         all.sort_by(|one, other| other.played.cmp(&one.played).then_with(|| one.id.cmp(&other.id)));
         Ok(all)
-    }
-
-    pub(super) fn preview_run(&self, id: String) {
-        let place = match self.lists_everybody {
-            true => find_run_to_read(&self.runs, &id).ok().and_then(|own| own.parent().map(Path::to_owned)),
-            false => None,
-        };
-        let runs = place.as_deref().unwrap_or(&self.runs);
-        let preview = run_preview(runs, &id).map_err(|error| error.to_string());
-        self.say(News::Preview(id, preview));
     }
 
     pub(super) fn end_run(&self, id: &str) {
@@ -137,7 +147,7 @@ impl SessionThread {
             }
         };
         session.answer_companies_by(answers_to_companies);
-        let interrupt = self.queries.connect(&session);
+        self.queries.connect(&session);
         (self.mending, self.inside) = (None, None);
         let mut company = Company::in_lesson(&mut session, None);
         company.remarks.extend(remark);
@@ -145,6 +155,6 @@ impl SessionThread {
         self.company = Some(company.clone());
         (self.open, self.due) = (Some(Open::Played(Box::new(session))), None);
         self.tell_due();
-        self.say(News::Opened(company, interrupt));
+        self.say(News::Opened(company));
     }
 }

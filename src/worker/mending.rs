@@ -33,7 +33,7 @@ impl SessionThread {
         }
         self.mending = None;
         let Some(Open::Played(session)) = &self.open else { return };
-        let interrupt = self.queries.connect(session);
-        self.say(News::DatabaseWhole(interrupt));
+        self.queries.connect(session);
+        self.say(News::DatabaseWhole);
     }
 }

@@ -255,11 +255,8 @@ impl Headless {
                         job,
                         Job::NoteQuery(..)
                             | Job::Note(_)
-                            | Job::NotePresence(..)
                             | Job::TakeUp(_)
-                            | Job::StopClock(_)
                             | Job::StartClock
-                            | Job::KeepDrafts(_)
                             | Job::GoOn(_)
                             | Job::Hold
                             | Job::Remember(_)

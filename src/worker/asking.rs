@@ -4,7 +4,7 @@
 //! An answer arrives with a [`Message`], after everything that was reported before it and before everything that follows.
 
 use std::any::Any;
-use std::fmt;
+use std::fmt::Debug;
 use std::ops::ControlFlow;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -15,7 +15,7 @@ use crate::message::Message;
 use novamind_session::{Refusal, Ticket};
 
 /// A question that a page asks the worker.
-pub trait Question: Clone + fmt::Debug + Send + Sync + 'static {
+pub trait Question: Clone + Debug + Send + Sync + 'static {
     /// What answers it.
     type Answer: Send + 'static;
     /// How far the work for it has come; `()` if that is not reported.
@@ -24,9 +24,9 @@ pub trait Question: Clone + fmt::Debug + Send + Sync + 'static {
     /// Answers on the session's thread, or passes the reply on to another one.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>);
 
-    /// Hands the question over. The session's thread may be busy with a week; a question that must not wait goes elsewhere then.
-    fn hand_over(self, reply: Reply<Self>, workers: &Workers, _is_busy: bool) {
-        workers.send(Job::Ask(Box::new(move |thread| self.answer(thread, reply))));
+    /// Answers without the session's thread, which is busy with a week, if that is possible.
+    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
+        workers.ask_in_turn(self, reply);
     }
 }
 
@@ -60,6 +60,13 @@ impl<Q: Question> Default for Pending<Q> {
 }
 
 impl<Q: Question> Pending<Q> {
+    /// Asks a first question.
+    pub fn asking(question: Q) -> (Pending<Q>, Ask) {
+        let mut pending = Pending::default();
+        let ask = pending.ask(question);
+        (pending, ask)
+    }
+
     /// Asks; what was asked before is cancelled.
     pub fn ask(&mut self, question: Q) -> Ask {
         let slot = Arc::default();
@@ -97,23 +104,17 @@ impl<Q: Question> Pending<Q> {
 }
 
 /// A question on its way to the worker.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Ask(Arc<dyn AnyAsked>);
 
-impl fmt::Debug for Ask {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
+#[derive(Debug)]
 struct Asked<Q: Question> {
     question: Q,
     slot: Weak<Slot<Q>>,
 }
 
-trait AnyAsked: Any + Send + Sync {
+trait AnyAsked: Any + Debug + Send + Sync {
     fn hand_over(&self, workers: &Workers, is_busy: bool);
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 
 impl<Q: Question> AnyAsked for Asked<Q> {
@@ -122,11 +123,11 @@ impl<Q: Question> AnyAsked for Asked<Q> {
         // Drawn now: a stop may come before the query has begun.
         let ticket = workers.queries.ticket();
         let reply = Reply { slot: self.slot.clone(), news, ticket, is_answered: false };
-        self.question.clone().hand_over(reply, workers, is_busy);
-    }
-
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.question.fmt(f)
+        let question = self.question.clone();
+        match is_busy {
+            true => question.answer_at_once(reply, workers),
+            false => workers.ask_in_turn(question, reply),
+        }
     }
 }
 
@@ -134,6 +135,11 @@ impl Workers {
     /// Hands over a question. The session's thread may be busy with a week.
     pub fn ask(&self, ask: &Ask, is_busy: bool) {
         ask.0.hand_over(self, is_busy);
+    }
+
+    /// Asks the session's thread, after everything that was handed over before.
+    pub(super) fn ask_in_turn<Q: Question>(&self, question: Q, reply: Reply<Q>) {
+        self.send(Job::Ask(Box::new(move |thread| question.answer(thread, reply))));
     }
 }
 

@@ -1,8 +1,8 @@
 //! The threads behind the screen: one that owns the session, two that ask the database.
 //!
-//! The screen sends jobs and never waits; what comes of them returns through the channel that also carries the input: as the
-//! answer to the page that asked ([`asking`]), or as news where it concerns more than one page. A query waits for the session's thread, so that it sees everything that was confirmed,
-//! unless a week is running: then it sees the state before it.
+//! The screen sends jobs and never waits. The result returns through the channel that also carries the input: as the answer to
+//! the page that asked ([`asking`]), or as news if it concerns more than one page. A query waits for the session's thread, so
+//! that it sees everything that was confirmed, unless a week is running: then it sees the state before it.
 
 mod answering;
 pub mod asking;
@@ -10,12 +10,9 @@ pub mod branches;
 pub mod causes;
 mod class;
 pub mod company;
-mod desk;
 pub mod folder;
 mod lesson;
-mod limits;
 pub mod look_inside;
-mod mending;
 pub mod message;
 mod player;
 pub mod posts;
@@ -27,6 +24,7 @@ pub mod request;
 mod run;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;
+mod upkeep;
 mod visit;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -42,15 +40,14 @@ use crate::message::{Message, News};
 use crate::preferences::Preferences;
 use crate::request::Request;
 use answering::words_of;
-use desk::Desk;
 use novamind_insight::{Causes, LastRead, WhatIf};
-use novamind_session::record::{LeavingCause, PresenceEvent};
+use novamind_session::record::LeavingCause;
 use novamind_session::{
-    Activity, Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError,
-    Session, UnsentTexts,
+    Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError, Session,
 };
 use queries::QueryThreads;
 use run::OpenRun;
+use visit::Desk;
 
 pub use answering::answer_on_thread;
 
@@ -72,16 +69,10 @@ pub enum Job {
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
     TakeUp(Interface),
-    /// Record what the person did besides acting.
-    Note(Activity),
-    /// Record that the person went away or came back, or that the window changed: milliseconds without a key, its size.
-    NotePresence(PresenceEvent, Option<u64>, Option<(u16, u16)>),
-    /// Record that the clock was stopped, and why.
-    StopClock(Option<String>),
-    /// Record that it was started again.
+    /// Record something about the user; nothing is reported.
+    Note(Box<dyn FnOnce(&mut Session) + Send>),
+    /// Record that the clock was started again.
     StartClock,
-    /// Keep texts that were typed and not sent.
-    KeepDrafts(Box<UnsentTexts>),
     /// Say that everything handed over before is done.
     Settle(Sender<()>),
     /// Start with this look the next time, too. One after the other: what was chosen last counts.
@@ -278,20 +269,12 @@ impl SessionThread {
                 self.with_run(|run| run.session.note_query(&sql, answer.as_ref(), took, via));
             }
             Job::TakeUp(interface) => self.take_up(interface),
-            Job::Note(activity) => self.with_session(|session| session.note_activity(activity)),
-            Job::NotePresence(event, idle_ms, window) => {
-                self.with_session(|session| session.note_presence(event, idle_ms, window));
-            }
-            // The screen is covered already; a disk that refuses the line is no reason to uncover it.
-            Job::StopClock(reason) => {
-                self.with_session(|session| drop(session.stop_clock(reason.as_deref())));
-            }
+            Job::Note(note) => self.with_session(note),
             Job::StartClock => {
                 self.with_session(|session| drop(session.start_clock()));
                 // Questions may be due after a break.
                 self.tell_due();
             }
-            Job::KeepDrafts(texts) => self.with_session(|session| session.keep_drafts(&texts)),
             Job::Settle(done) => drop(done.send(())),
         }
     }

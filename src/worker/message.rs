@@ -91,10 +91,8 @@ pub enum News {
     NotOpened(String, Option<Instead>),
     /// A tool was called.
     Called(ToolId, Result<Box<Answer>, Refusal>, Arc<Company>),
-    /// A setting was taken back.
-    Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
-    /// A setting that was taken back was set again.
-    Redone(Result<Vec<Change>, Refusal>, Arc<Company>),
+    /// A setting was undone or redone.
+    Restored(&'static str, Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A day was simulated, or simulated again; with what it came to, where that is news.
     Day(u32, Option<DayTold>),
     /// A week has passed, or was refused.

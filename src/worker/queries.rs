@@ -43,12 +43,12 @@ impl Question for Query {
         }
     }
 
-    fn hand_over(self, reply: Reply<Self>, workers: &Workers, is_busy: bool) {
+    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
         match self.of {
-            QueriedTables::Visible(via) if is_busy => {
+            QueriedTables::Visible(via) => {
                 workers.queries.ask(DatabaseQuestion::Query(self.sql, via, reply));
             }
-            _ => workers.send(Job::Ask(Box::new(move |thread| self.answer(thread, reply)))),
+            QueriedTables::Hidden => workers.ask_in_turn(self, reply),
         }
     }
 }
@@ -61,11 +61,8 @@ impl Question for Reading {
         thread.ask_database(DatabaseQuestion::Reading(self, reply));
     }
 
-    fn hand_over(self, reply: Reply<Self>, workers: &Workers, is_busy: bool) {
-        match is_busy {
-            true => workers.queries.ask(DatabaseQuestion::Reading(self, reply)),
-            false => workers.send(Job::Ask(Box::new(move |thread| self.answer(thread, reply)))),
-        }
+    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
+        workers.queries.ask(DatabaseQuestion::Reading(self, reply));
     }
 }
 

@@ -110,23 +110,19 @@ impl Question for OpponentsQuestion {
 impl SessionThread {
     /// At the moment that is shown. A look at the truth is a line of the run, which is not the one of a replay.
     fn curve_of(&mut self, group: Group) -> Result<CurveExplorer, Refusal> {
-        let (is_allowed, day) = match &self.open {
-            None => return Err(Refusal::new("not_possible", "no run is open")),
-            Some(Open::Played(session)) => (session.may_look_inside(), session.day()),
-            Some(Open::Replayed(playback)) => (playback.may_look_inside(), playback.session().day()),
+        let none_open = || Refusal::new("not_possible", "no run is open");
+        let (is_allowed, day) = match self.open.as_ref().ok_or_else(none_open)? {
+            Open::Played(session) => (session.may_look_inside(), session.day()),
+            Open::Replayed(playback) => (playback.may_look_inside(), playback.session().day()),
         };
         let look = match is_allowed {
             true => Some(CurveLook::begin(self.session_to_look_into(false)?, group, day)?),
             false => None,
         };
-        let session = match &self.open {
-            Some(Open::Played(session)) => session,
-            Some(Open::Replayed(playback)) => playback.session(),
-            None => return Err(Refusal::new("not_possible", "no run is open")),
-        };
-        look.map_or_else(
-            || CurveExplorer::estimated(session, group),
-            |look| Ok(CurveExplorer::true_at(session, &look)),
-        )
+        let session = self.open.as_mut().ok_or_else(none_open)?.session();
+        match look {
+            Some(look) => Ok(CurveExplorer::true_at(session, &look)),
+            None => CurveExplorer::estimated(session, group),
+        }
     }
 }

@@ -45,13 +45,13 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn undo(&mut self) -> News {
-        let back = self.session.undo(Via::Palette);
-        News::Undone(back, self.company())
+        let changes = self.session.undo(Via::Palette);
+        News::Restored("undone", changes, self.company())
     }
 
     pub(super) fn redo(&mut self) -> News {
-        let again = self.session.redo(Via::Palette);
-        News::Redone(again, self.company())
+        let changes = self.session.redo(Via::Palette);
+        News::Restored("redone", changes, self.company())
     }
 
     pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> News {

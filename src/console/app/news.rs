@@ -103,6 +103,13 @@ impl App {
                 }
             }
             News::DatabaseWhole => self.database_whole(),
+            News::MemoKept(kept, company) => {
+                match kept {
+                    Ok(()) => self.say("notes saved"),
+                    Err(refusal) => self.complain(refusal.to_string()),
+                }
+                self.changed(company);
+            }
             News::Told(story) => self.told(&story),
             News::Reported(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
@@ -132,21 +139,13 @@ impl App {
                 }
                 ScreenId::Tools
             }
-            News::Undone(changes, company) => {
-                self.restored("undone", changes, company);
-                ScreenId::Tools
-            }
-            News::Redone(changes, company) => {
-                self.restored("redone", changes, company);
-                ScreenId::Tools
-            }
-            News::MemoKept(kept, company) => {
-                match kept {
-                    Ok(()) => self.say("notes saved"),
-                    Err(refusal) => self.complain(refusal.to_string()),
-                }
+            News::Restored(what, changes, company) => {
                 self.changed(company.clone());
-                ScreenId::Journal
+                match changes {
+                    Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
+                    Err(refusal) => self.complain(refusal.message.clone()),
+                }
+                ScreenId::Tools
             }
             _ => return,
         };
@@ -174,7 +173,7 @@ impl App {
         self.follow(effects);
     }
 
-    /// Something has arrived for a page: whoever waits looks whether it is theirs.
+    /// Lets every page take the answer that it waits for, if it has arrived.
     pub(super) fn take_answers(&mut self) {
         if let Stage::Menu(menu) = &mut self.stage {
             menu.take_answers();
@@ -296,15 +295,6 @@ impl App {
             if let Layer::Dialog(dialog) = layer {
                 dialog.take_story(story);
             }
-        }
-    }
-
-    /// Settings were restored, or could not be.
-    fn restored(&mut self, what: &str, changes: &Result<Vec<Change>, Refusal>, company: &Arc<Company>) {
-        self.changed(company.clone());
-        match changes {
-            Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
-            Err(refusal) => self.complain(refusal.message.clone()),
         }
     }
 

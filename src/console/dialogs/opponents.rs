@@ -31,9 +31,8 @@ pub struct OpponentsPage {
 impl OpponentsPage {
     /// Asks for the opponents, which `play` plays.
     pub fn new(play: PlayOpponents) -> (OpponentsPage, Ask) {
-        let mut page = OpponentsPage::default();
-        let ask = page.asked.ask(OpponentsQuestion(play));
-        (page, ask)
+        let (asked, ask) = Pending::asking(OpponentsQuestion(play));
+        (OpponentsPage { found: None, asked }, ask)
     }
 }
 

@@ -32,9 +32,8 @@ pub struct RowsBehind {
 impl RowsBehind {
     /// Asks the question behind a figure.
     pub fn new(title: String, sql: String) -> (RowsBehind, Ask) {
-        let mut asked = Pending::default();
         let of = QueriedTables::Visible(QuerySource::DrillDown);
-        let ask = asked.ask(Query { sql: sql.clone(), of });
+        let (asked, ask) = Pending::asking(Query { sql: sql.clone(), of });
         (RowsBehind { title, sql, asked, answer: None, table: Table::default() }, ask)
     }
 

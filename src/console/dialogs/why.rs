@@ -36,8 +36,7 @@ pub struct WhyBox {
 impl WhyBox {
     /// Asks for the causes of a figure of a week.
     pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (WhyBox, Ask) {
-        let mut asked = Pending::default();
-        let ask = asked.ask(WhyQuestion { quantity, week });
+        let (asked, ask) = Pending::asking(WhyQuestion { quantity, week });
         (WhyBox { figure, quantity, week, asked, answer: None, selected: 0 }, ask)
     }
 

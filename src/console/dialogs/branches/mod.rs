@@ -44,8 +44,7 @@ pub struct BranchesPage {
 impl BranchesPage {
     /// For branches from a week on, at most from the last one; asks what was decided.
     pub fn new(week: u32, last_week: u32) -> (BranchesPage, Ask) {
-        let mut asked = Pending::default();
-        let ask = asked.ask(BranchesQuestion::Decisions);
+        let (asked, ask) = Pending::asking(BranchesQuestion::Decisions);
         let decisions = Decisions::new(week, last_week);
         (BranchesPage { decisions, page: Page::Decisions, asked, problem: None }, ask)
     }

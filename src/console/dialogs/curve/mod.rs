@@ -45,8 +45,7 @@ pub struct CurvePage {
 impl CurvePage {
     /// Asks for the curve of a group.
     pub fn new(group: Group) -> (CurvePage, Ask) {
-        let mut asked = Pending::default();
-        let ask = asked.ask(CurveQuestion(group));
+        let (asked, ask) = Pending::asking(CurveQuestion(group));
         (CurvePage { group, asked, found: None, chosen: Some(Plan::A) }, ask)
     }
 

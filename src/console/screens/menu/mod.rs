@@ -169,8 +169,7 @@ impl Menu {
             return None;
         }
         self.previews.insert(id.to_owned(), None);
-        let mut pending = Pending::default();
-        let ask = pending.ask(PreviewQuestion { id: id.to_owned() });
+        let (pending, ask) = Pending::asking(PreviewQuestion { id: id.to_owned() });
         self.reading.push(pending);
         Some(Effect::Ask(ask))
     }

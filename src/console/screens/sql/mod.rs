@@ -150,8 +150,8 @@ impl Sql {
             return vec![Effect::Complain("no statement to run: type one first".to_owned())];
         };
         self.history.remember(&statement.sql);
-        let mut answer = Pending::default();
-        let ask = answer.ask(Query { sql: statement.sql.clone(), of: self.tables_of(&statement.sql) });
+        let of = self.tables_of(&statement.sql);
+        let (answer, ask) = Pending::asking(Query { sql: statement.sql.clone(), of });
         self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now(), answer });
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }

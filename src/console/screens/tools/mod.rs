@@ -221,7 +221,7 @@ impl ScreenState for Tools {
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
             // What a form said of its call holds no longer.
-            News::Undone(Ok(_), _) | News::Redone(Ok(_), _) => {
+            News::Restored(_, Ok(_), _) => {
                 self.forms.values_mut().for_each(|form| form.answer = None);
             }
             News::Called(tool, answer, _) => {

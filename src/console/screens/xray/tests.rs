@@ -1,12 +1,9 @@
 use super::*;
-use crate::app::Settings;
 use crate::headless::Headless;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::test_kit::{act, asked, company, drawn, on_screen, played, shown, sweep};
+use crate::test_kit::{act, asked, company, drawn, on_screen, played, settings, shown, sweep};
 use novamind_session::{Configuration, Mode, NewRun, Refusal, Session, Storage, Via};
-use novamind_tui::glyphs::Glyphs;
-use novamind_tui::theme::Theme;
 use novamind_worker::queries::{QueriedTables, Query};
 
 fn open(company: Company) -> Company {
@@ -240,18 +237,5 @@ fn requests_that_go_around_the_screen_are_refused() {
         console.finish();
         let lines = std::fs::read_to_string(&file).expect("lines");
         assert!(!lines.contains("\"xray\"") && !lines.contains("\"override\""), "{mode:?}: {lines}");
-    }
-}
-
-fn settings(runs: &std::path::Path) -> Settings {
-    Settings {
-        theme: Theme::bundled("dark").expect("a theme"),
-        keys: Keys::shipped(),
-        glyphs: Glyphs::Braille,
-        configuration: Configuration::shipped(),
-        runs: runs.to_owned(),
-        again: "novamind --run latest".to_owned(),
-        lists_everybody: false,
-        opponents: |_, _, _| Ok(None),
     }
 }

@@ -35,8 +35,8 @@ impl Question for PreviewQuestion {
 }
 
 impl SessionThread {
-    pub(super) fn list_runs(&self) {
-        self.say(News::Runs(self.listed().map_err(|error| error.to_string())));
+    pub(super) fn list_runs(&self, done: Option<Result<String, String>>) {
+        self.say(News::Runs(done, self.listed().map_err(|error| error.to_string())));
     }
 
     /// The runs of the folder; for the experimenter of a study those of all participants.
@@ -62,8 +62,7 @@ impl SessionThread {
 
     /// What became of a run of the folder, and the runs that are there now.
     fn say_kept(&self, done: Result<(), RunError>, words: String) {
-        let list = self.listed().map_err(|error| error.to_string());
-        self.say(News::Kept(done.map(|()| words).map_err(|error| error.to_string()), list));
+        self.list_runs(Some(done.map(|()| words).map_err(|error| error.to_string())));
     }
 
     /// Starts a run in the folder; every call of it is on the disk before it is confirmed.

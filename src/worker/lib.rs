@@ -322,7 +322,7 @@ impl SessionThread {
     /// Does what a person asked for.
     fn answer(&mut self, request: Request) {
         match request {
-            Request::ListRuns => self.list_runs(),
+            Request::ListRuns => self.list_runs(None),
             Request::EndRun(id) => self.end_run(&id),
             Request::DeleteRun(id) => self.delete_run(&id),
             Request::ReadClass(folder, shown) => self.read_class(&folder, shown),

@@ -11,7 +11,9 @@ use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
 use novamind_session::record::Limit;
-use novamind_session::{Change, Debrief, Library, PlaybackPosition, Refusal, TimeLeft, UnsentTexts, Week};
+use novamind_session::{
+    Change, Debrief, Library, PlaybackPosition, Refusal, RunSummary, TimeLeft, UnsentTexts, Week,
+};
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, ToolId};
 
@@ -61,10 +63,8 @@ pub struct DayTold {
 
 /// What a thread behind the screen reports.
 pub enum News {
-    /// The runs of the folder.
-    Runs(Result<Vec<novamind_session::RunSummary>, String>),
-    /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
-    Kept(Result<String, String>, Result<Vec<novamind_session::RunSummary>, String>),
+    /// The runs of the folder; if a run was given up or deleted, after a sentence, or what went wrong.
+    Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
     /// A class was read, to be shown in some way.
     Class(Box<Result<(CollectedClass, Shown), String>>),
     /// The runs are those of a student from now on, because a hand-out of theirs was opened.

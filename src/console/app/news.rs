@@ -29,16 +29,11 @@ use novamind_worker::request::Request;
 impl App {
     pub(super) fn news(&mut self, news: News) {
         match news {
-            News::Runs(list) => {
-                if let Stage::Menu(menu) = &mut self.stage {
-                    let effects = menu.take(list);
-                    self.follow(effects);
-                }
-            }
-            News::Kept(done, list) => {
+            News::Runs(done, list) => {
                 match done {
-                    Ok(text) => self.say(text),
-                    Err(problem) => self.complain(problem),
+                    Some(Ok(text)) => self.say(text),
+                    Some(Err(problem)) => self.complain(problem),
+                    None => {}
                 }
                 if let Stage::Menu(menu) = &mut self.stage {
                     let effects = menu.take(list);

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use super::answering::catch_defect;
 use super::{Job, SessionThread, Workers};
-use crate::message::Message;
+use crate::message::{Delivery, Message};
 use novamind_session::{Refusal, Ticket};
 
 /// A question that a page asks the worker.
@@ -212,20 +212,6 @@ impl<Q: Question> Drop for Reply<Q> {
     }
 }
 
-/// An answer, or how far the work for one has come, on its way to the page that asked.
-pub struct Delivery {
-    put: Box<dyn FnOnce() + Send>,
-    /// It is the answer: nothing follows it.
-    pub is_answer: bool,
-}
-
-impl Delivery {
-    /// Gives it to the page, if that still waits for it.
-    pub fn deliver(self) {
-        (self.put)();
-    }
-}
-
 /// What tests of pages do in place of the worker.
 #[cfg(any(test, feature = "test-kit"))]
 mod in_tests {
@@ -240,6 +226,7 @@ mod in_tests {
         }
 
         /// Reports how far the work has come.
+        #[cfg(any(test, feature = "test-kit"))]
         pub fn put_progress(&self, progress: Q::Progress) {
             if let Some((_, slot)) = &self.0 {
                 lock(slot).progress = Some(progress);

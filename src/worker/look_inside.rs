@@ -80,15 +80,6 @@ pub struct LookCurve {
     pub days: Vec<f64>,
 }
 
-/// Days of a debug run that were simulated.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DaysRan {
-    /// Why they stopped, in words.
-    pub lines: Vec<String>,
-    /// The run is over.
-    pub is_over: bool,
-}
-
 impl Question for LookQuestion {
     type Answer = LookFound;
     type Progress = ();

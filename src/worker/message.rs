@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use crossterm::event::Event;
 
-use crate::asking::Delivery;
 use crate::company::Company;
-use crate::look_inside::DaysRan;
 use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
@@ -59,6 +57,29 @@ pub struct DayTold {
     pub cash: f64,
     /// Active subscriptions of individuals at its end.
     pub subscribers: u32,
+}
+
+/// An answer, or how far the work for one has come, on its way to the page that asked.
+pub struct Delivery {
+    pub(super) put: Box<dyn FnOnce() + Send>,
+    /// It is the answer: nothing follows it.
+    pub is_answer: bool,
+}
+
+impl Delivery {
+    /// Gives it to the page, if that still waits for it.
+    pub fn deliver(self) {
+        (self.put)();
+    }
+}
+
+/// Days of a debug run that were simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DaysRan {
+    /// Why they stopped, in words.
+    pub lines: Vec<String>,
+    /// The run is over.
+    pub is_over: bool,
 }
 
 /// What a thread behind the screen reports.

@@ -22,8 +22,7 @@ use novamind_session::{Change, Refusal, Week};
 use novamind_tui::text::number;
 use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
-use novamind_worker::look_inside::DaysRan;
-use novamind_worker::message::{Instead, News};
+use novamind_worker::message::{DaysRan, Instead, News};
 use novamind_worker::request::Request;
 
 impl App {

@@ -33,7 +33,8 @@ use novamind_tui::widgets::scroll::Scroll;
 use novamind_tui::widgets::{Cell, Column, Field, Table};
 use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
-use novamind_worker::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
+use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use novamind_worker::message::DaysRan;
 use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.

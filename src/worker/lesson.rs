@@ -15,15 +15,13 @@ impl SessionThread {
     /// Does what a person asks of a lesson.
     pub(super) fn in_lesson(&mut self, asked: LessonRequest) {
         match asked {
-            LessonRequest::Guess(value) => {
-                self.with_run(|run| {
-                    let refused = guess_in_lesson(run.session, value).err();
-                    Some(News::InLesson(refused, run.company()))
-                });
-            }
-            LessonRequest::Hint => self.with_run(|run| {
+            LessonRequest::Guess(value) => self.report(|run| {
+                let refused = guess_in_lesson(run.session, value).err();
+                News::InLesson(refused, run.company())
+            }),
+            LessonRequest::Hint => self.report(|run| {
                 let refused = take_hint(run.session).err();
-                Some(News::InLesson(refused, run.company()))
+                News::InLesson(refused, run.company())
             }),
             LessonRequest::TryAgain(step) => self.go_to(
                 |session| try_step_again(session, step),

@@ -22,6 +22,11 @@ pub fn grouped(value: f64, decimals: usize) -> String {
     separated(if is_zero { text.trim_start_matches('-') } else { &text })
 }
 
+/// Rounds to decimals, half to even on the exact binary value.
+pub fn round_to(value: f64, decimals: u32) -> f64 {
+    format!("{value:.*}", decimals as usize).parse().expect("a formatted number reads back")
+}
+
 /// Written digits with separators between thousands.
 fn separated(text: &str) -> String {
     let (sign, digits) = text.strip_prefix('-').map_or(("", text), |digits| ("-", digits));
@@ -268,6 +273,13 @@ pub fn csv_cell(text: &str) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rounding_is_half_to_even_on_the_binary_value() {
+        assert_eq!(round_to(0.25, 1), 0.2);
+        assert_eq!(round_to(0.35, 1), 0.3);
+        assert_eq!(round_to(-0.049, 1), -0.0);
+    }
 
     #[test]
     fn no_zero_has_a_sign_and_no_number_three_hundred_digits() {

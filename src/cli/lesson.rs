@@ -7,12 +7,13 @@ use clap::{Args, Subcommand};
 
 use super::output_file::write_text;
 use super::{Context, Failure, print};
+use crate::course::{Lesson, MEASURED_SEEDS, PlayedPart};
 use crate::lab::{LessonCheck, PlayResult, check_lesson};
 use crate::notation::compact;
 use crate::report::debrief::in_words;
 use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::rules::answers_to_companies;
-use crate::session::{Configuration, Lesson, MEASURED_SEEDS, Session, find_run_to_read};
+use crate::session::{Configuration, Session, find_run_to_read};
 
 /// Options of `lesson`.
 #[derive(Debug, Args)]
@@ -145,7 +146,7 @@ fn debrief(
     let folder = find_run_to_read(&context.runs()?, run)?;
     context.look(&folder, "lesson", "debrief")?;
     let session = Session::open_to_read(&folder, true)?;
-    let played = session.played_part().map_err(|refusal| Failure::failed(refusal.message))?;
+    let played = PlayedPart::of(&session).map_err(|refusal| Failure::failed(refusal.message))?;
     let debrief = played.debrief(answers_to_companies);
     let (path, text) = match (html, markdown) {
         (Some(path), _) => (path, debrief_as_html(&debrief)),

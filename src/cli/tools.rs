@@ -21,7 +21,7 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let numbers = Numbers::shipped();
     let text = match (&options.name, options.json) {
-        (None, false) => describe::overview(),
+        (None, false) => catalogue::overview(),
         (None, true) => {
             let all: Vec<ToolDocument> =
                 CATALOGUE.iter().map(|tool| document(tool.spec(), &numbers)).collect();

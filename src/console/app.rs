@@ -2,9 +2,7 @@
 //!
 //! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
 
-mod branches;
 mod busy;
-mod curve;
 mod guide;
 mod input;
 mod layers;
@@ -12,9 +10,9 @@ mod leaving;
 mod lesson;
 mod limits;
 mod news;
-mod opponents;
 mod orders;
 mod overlay;
+mod pages;
 mod record;
 mod settings;
 mod stopped;
@@ -24,6 +22,7 @@ mod viewer;
 mod visit;
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -50,11 +49,12 @@ use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
+use novamind_worker::Job;
+use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::company::Company;
 use novamind_worker::message::{DayTold, Message};
 use novamind_worker::readings::Reading;
 use novamind_worker::request::Request;
-use novamind_worker::{Job, Question};
 
 pub use busy::Busy;
 pub use layers::Layer;
@@ -70,9 +70,9 @@ const SCREENS_KEPT: usize = 50;
 pub enum Order {
     /// Work for the session's thread.
     Job(Job),
-    /// A question that does not wait for the session's thread.
-    AskNow(Question),
-    /// Stop the person's query.
+    /// A question of a page, and whether days are being simulated: a query does not wait for them.
+    Ask(Ask, bool),
+    /// Stop the user's query and what runs for the user.
     CancelQuery,
     /// Put text into the clipboard of the terminal.
     Copy(String),
@@ -131,8 +131,6 @@ pub enum Stage {
 pub struct Run {
     /// What there is to see.
     pub company: Arc<Company>,
-    /// Stops the person's query.
-    pub interrupt: Option<novamind_session::Interrupt>,
     /// The screen that is shown.
     pub here: ScreenId,
     /// Screens shown before, the last one last.
@@ -155,10 +153,8 @@ pub struct Run {
     pub filing: FilingDialog,
     /// The story of the run, once it is over and was told.
     pub story: Option<Arc<Story>>,
-    /// Counts what has changed the run, so that late answers are told from fresh ones.
-    pub changes: u64,
-    /// What is known for each reading: the count of changes when it was asked.
-    pub asked: BTreeMap<Reading, u64>,
+    /// What was asked of the database since the run has changed last.
+    pub asked: BTreeMap<Reading, Pending<Reading>>,
     /// The first steps, while they are shown.
     pub tour: Option<Tour>,
     /// The run is a recorded one that is played again.
@@ -221,30 +217,10 @@ pub struct App {
     pub note: Option<Note>,
     /// What the person waits for.
     pub busy: Option<Busy>,
-    /// Number of the newest check of a form.
-    checks: u64,
-    /// Screen that asked for it.
-    checker: ScreenId,
     /// Keys that were pressed and begin something.
     pub pending: Vec<Chord>,
-    /// Number of the newest question of the person.
-    questions: u64,
-    /// Number of the newest one of the SQL screen.
-    sql_question: u64,
-    /// Number of the newest one about the rows behind a figure.
-    rows_question: u64,
-    /// Number of the newest question why.
-    why_question: u64,
-    /// Number of the last question what would have been.
-    branches_question: u64,
-    /// The newest question for a curve.
-    curve_question: u64,
-    /// The newest question for opponents.
-    opponents_question: u64,
     /// What plays the opponents of a run.
     opponents: PlayOpponents,
-    /// Number of the last look at hidden state.
-    look_question: u64,
     /// What is to follow when the run is closed.
     closing: Option<Closing>,
     /// The screen on which the run that is being opened begins, where that is not the usual one.
@@ -292,18 +268,8 @@ impl App {
             unsent: unsent::TextsKept::default(),
             note: None,
             busy: None,
-            checks: 0,
-            checker: ScreenId::Tools,
             pending: Vec::new(),
-            questions: 0,
-            sql_question: 0,
-            rows_question: 0,
-            why_question: 0,
-            branches_question: 0,
-            curve_question: 0,
-            opponents_question: 0,
             opponents: settings.opponents,
-            look_question: 0,
             closing: None,
             opens_on: None,
             is_projected: false,
@@ -327,6 +293,10 @@ impl App {
         match message {
             Message::Input(event) => self.take_input(event),
             Message::News(news) => self.news(news),
+            Message::Arrived(delivery) => {
+                delivery.deliver();
+                self.take_answers();
+            }
             Message::Signal(number) => self.leave(Closing::BySignal(number)),
             Message::Time => {
                 if self.busy.as_ref().is_some_and(|busy| busy.stops_script) {
@@ -456,20 +426,11 @@ impl App {
     /// Asks the database for what the screen shows and is not known yet, or no longer true.
     fn load(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        let changes = run.changes;
-        let wanted = run.screens.get(run.here).readings();
-        for reading in wanted {
-            if run.asked.get(reading) == Some(&changes) {
-                continue;
+        for reading in run.screens.get(run.here).readings() {
+            if let Entry::Vacant(place) = run.asked.entry(*reading) {
+                let ask = place.insert(Pending::default()).ask(*reading);
+                self.orders.push(Order::Ask(ask, self.busy.is_some()));
             }
-            run.asked.insert(*reading, changes);
-            let question = Question::of_screen(*reading, changes);
-            run.viewer.iter_mut().for_each(|viewer| viewer.unanswered += 1);
-            self.orders.push(if self.busy.is_some() {
-                Order::AskNow(question)
-            } else {
-                Order::Job(Job::Ask(question))
-            });
         }
         let asks = self.with_screen(|screen, look| screen.ask_run(look)).unwrap_or_default();
         self.follow(asks);

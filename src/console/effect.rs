@@ -1,8 +1,5 @@
 //! What an update asks for: work for the threads behind the screen, and changes of what is shown.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use serde_json::Value;
 
 use super::action::Action;
@@ -12,10 +9,9 @@ use novamind_session::Goal;
 use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
-use novamind_worker::look_inside::LookQuestion;
+use novamind_worker::asking::Ask;
 use novamind_worker::readings::Reading;
 use novamind_worker::request::{Recorded, Request};
-use novamind_worker::resimulation::BranchesQuestion;
 
 impl Effect {
     /// Whether it would change the run.
@@ -47,19 +43,10 @@ pub enum Effect {
     Project(Recorded),
     /// Go somewhere in the replay.
     Go(Goal),
-    /// What a call would do; only the newest answer counts.
-    Check {
-        /// Tool.
-        tool: ToolId,
-        /// Arguments.
-        arguments: Value,
-    },
-    /// Ask the database for the person.
-    Ask(String),
-    /// Ask the database and the tables of the x-ray for the person.
-    AskInside(String),
-    /// Ask the database for the rows behind a figure.
-    AskBehind(String),
+    /// Ask the worker; the page that asks keeps what waits for the answer.
+    Ask(Ask),
+    /// A text of the screen was sent: its place, as the record names it.
+    SentText(&'static str),
     /// Find out why a figure of a week changed.
     AskWhy(Figure),
     /// Show the rows behind a figure.
@@ -68,20 +55,10 @@ pub enum Effect {
     CloseDialogs,
     /// Show the curve of a group, of the first known one if none is named.
     ShowCurve(Option<Group>),
-    /// Draw the curve of a group for the page that is open.
-    AskCurve(Group),
-    /// Find out what would have been; the flag ends the work.
-    AskBranches(BranchesQuestion, Arc<AtomicBool>),
     /// Show the page of the opponents.
     ShowOpponents,
-    /// Play the strong policies in the world of the run; the flag ends the work.
-    PlayOpponents(Arc<AtomicBool>),
-    /// Read the tree of branches in which the run stands.
-    ReadKin,
     /// Leave what is open, after a question where text would be lost, and open another run of the folder by its id.
     OpenRun(String),
-    /// Look at hidden state of the run.
-    LookInside(LookQuestion),
     /// Ask once before words that set a parameter of the run.
     ConfirmWords(String),
     /// Send these words, which set a parameter of the run, from the X-ray screen.

@@ -208,7 +208,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
-    let hides_result = company.rules.hide_result(seen.ended);
+    let hides_result = company.rules.hide_result(seen.ended.is_some());
     let state = match seen.ended {
         _ if hides_result => "OVER".to_owned(),
         _ if company.replayed => "REPLAY".to_owned(),

@@ -225,8 +225,9 @@ impl Headless {
     }
 
     fn count(&mut self, message: &Message) {
-        let unasked = |news: &News| {
-            matches!(
+        let is_answer = match message {
+            Message::Arrived(delivery) => delivery.is_answer,
+            Message::News(news) => !matches!(
                 news,
                 News::Held
                     | News::HandedOut(_)
@@ -234,16 +235,15 @@ impl Headless {
                     | News::TimeLeft(_)
                     | News::Limit(_)
                     | News::Day(..)
-                    | News::WhyProgress(..)
                     | News::WentOn(_)
+                    | News::Changed(_)
                     | News::DatabaseBehind(_)
-                    | News::DatabaseWhole(_)
-                    | News::Reconnected(_)
+                    | News::DatabaseWhole
                     | News::Visit(VisitNews::Due(_))
-            )
+            ),
+            Message::Input(_) | Message::Signal(_) | Message::Time => false,
         };
-        let answers = matches!(message, Message::News(news) if !unasked(news));
-        self.waiting -= u32::from(answers).min(self.waiting);
+        self.waiting -= u32::from(is_answer).min(self.waiting);
     }
 
     /// Hands over what has to be done outside.
@@ -255,11 +255,8 @@ impl Headless {
                         job,
                         Job::NoteQuery(..)
                             | Job::Note(_)
-                            | Job::NotePresence(..)
                             | Job::TakeUp(_)
-                            | Job::StopClock(_)
                             | Job::StartClock
-                            | Job::KeepDrafts(_)
                             | Job::GoOn(_)
                             | Job::Hold
                             | Job::Remember(_)
@@ -268,9 +265,9 @@ impl Headless {
                     self.waiting += u32::from(!silent);
                     self.workers.send(job);
                 }
-                Order::AskNow(question) => {
+                Order::Ask(ask, is_busy) => {
                     self.waiting += 1;
-                    self.workers.ask_now(question);
+                    self.workers.ask(&ask, is_busy);
                 }
                 Order::Write(written) => {
                     self.waiting += 1;

@@ -139,13 +139,8 @@ impl Console {
         for order in self.app.take_orders() {
             match order {
                 Order::Job(job) => self.workers.send(job),
-                Order::AskNow(question) => self.workers.ask_now(question),
-                Order::CancelQuery => {
-                    if let Some(interrupt) = self.app.run().and_then(|run| run.interrupt.as_ref()) {
-                        interrupt.stop();
-                    }
-                    self.workers.stop_what_runs();
-                }
+                Order::Ask(ask, is_busy) => self.workers.ask(&ask, is_busy),
+                Order::CancelQuery => self.workers.stop_what_runs(),
                 Order::Copy(text) => self.screen.copy(&text),
                 Order::Write(files) => files::write_behind(files, self.sender.clone()),
                 Order::SaveQuery(configuration, query) => {

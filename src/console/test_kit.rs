@@ -1,18 +1,23 @@
 //! What the tests of the screens share: companies from runs in memory, a screen that was told everything, its picture
 //! as text, and windows of every size.
 
+use std::path::Path;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::action::Action;
+use super::app::Settings;
 use super::context::Look;
 use super::dialogs::{Dialog, Outcome};
 use super::effect::Effect;
 use super::keys::Keys;
 use super::screens::Screen;
-use novamind_session::{Rows, Session};
+use novamind_session::{Configuration, Rows, Session};
 use novamind_tui::canvas::Canvas;
+use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
+use novamind_worker::asking::{Ask, Question};
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
 pub use novamind_worker::test_kit::{courted, played, session};
@@ -55,6 +60,32 @@ pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
 pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
     let keys = Keys::shipped();
     screen.act(action, &Look { company, keys: &keys, page: 5 })
+}
+
+/// How the console looks in tests.
+pub fn settings(runs: &Path) -> Settings {
+    Settings {
+        theme: Theme::bundled("dark").expect("a theme"),
+        keys: Keys::shipped(),
+        glyphs: Glyphs::Braille,
+        configuration: Configuration::shipped(),
+        runs: runs.to_owned(),
+        again: "novamind --run latest".to_owned(),
+        lists_everybody: false,
+        opponents: |_, _, _| Ok(None),
+    }
+}
+
+/// The question that effects ask, and none but it.
+pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
+    let mut asks = effects.iter().filter_map(|effect| match effect {
+        Effect::Ask(ask) => Some(ask),
+        _ => None,
+    });
+    match (asks.next().and_then(Ask::question), asks.next()) {
+        (Some(question), None) => question,
+        _ => panic!("{effects:?}"),
+    }
 }
 
 /// Draws a screen in a window; the lines of text that are seen.

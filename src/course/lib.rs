@@ -1,6 +1,10 @@
-//! Courses: classes of students, their hand-outs, and what comes back from them (docs/lessons/classes.md).
+//! Courses: lessons as a student meets them, and classes of students with their hand-outs (docs/lessons/classes.md).
+//!
+//! What a lesson is, and the standing of a student, is data of `novamind-record`. What a lesson does in a run while weeks pass
+//! is in `novamind-session`.
 
 mod class;
+mod lesson;
 
 pub use class::class_file::{Class, ToHandOut};
 pub use class::collected_class::CollectedClass;
@@ -9,3 +13,16 @@ pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
 pub use class::finding::ClassFinding;
 pub use class::handout::Handout;
 pub use class::reference::{ClassReference, ranked_goal, share_of_good};
+pub use lesson::answers::{guess_in_lesson, lesson_step, measure_over_part, take_hint};
+pub use lesson::debrief::{
+    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
+    PlayedPart, ReferenceCurve,
+};
+pub use lesson::decisions::{DecisionContrast, PartedDecision, SettingContrast};
+pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
+pub use lesson::runs::{begin_part, try_step_again};
+pub use novamind_record::lesson::{
+    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, Lesson, LessonAccess, LessonCall, LessonGoal,
+    LessonPart, LessonPlan, LessonStanding, LessonStep, MEASURED_SEEDS, MeasuredFigure, Measurement,
+    NumberSource, Over, Pitfall, PitfallBound, RationaleAsked, ReferencePlay, ScheduledCalls,
+};

@@ -7,9 +7,10 @@ use crate::counterfactual::script::Move;
 use crate::why::{Sight, sight};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::Lesson;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
-use novamind_session::{Lesson, Session, new_id, not_readable};
+use novamind_session::{Session, new_id, not_readable};
 use novamind_tools::Refusal;
 
 /// The world of a run.

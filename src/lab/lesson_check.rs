@@ -5,11 +5,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use novamind_course::{Lesson, MEASURED_SEEDS, MeasuredFigure, ReferencePlay, measure_over_part};
 use novamind_rules::answers_to_companies;
-use novamind_session::{
-    Lesson, MEASURED_SEEDS, MeasuredFigure, PartPlay, ReferencePlay, RunError, Session, play_part,
-    play_part_telling,
-};
+use novamind_session::{PartPlay, RunError, Session, play_part, play_part_watched};
 
 /// How far a measured figure may be from the one that a lesson states, as a share of it.
 pub const TOLERANCE: f64 = 0.15;
@@ -206,11 +204,11 @@ fn values_of(
             if wanted == week || (stays && wanted > week) {
                 let problem =
                     |problem| RunError::NotPossible(format!("measured figure {}: {problem}", own.name));
-                *value = own.measurement.over_part(session).map_err(problem)?;
+                *value = measure_over_part(&own.measurement, session).map_err(problem)?;
             }
         }
         Ok(())
     };
-    play_part_telling(&play, answers_to_companies, &mut measure)?;
+    play_part_watched(&play, answers_to_companies, &mut |_| {}, &mut measure)?;
     Ok(values)
 }

@@ -183,7 +183,7 @@ fn prompt(text: &str) -> io::Result<()> {
 
 fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()> {
     let seen = session.company().observe();
-    let hides_result = session.rules().hide_result(session.ended());
+    let hides_result = session.rules().hide_result(session.ended().is_some());
     let dashboard = if hides_result { "" } else { seen.dashboard.as_str() };
     if style.json {
         let event = json!({

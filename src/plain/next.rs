@@ -10,6 +10,7 @@ use super::input::Read;
 use super::lines::Lines;
 use super::prompt;
 use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_course::{LessonAccess, LessonStanding};
 use novamind_report::research::late_lines;
 use novamind_report::review::alike_lines;
 use novamind_session::{Mode, Refusal, Session, TIME_LIMIT, Via, Week};
@@ -45,9 +46,10 @@ pub fn read(arguments: &[Argument], session: &Session, prompts: bool) -> Result<
     let given = |rationale: Value, predictions: Value, naive| Filing::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
     // What a lesson fills in nobody has to type.
-    let fills = session.lesson_fills_forecasts();
+    let access = session.lesson().map(LessonStanding::access);
+    let fills = access.is_some_and(LessonAccess::fills_forecasts);
     let left_out = || if fills { (naive.as_predictions(), [true; 4]) } else { (Value::Null, [false; 4]) };
-    let asks_nothing = fills && session.lesson_asks_no_rationale();
+    let asks_nothing = fills && access.is_some_and(LessonAccess::asks_no_rationale);
     match arguments {
         [] if prompts && !asks_nothing => Ok(Filing::Ask),
         [] => {
@@ -131,7 +133,8 @@ pub fn run(session: &mut Session, filing: Filing) -> Answer {
     match session.advance_given(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
         Ok(week) => report("next", session, &week),
         Err(refusal) if refusal.code == "rationale_missing" => {
-            let form = if session.lesson_fills_forecasts() { "next \"WHY\"" } else { "next \"WHY\" naive" };
+            let fills = session.lesson().is_some_and(|own| own.access().fills_forecasts());
+            let form = if fills { "next \"WHY\"" } else { "next \"WHY\" naive" };
             let message = format!("{}; write {form}, and help next says more", refusal.message);
             Answer::refused("next", Refusal { message, ..refusal })
         }
@@ -147,7 +150,7 @@ pub fn report(command: &str, session: &Session, week: &Week) -> Answer {
     } else {
         "stepped".to_owned()
     };
-    if session.rules().hide_result(week.ended) {
+    if session.rules().hide_result(week.ended.is_some()) {
         return over(command, session, week);
     }
     let mut text = week.dashboard.trim_end().to_owned();
@@ -195,7 +198,8 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
     lines.extend(alike_lines(&seen));
     lines.extend(late_lines(&seen));
     prompt(&format!("{}\n", lines.join("\n")))?;
-    let rationale = match session.lesson_asks_no_rationale() {
+    let access = session.lesson().map(LessonStanding::access);
+    let rationale = match access.is_some_and(LessonAccess::asks_no_rationale) {
         true => None,
         false => match ask_why(input)? {
             None => return Ok(None),
@@ -203,7 +207,7 @@ pub fn ask(session: &Session, input: &mut Lines) -> io::Result<Option<Filing>> {
         },
     };
     let mut forecasts = session.company().naive_forecasts();
-    if session.lesson_fills_forecasts() {
+    if access.is_some_and(LessonAccess::fills_forecasts) {
         let predictions = forecasts.as_predictions();
         return Ok(Some(Filing::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
     }
@@ -293,7 +297,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use novamind_session::{Configuration, Lesson, LessonEntry, NewRun};
+    use novamind_course::{Lesson, guess_in_lesson};
+    use novamind_session::{Configuration, LessonEntry, NewRun};
 
     /// The lesson of two weeks, in memory; its access may be another.
     fn in_lesson(access: &str) -> Session {
@@ -307,7 +312,7 @@ mod tests {
         let entry = LessonEntry { lesson, part: 0, is_judged: true };
         let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-        session.guess_in_lesson(0.5).expect("a guess");
+        guess_in_lesson(&mut session, 0.5).expect("a guess");
         session
     }
 
@@ -324,7 +329,7 @@ mod tests {
         }
         let filing = read(&[], &session, false).expect("it is filed");
         assert!(run(&mut session, filing).is_ok());
-        session.guess_in_lesson(1.0).expect("a guess");
+        guess_in_lesson(&mut session, 1.0).expect("a guess");
         let filing = read(&[], &session, true).expect("it is filed");
         let told = run(&mut session, filing).as_text();
         assert!(told.contains("run ended: lesson \u{b7} day 14\n") && !told.contains("score"), "{told}");

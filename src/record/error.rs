@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::folder::consent::ConsentText;
+use crate::consent::ConsentText;
 
 use novamind_database::ProjectionError;
 use novamind_world::params::ParameterError;

@@ -3,8 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::folder::mode::Mode;
-use crate::trajectory::record::Ended;
+use crate::mode::Mode;
 
 /// The rules of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,9 +123,9 @@ pub enum AtLimit {
 }
 
 impl SessionRules {
-    /// Whether neither result nor figures are shown any more, given how the run ended.
-    pub fn hide_result(&self, ended: Option<Ended>) -> bool {
-        self.hides_results() && ended.is_some()
+    /// Whether neither result nor figures are shown any more: results are kept from participants, and the run is over.
+    pub fn hide_result(&self, is_over: bool) -> bool {
+        self.hides_results() && is_over
     }
 
     /// Whether results are kept from participants.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::folder::mode::Mode;
+use crate::mode::Mode;
 
 /// The study, and the place of this person in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,12 +7,12 @@ use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_word
 use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
 use super::words::{count, money};
 use novamind_base::notation::{grouped, percent, signed_dollars};
-use novamind_glossary::{Term, terms};
-use novamind_session::{
-    CompanyNames, Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, Ended,
-    FigureUnit, FirstDifference, JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve,
-    SettingContrast, ToolId, WeekFigure,
+use novamind_course::{
+    Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, FirstDifference,
+    JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, SettingContrast,
 };
+use novamind_glossary::{Term, terms};
+use novamind_session::{CompanyNames, Ended, FigureUnit, ToolId, WeekFigure};
 
 /// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;
@@ -415,7 +415,7 @@ fn goals(own: &Debrief) -> Vec<Block> {
             Some(false) => "missed",
             None => "not judged",
         };
-        let one = |goal: &novamind_session::GoalPage| {
+        let one = |goal: &novamind_course::GoalPage| {
             let number =
                 |value: Option<f64>| value.map_or("–".to_owned(), |value| goal_amount(goal, value));
             vec![

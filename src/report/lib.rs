@@ -54,7 +54,7 @@ pub mod why;
 mod words;
 pub mod xray;
 
-use novamind_session::Debrief;
+use novamind_course::Debrief;
 
 pub use logbook::Logbook;
 pub use story::Story;

@@ -2,29 +2,30 @@
 
 pub(crate) mod agreement;
 pub(crate) mod baseline;
+pub(crate) mod lesson_entry;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::agreement::agreed;
+use self::lesson_entry::LessonEntry;
 use crate::company::reports::DayReport;
-use crate::lesson::conduct::LessonEntry;
 use crate::model_voice::speaker::{Speaker, model_of};
 use crate::play::Session;
 use crate::recording::folders::{new_id, remove_leftovers};
 use crate::recording::recorder::Recorder;
 use crate::snapshot::sealing::SealKey;
 use novamind_database::{Location, Projector};
+use novamind_record::clock::now;
+use novamind_record::consent::{Agreed, ConsentText};
 use novamind_record::error::RunError;
+use novamind_record::files::create_folder;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use novamind_record::folder::consent::{Agreed, ConsentText};
-use novamind_record::folder::durable::create_folder;
 use novamind_record::folder::manifest::{FORMAT, Manifest, differences, same_world};
-use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{earlier_runs_of, label_of};
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::{HandoutEntry, StudyStamp};
-use novamind_record::trajectory::now;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;

@@ -10,7 +10,6 @@ mod create;
 mod database;
 mod figures;
 mod inside;
-mod lesson;
 mod model_voice;
 mod permission;
 mod play;
@@ -31,6 +30,7 @@ pub use company::reports::{DayReport, Week};
 pub use company::xray::Xray;
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
+pub use create::lesson_entry::LessonEntry;
 pub use create::{NewRun, Storage, StudyEntry};
 pub use database::{RunDatabase, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
 pub use figures::attendance::{
@@ -39,41 +39,67 @@ pub use figures::attendance::{
 pub use figures::changes::{Change, Decisions};
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, truth_behind};
-pub use figures::groups::{GroupWeek, PaidLeads, churn_of_last_week};
+pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
 pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
 pub use figures::pace::Pace;
 pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
 pub use figures::setting::{Audience, SettingId, setting_values};
 pub use figures::sitting_count::SittingCount;
-pub use figures::week::{Booked, Forecasts, WEEK_OF_ENTRY, WeekFigures, entries_of_weeks, naively, week_of};
-pub use figures::week_figure::{FigureUnit, WeekFigure};
+pub use figures::week::{Forecasts, WEEK_OF_ENTRY, entries_of_weeks, naively, week_of};
 pub use inside::look::{Look, WatchedDays};
 pub use inside::shadow::Shadow;
-pub use lesson::conduct::LessonEntry;
-pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
-    PlayedPart, ReferenceCurve,
-};
-pub use lesson::decisions::{DecisionContrast, PartedDecision, SettingContrast};
-pub use lesson::definition::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
-    LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound, RationaleAsked,
-    ReferencePlay, ScheduledCalls,
-};
-pub use lesson::lesson_call::LessonCall;
-pub use lesson::lesson_file::Lesson;
-pub use lesson::measurement::{Measurement, NumberSource, Over};
-pub use lesson::over::is_lesson_over;
-pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
-pub use lesson::reference::{PartPlay, play_part, play_part_telling};
-pub use lesson::standing::LessonStanding;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{Manner, Stub};
+pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
+pub use novamind_record::clock::{ScriptedClock, nanoseconds as nanoseconds_of, steady, written_moment};
+pub use novamind_record::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
+pub use novamind_record::error::RunError;
+pub use novamind_record::figures::{
+    Booked, FigureUnit, GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure, WeekFigures,
+    churn_of_last_week,
+};
+pub use novamind_record::files::{folder_of, write_whole};
+pub use novamind_record::folder::configuration::{
+    Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
+};
+pub use novamind_record::folder::derived::{manifest_of, manifest_text};
+pub use novamind_record::folder::library::{self, Library};
+pub use novamind_record::folder::lock::{SERVER_FILE, is_being_played};
+pub use novamind_record::folder::manifest::{FORMAT, Manifest};
+pub use novamind_record::folder::preview::{RunPreview, run_preview};
+pub use novamind_record::folder::runs::{
+    RunSummary, all_run_folders, base_of_runs, delete_run, find_run, find_run_to_read, list_runs,
+    participant_folder, run_folder,
+};
+pub use novamind_record::mode::Mode;
+pub use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
+pub use novamind_record::stamp::{EarlierRun, LessonStamp, StudyStamp};
+pub use novamind_record::trajectory::record::{
+    Activity, Calculated, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via,
+};
+pub use novamind_record::trajectory::{
+    Line, Record, Trajectory, end_of, policy_of, policy_rationale, record,
+};
+pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
+pub use novamind_voice::CompanyNames;
+pub use novamind_voice::judge::Judgement;
+pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_world::customers::drift::Expectation;
+pub use novamind_world::enterprise::Answer as CompanyAnswer;
+pub use novamind_world::events::{Category, EndCause, Severity, Source};
+pub use novamind_world::fault::Fault;
+pub use novamind_world::identifiers;
+pub use novamind_world::market::competitors::Event as RivalEvent;
+pub use novamind_world::market::surges::Surge;
+pub use novamind_world::reputation::{ReputationCause, Spill, SpillOver};
+pub use novamind_world::settings::{CoreSettings, Settings};
 pub use permission::{REFUSED_LOOK, may_look_inside};
 pub use play::act::Preview;
 pub use play::companion::Companion;
 pub use play::drafts::{Drafts, UnsentTexts};
+pub use play::lesson::judging::measure;
+pub use play::lesson::reference::{PartPlay, play_part, play_part_watched};
 pub use play::once::WeekRequest;
 pub use play::open::{Access, end_run};
 pub use play::undo::undone_calls;
@@ -88,6 +114,7 @@ pub use recording::folders::new_id;
 pub use recording::machine::Machine;
 pub use recording::personal_clock::TimeLeft;
 pub use recording::recorder::lines_afterwards;
+pub use resume::branch::branch_of_lesson;
 pub use resume::branch::{not_saved, write_past};
 pub use resume::look::record_look;
 pub use resume::rebuild::{connection_to_file, rebuild_database};
@@ -104,47 +131,6 @@ pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, Re
 pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use view::{CompanyView, best_starting_channel};
 
-pub use novamind_voice::CompanyNames;
-pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
-pub use novamind_world::enterprise::Answer as CompanyAnswer;
-pub use novamind_world::events::{Category, EndCause, Severity, Source};
-pub use novamind_world::fault::Fault;
-pub use novamind_world::identifiers;
-pub use novamind_world::market::competitors::Event as RivalEvent;
-pub use novamind_world::market::drift::Expectation;
-pub use novamind_world::market::reputation::{ReputationCause, Spill, SpillOver};
-pub use novamind_world::market::surges::Surge;
-pub use novamind_world::settings::{CoreSettings, Settings};
-
-pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
-pub use novamind_record::error::RunError;
-pub use novamind_record::folder::configuration::{
-    Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
-};
-pub use novamind_record::folder::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
-pub use novamind_record::folder::derived::{manifest_of, manifest_text};
-pub use novamind_record::folder::durable::{folder_of, write_whole};
-pub use novamind_record::folder::library::{self, Library};
-pub use novamind_record::folder::lock::{SERVER_FILE, is_being_played};
-pub use novamind_record::folder::manifest::{FORMAT, Manifest};
-pub use novamind_record::folder::mode::Mode;
-pub use novamind_record::folder::preview::{RunPreview, run_preview};
-pub use novamind_record::folder::runs::{
-    RunSummary, all_run_folders, base_of_runs, delete_run, find_run, find_run_to_read, list_runs,
-    participant_folder, run_folder,
-};
-pub use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
-pub use novamind_record::stamp::{EarlierRun, LessonStamp, StudyStamp};
-pub use novamind_record::trajectory::record::{
-    Activity, Calculated, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via,
-};
-pub use novamind_record::trajectory::{
-    Line, Record, ScriptedClock, Trajectory, end_of, nanoseconds as nanoseconds_of, policy_of,
-    policy_rationale, record, steady, written_moment,
-};
-pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
-pub use novamind_voice::judge::Judgement;
-
 /// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who may see the
 /// results.
 pub mod engine {
@@ -157,6 +143,5 @@ pub mod engine {
     pub use crate::database::{Entries, RunDatabase};
     pub use crate::figures::capacity_by_usage::UsageRule;
     pub use crate::figures::changes::changes;
-    pub use crate::figures::groups::{churn, count as count_groups, mood_of};
-    pub use crate::figures::simulated_week::{GroupOfWeek, MeasuredGroup, SimulatedWeek};
+    pub use crate::figures::groups::{count as count_groups, measured_group, mood_of};
 }

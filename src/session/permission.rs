@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::lesson::over::is_lesson_over;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::is_lesson_over;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Ended;
 use novamind_tools::Refusal;
 
@@ -20,7 +20,7 @@ const REFUSED_IN_LESSON: &str =
 /// tells that.
 pub fn may_look_inside(manifest: &Manifest, ended: Option<Ended>, folder: Option<&Path>) -> bool {
     let is_open = manifest.mode == Mode::Debug || (ended.is_some() && is_lesson_over(folder, manifest));
-    is_open && !manifest.session_rules().hide_result(ended)
+    is_open && !manifest.session_rules().hide_result(ended.is_some())
 }
 
 /// Refuses to look where hidden state stays hidden.

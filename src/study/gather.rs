@@ -9,9 +9,10 @@ use serde::Serialize;
 use crate::assignment::Assignment;
 use crate::definition::shortened;
 use crate::visit_log::{VISITS, VisitEvent, VisitLine, visits};
+use novamind_record::clock::nanoseconds;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::{Trajectory, nanoseconds};
+use novamind_record::trajectory::Trajectory;
 use novamind_session::{LabPublicKey, import_run, is_archive_name, lines_afterwards};
 
 /// How deep folders are searched.

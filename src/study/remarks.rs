@@ -4,9 +4,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::append_synced;
-use novamind_record::trajectory::{now, read_regular_text};
+use novamind_record::files::append_synced;
+use novamind_record::files::read_regular_text;
 
 /// Name of the file.
 pub const REMARKS: &str = "remarks.jsonl";

@@ -5,12 +5,13 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::definition::Study;
+use novamind_record::clock::{now, seconds};
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::lock::is_being_played;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::runs::{all_run_folders, last_lines};
 use novamind_record::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
-use novamind_record::trajectory::{Line, Record, now, seconds};
+use novamind_record::trajectory::{Line, Record};
 
 /// A run of a study as it stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::{create_folder, write_whole};
-use novamind_record::trajectory::now;
+use novamind_record::files::{create_folder, write_whole};
 
 /// Name of the file.
 const FILE: &str = "withdrawn.toml";

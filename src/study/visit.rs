@@ -8,13 +8,13 @@ use super::assignment::Place;
 use super::definition::{PracticeOffer, SeedPlan, Study};
 use super::tombstone::Tombstone;
 use super::visit_log::{VisitEvent, VisitLog};
+use novamind_record::consent::{Agreed, ConsentText};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::consent::{Agreed, ConsentText};
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
+use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
 use novamind_session::{Access, NewRun, Session, Storage, StudyEntry};
 

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
-use novamind_record::folder::durable::{append_synced, create_folder};
-use novamind_record::trajectory::{now, read_regular_text};
+use novamind_record::clock::now;
+use novamind_record::files::read_regular_text;
+use novamind_record::files::{append_synced, create_folder};
 use novamind_session::Machine;
 
 /// Name of the file.

@@ -11,6 +11,7 @@ use super::numbers::Numbers;
 use super::refusal::Refusal;
 use super::spec::{ArgumentKind, Range, Spec};
 use super::view::View;
+use novamind_base::notation::plain_numbers;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
@@ -345,4 +346,18 @@ pub fn per_channel_group(
 ) -> Result<IndexMap<Channel, PerGroup>, Refusal> {
     let matrix = sent_per_channel_group(value, field, amount, view)?;
     Ok(matrix.into_iter().map(|(channel, groups)| (channel, values(groups))).collect())
+}
+
+/// Writes a field without a decimal point if its number is whole, where the release returns an integer.
+///
+/// # Errors
+/// Those of the serialiser.
+pub(super) fn plain<T: Serialize, S: Serializer>(data: &T, serializer: S) -> Result<S::Ok, S::Error> {
+    let value = serde_json::to_value(data).map_err(serde::ser::Error::custom)?;
+    plain_numbers(value).serialize(serializer)
+}
+
+/// Data as the JSON of a call.
+pub(super) fn as_data(data: &impl Serialize) -> Value {
+    serde_json::to_value(data).map_or(Value::Null, plain_numbers)
 }

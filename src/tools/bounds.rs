@@ -7,13 +7,9 @@ use serde_json::Value;
 
 use super::arguments::Arguments;
 use super::refusal::Refusal;
-use super::spec::{ArgumentKind, Spec};
+use super::spec::{ArgumentKind, MOST_DOLLARS, Spec};
 use novamind_base::notation::grouped;
 
-/// Most dollars of a price, a discount or a daily budget.
-pub const MOST_DOLLARS: f64 = 1e9;
-/// Most units a day of a quota.
-pub const MOST_UNITS: f64 = 1e15;
 /// Most dollars of a forecast, above and below zero.
 pub const MOST_FORECAST: f64 = 1e15;
 

@@ -1,12 +1,15 @@
-//! The list of all tools, and what is made of it: identifiers, and the one answer that any of them gives.
+//! The catalogue of all tools: each as [`AnyTool`], the one answer that any of them gives, search by name and code.
 
-use serde::{Deserialize, Serialize};
+mod get_tool_documentation;
+
+use std::fmt::Write;
+
+use serde::Serialize;
 use serde_json::{Map, Value};
-use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
 
 use super::analytics::{GetSocialPosts, SetTargetedDevSpend, SetTargetedOpsSpend};
 use super::calculations::{ListDailyCalculations, RegisterDailyCalculation, RemoveDailyCalculation};
-use super::documentation::{DescribeTables, GetToolDocumentation, ListAllTables};
+use super::documentation::{DescribeTables, ListAllTables};
 use super::enterprise::{RejectEnterpriseDeal, SendEnterpriseDeal};
 use super::infrastructure::{GetCostInfo, SetCapacityTier};
 use super::market::{GetGroupInsights, GetMarketOverview, ResearchGroup, ResearchMarket};
@@ -17,24 +20,29 @@ use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
-use super::{AnyTool, Arguments, Kind, Planned, Refusal, Spec, Tool, View};
+use super::tool_id::each_tool;
+use super::{Arguments, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View};
+use get_tool_documentation::GetToolDocumentation;
 use novamind_world::settings::Settings;
 
-/// One list makes the identifiers, the tools and their answers, in the order in which they are shown.
-macro_rules! tools {
-    ($($tool:ident),* $(,)?) => {
-        /// A tool. Calls and records write it as its name: `set_prices`.
-        #[derive(
-            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
-            EnumString, IntoStaticStr,
-        )]
-        #[serde(rename_all = "snake_case")]
-        #[strum(serialize_all = "snake_case")]
-        #[allow(missing_docs)] // Each is described by its `Spec`.
-        pub enum ToolId {
-            $($tool),*
-        }
+/// A tool of which only the name is known: its arguments are JSON, and its answer is one of all.
+pub trait AnyTool: Sync {
+    /// Everything there is to know about it.
+    fn spec(&self) -> &'static Spec;
 
+    /// The present values of its arguments, as a call would send them; empty where there are none.
+    fn current(&self, settings: &Settings) -> Map<String, Value>;
+
+    /// What a call with these arguments would do and say.
+    ///
+    /// # Errors
+    /// The refusals that its [`Spec`] lists, in the order of its checks.
+    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Planned<Answer>, Refusal>;
+}
+
+/// The tools and their answers, from the list of their types.
+macro_rules! catalogue {
+    ($($tool:ident),* $(,)?) => {
         /// All tools, in the order in which they are shown.
         pub static CATALOGUE: [&dyn AnyTool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
 
@@ -63,51 +71,9 @@ macro_rules! tools {
     };
 }
 
-tools! {
-    SetPrices,
-    SetModelTiers,
-    SetUsageQuotas,
-    SetPromotion,
-    SetDailySpend,
-    SetTargetedAdSpend,
-    SetAdsStrength,
-    SetLeadPromotion,
-    PostSocialMedia,
-    GetSocialPosts,
-    SetTargetedOpsSpend,
-    SetTargetedDevSpend,
-    StartResearchProject,
-    ListResearchProjects,
-    ResearchMarket,
-    ResearchGroup,
-    GetMarketOverview,
-    GetGroupInsights,
-    SetCapacityTier,
-    GetCostInfo,
-    SendEnterpriseDeal,
-    RejectEnterpriseDeal,
-    NextWeek,
-    PythonExec,
-    RegisterDailyCalculation,
-    RemoveDailyCalculation,
-    ListDailyCalculations,
-    ListAllTables,
-    DescribeTables,
-    GetToolDocumentation,
-    RegisterScript,
-    RunScript,
-    ListScripts,
-    DeleteScript,
-    Query,
-    GetVars,
-}
+each_tool!(catalogue);
 
 impl ToolId {
-    /// Its name, as calls write it.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
     /// The tool itself.
     pub fn tool(self) -> &'static dyn AnyTool {
         CATALOGUE[self as usize]
@@ -156,6 +122,18 @@ pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
 /// The tool with this code; case does not count.
 pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
+}
+
+/// All tools by module, one line each.
+pub fn overview() -> String {
+    let mut text = String::new();
+    for module in Module::ALL {
+        let _ = writeln!(text, "{}", module.id());
+        for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
+            let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name(), spec.summary);
+        }
+    }
+    text
 }
 
 /// Up to three names of tools that look like a name that does not exist.

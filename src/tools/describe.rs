@@ -1,4 +1,4 @@
-//! The catalogue as text and as JSON, for help, documentation and programs.
+//! A tool as text and as JSON, for help, documentation and programs.
 
 use std::fmt::Write;
 
@@ -6,38 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Numbers;
-use super::bounds::MOST_DOLLARS;
-use super::spec::{Argument, ArgumentKind, Module, Output, Spec};
-use novamind_base::notation::grouped;
-
-impl ArgumentKind {
-    /// The kind in words, for instance `map channel -> map group -> number, >= 0`.
-    pub fn words(&self) -> String {
-        match self {
-            ArgumentKind::Number(range) => format!("number, {}", range.whole_words()),
-            ArgumentKind::Integer(range) => format!("whole number, {}", range.whole_words()),
-            ArgumentKind::Text => "text".to_owned(),
-            ArgumentKind::Structure(words) => (*words).to_owned(),
-            ArgumentKind::Deals(words) => format!("{words}; prices at most {}", grouped(MOST_DOLLARS, 0)),
-            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.whole_words()),
-            ArgumentKind::Matrix(outer, inner, range) => {
-                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.whole_words())
-            }
-        }
-    }
-}
-
-/// All tools by module, one line each.
-pub fn overview() -> String {
-    let mut text = String::new();
-    for module in Module::ALL {
-        let _ = writeln!(text, "{}", module.id());
-        for spec in super::CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
-            let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name(), spec.summary);
-        }
-    }
-    text
-}
+use super::spec::{Argument, Output, Spec};
 
 /// Everything about one tool, with the numbers in force.
 pub fn manual(spec: &Spec, numbers: &Numbers) -> String {

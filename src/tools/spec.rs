@@ -1,9 +1,13 @@
 //! What a tool is, as data: the single source for its form, its command, its route, its documentation and the
 //! check of its arguments.
 
-use super::ToolId;
-use super::bounds::{MOST_DOLLARS, MOST_UNITS};
+use super::tool_id::ToolId;
 use novamind_base::notation::grouped;
+
+/// Most dollars of a price, a discount or a daily budget.
+pub const MOST_DOLLARS: f64 = 1e9;
+/// Most units a day of a quota.
+pub const MOST_UNITS: f64 = 1e15;
 
 /// Everything there is to know about a tool but its code.
 #[derive(Debug)]
@@ -202,6 +206,23 @@ pub enum ArgumentKind {
     Map(Key, Range),
     /// A map of maps to a number.
     Matrix(Key, Key, Range),
+}
+
+impl ArgumentKind {
+    /// The kind in words, for instance `map channel -> map group -> number, >= 0`.
+    pub fn words(&self) -> String {
+        match self {
+            ArgumentKind::Number(range) => format!("number, {}", range.whole_words()),
+            ArgumentKind::Integer(range) => format!("whole number, {}", range.whole_words()),
+            ArgumentKind::Text => "text".to_owned(),
+            ArgumentKind::Structure(words) => (*words).to_owned(),
+            ArgumentKind::Deals(words) => format!("{words}; prices at most {}", grouped(MOST_DOLLARS, 0)),
+            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.whole_words()),
+            ArgumentKind::Matrix(outer, inner, range) => {
+                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.whole_words())
+            }
+        }
+    }
 }
 
 /// Allowed numbers.

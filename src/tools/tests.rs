@@ -2,7 +2,6 @@
 
 mod engine;
 mod market;
-mod order;
 
 use novamind_world::command::ResolvedCommand;
 use serde_json::{Value, json};
@@ -726,4 +725,14 @@ fn get_social_posts() {
     assert_eq!(read(json!({"limit": 1}))["posts"].as_array().map(Vec::len), Some(1));
     assert_eq!(read(json!({"limit": 0})), json!({"posts": []}));
     assert_eq!(read(json!({"limit": -1}))["total"], json!(3));
+}
+
+#[test]
+fn a_project_that_is_running_comes_before_the_money_it_would_take() {
+    let mut company = Company::new();
+    company.call("start_research_project", json!({"tier": 2}));
+    company.world.finance.cash = 1.0;
+    for (tier, code) in [(0, "rd_tier_unknown"), (2, "rd_in_progress"), (1, "insufficient_funds")] {
+        assert_eq!(company.refused("start_research_project", json!({"tier": tier})).0, code, "tier {tier}");
+    }
 }

@@ -1,43 +1,71 @@
-//! What would have been, found on a thread of its own: the run goes on meanwhile.
+//! What would have been: found on its own thread, while the run goes on.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::mpsc::Sender;
 use std::time::Instant;
 
-use super::answering::{answer_on_thread, lock_kept};
+use super::answering::lock_kept;
 use super::causes::folder_of;
 use super::{BETWEEN_DAYS, Open, SessionThread};
-use crate::message::{Message, News};
-use crate::resimulation::{BranchesAsked, BranchesFound, BranchesQuestion};
-use novamind_insight::{DecisionEdit, WhatIf, branch_with_decisions, look_at_what_if, unless_stopped};
+use crate::asking::{Question, Reply};
+use crate::message::News;
+use novamind_insight::{
+    BranchComparison, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions, look_at_what_if,
+};
 use novamind_session::record::LeavingCause;
 use novamind_session::{Access, Refusal, Session};
 
-impl SessionThread {
-    /// Finds what would have been, and reports how far that has come.
-    pub(super) fn find_branches(&mut self, asked: BranchesAsked) {
-        let Some(open) = &mut self.open else { return };
+/// What is asked of the run's record.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BranchesQuestion {
+    /// Which calls can be decided otherwise.
+    Decisions,
+    /// What comes of alternatives from a week on; with futures, also under luck drawn anew.
+    Compare {
+        /// The week.
+        week: u32,
+        /// What each alternative decides otherwise.
+        alternatives: Vec<Vec<DecisionEdit>>,
+        /// How many futures.
+        futures: Option<u32>,
+    },
+}
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub enum BranchesFound {
+    /// The calls of the run, and of how many days its weeks are.
+    Decisions(Vec<PastDecision>, u32),
+    /// Branches side by side.
+    Compared(Box<BranchComparison>, Option<Box<Futures>>),
+}
+
+impl Question for BranchesQuestion {
+    type Answer = BranchesFound;
+    /// How many days were simulated, and of how many.
+    type Progress = (usize, usize);
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let Some(open) = &mut thread.open else { return };
         let folder = folder_of(open);
-        let is_recorded = match &asked.question {
+        let is_recorded = match &self {
             BranchesQuestion::Compare { week, .. } => {
                 let week = *week;
-                self.session_to_look_into(false).is_ok_and(|session| look_at_what_if(session, week))
+                thread.session_to_look_into(false).is_ok_and(|session| look_at_what_if(session, week))
             }
             BranchesQuestion::Decisions => false,
         };
-        let (news, kept) = (self.news.clone(), self.branches.clone());
-        let number = asked.number;
-        let progress = news.clone();
-        let work = move || {
+        let kept = thread.branches.clone();
+        reply.answer_on_thread(move |reply| {
             let mut kept = lock_kept(&kept);
             let own = kept.of(folder?)?;
             own.tell_hidden(is_recorded);
-            answer(&asked, own, &progress)
-        };
-        answer_on_thread(news, work, move |found| News::Branches(number, Box::new(found)));
+            answer(&self, own, reply)
+        });
     }
+}
 
+impl SessionThread {
     /// Makes a branch that keeps the decisions of the run, some of them edited, and opens it.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
         let Some(open) = &mut self.open else { return };
@@ -71,9 +99,9 @@ impl SessionThread {
 }
 
 fn answer(
-    asked: &BranchesAsked,
+    question: &BranchesQuestion,
     own: &mut WhatIf,
-    news: &Sender<Message>,
+    reply: &Reply<BranchesQuestion>,
 ) -> Result<Option<BranchesFound>, Refusal> {
     let told = Mutex::new(Instant::now());
     let progress = |done, all| {
@@ -82,11 +110,11 @@ fn answer(
             && told.elapsed() >= BETWEEN_DAYS
         {
             *told = Instant::now();
-            let _ = news.send(Message::News(News::BranchesProgress(asked.number, done, all)));
+            reply.report((done, all));
         }
-        unless_stopped(&asked.stop)
+        reply.go_on()
     };
-    let (week, alternatives, futures) = match &asked.question {
+    let (week, alternatives, futures) = match question {
         BranchesQuestion::Decisions => {
             return Ok(Some(BranchesFound::Decisions(own.decisions(1)?, own.days_per_week())));
         }

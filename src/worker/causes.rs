@@ -1,37 +1,44 @@
-//! Causes of a change, found on a thread of their own: the run goes on meanwhile.
+//! Why a figure changed in a week: found on its own thread, while the run goes on.
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::mpsc::Sender;
 
-use super::answering::{answer_on_thread, lock_kept};
+use super::answering::lock_kept;
 use super::{Open, SessionThread};
-use crate::message::{Message, News};
-use crate::resimulation::WhyAsked;
-use novamind_insight::{
-    Causes, LastRead, WeekQuestion, Why, folder_of_causes, look_at_figure, unless_stopped,
-};
+use crate::asking::{Question, Reply};
+use novamind_insight::{WeekQuantity, WeekQuestion, Why, WhyProgress, folder_of_causes, look_at_figure};
 use novamind_session::Refusal;
 
-impl SessionThread {
-    /// Finds causes, and reports how far that has come and what they are.
-    pub(super) fn find_causes(&mut self, asked: WhyAsked) {
-        let Some(open) = &self.open else { return };
-        let question = WeekQuestion { quantity: asked.quantity, week: Some(asked.week) };
+/// Why a figure changed in a week.
+#[derive(Debug, Clone)]
+pub struct WhyQuestion {
+    /// The figure.
+    pub quantity: WeekQuantity,
+    /// The week.
+    pub week: u32,
+}
+
+impl Question for WhyQuestion {
+    type Answer = Why;
+    type Progress = WhyProgress;
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let Some(open) = &thread.open else { return };
+        let question = WeekQuestion { quantity: self.quantity, week: Some(self.week) };
         let mut folder = folder_of(open);
         if question.quantity.is_hidden() {
             // A look, which is recorded before anything is shown.
             let looked =
-                self.session_to_look_into(false).and_then(|session| look_at_figure(session, &question));
+                thread.session_to_look_into(false).and_then(|session| look_at_figure(session, &question));
             folder = looked.and(folder);
         }
-        let (news, kept) = (self.news.clone(), self.causes.clone());
-        let number = asked.number;
-        answer_on_thread(
-            news.clone(),
-            move || folder.and_then(|folder| answer(&asked, question, folder, &kept, &news)),
-            move |answer| News::Why(number, Box::new(answer)),
-        );
+        let kept = thread.causes.clone();
+        reply.answer_on_thread(move |reply| {
+            let mut kept = lock_kept(&kept);
+            kept.of(folder?)?.why(question, &|progress| {
+                reply.report(progress);
+                reply.go_on()
+            })
+        });
     }
 }
 
@@ -44,18 +51,4 @@ pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
             Refusal::new("not_possible", "this trajectory stands alone, without the folder of its run")
         }),
     }
-}
-
-fn answer(
-    asked: &WhyAsked,
-    question: WeekQuestion,
-    folder: PathBuf,
-    kept: &Mutex<LastRead<Causes>>,
-    news: &Sender<Message>,
-) -> Result<Option<Why>, Refusal> {
-    let mut kept = lock_kept(kept);
-    kept.of(folder)?.why(question, &|progress| {
-        let _ = news.send(Message::News(News::WhyProgress(asked.number, progress)));
-        unless_stopped(&asked.stop)
-    })
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 use crate::posts::{self, Posts};
+use novamind_course::LessonPage;
 use novamind_insight::HiddenValues;
 use novamind_report::WeekReport;
 use novamind_report::fit::{Fit, fits};
@@ -15,9 +16,8 @@ use novamind_report::lead_costs::{PairCost, pair_costs};
 use novamind_report::needs::{Need, needs};
 use novamind_session::identifiers::{ByGroup, Group};
 use novamind_session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, LessonPage, Mode,
-    Numbers, Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits,
-    WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers,
+    Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
 };
 use novamind_tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
@@ -158,7 +158,7 @@ impl Company {
 
     /// The same of a run that may belong to a lesson: what it stands at is measured.
     pub fn in_lesson(session: &mut Session, before: Option<&Company>) -> Company {
-        let lesson = session.lesson_page();
+        let lesson = LessonPage::of(session);
         Company { lesson, ..Company::after(session, before) }
     }
 

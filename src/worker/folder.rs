@@ -5,18 +5,38 @@ use std::sync::Arc;
 
 use super::run::tell_days;
 use super::{Open, SessionThread};
+use crate::asking::{Question, Reply};
 use crate::company::Company;
 use crate::message::{Instead, News};
 use novamind_rules::answers_to_companies;
 use novamind_session::record::LeavingCause;
 use novamind_session::{
-    Access, NewRun, RunError, RunSummary, SealKey, Session, Storage, all_run_folders, delete_run, end_run,
-    find_run, find_run_to_read, list_runs, rescue, run_preview,
+    Access, NewRun, Refusal, RunError, RunPreview, RunSummary, SealKey, Session, Storage, all_run_folders,
+    delete_run, end_run, find_run, find_run_to_read, list_runs, rescue, run_preview,
 };
 
+/// How a run of the folder went.
+#[derive(Debug, Clone)]
+pub struct PreviewQuestion {
+    /// Id of the run.
+    pub id: String,
+}
+
+impl Question for PreviewQuestion {
+    type Answer = RunPreview;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let found = thread.lists_everybody.then(|| find_run_to_read(&thread.runs, &self.id).ok()).flatten();
+        let runs = found.as_deref().and_then(Path::parent).unwrap_or(&thread.runs);
+        let told = |error: RunError| Refusal::new("not_readable", error.to_string());
+        reply.answer(run_preview(runs, &self.id).map_err(told));
+    }
+}
+
 impl SessionThread {
-    pub(super) fn list_runs(&self) {
-        self.say(News::Runs(self.listed().map_err(|error| error.to_string())));
+    pub(super) fn list_runs(&self, done: Option<Result<String, String>>) {
+        self.say(News::Runs(done, self.listed().map_err(|error| error.to_string())));
     }
 
     /// The runs of the folder; for the experimenter of a study those of all participants.
@@ -32,16 +52,6 @@ impl SessionThread {
         Ok(all)
     }
 
-    pub(super) fn preview_run(&self, id: String) {
-        let place = match self.lists_everybody {
-            true => find_run_to_read(&self.runs, &id).ok().and_then(|own| own.parent().map(Path::to_owned)),
-            false => None,
-        };
-        let runs = place.as_deref().unwrap_or(&self.runs);
-        let preview = run_preview(runs, &id).map_err(|error| error.to_string());
-        self.say(News::Preview(id, preview));
-    }
-
     pub(super) fn end_run(&self, id: &str) {
         self.say_kept(end_run(&self.runs, id), format!("run {id} is given up; you can still open it"));
     }
@@ -52,8 +62,7 @@ impl SessionThread {
 
     /// What became of a run of the folder, and the runs that are there now.
     fn say_kept(&self, done: Result<(), RunError>, words: String) {
-        let list = self.listed().map_err(|error| error.to_string());
-        self.say(News::Kept(done.map(|()| words).map_err(|error| error.to_string()), list));
+        self.list_runs(Some(done.map(|()| words).map_err(|error| error.to_string())));
     }
 
     /// Starts a run in the folder; every call of it is on the disk before it is confirmed.
@@ -137,7 +146,7 @@ impl SessionThread {
             }
         };
         session.answer_companies_by(answers_to_companies);
-        let interrupt = self.queries.connect(&session);
+        self.queries.connect(&session);
         (self.mending, self.inside) = (None, None);
         let mut company = Company::in_lesson(&mut session, None);
         company.remarks.extend(remark);
@@ -145,6 +154,6 @@ impl SessionThread {
         self.company = Some(company.clone());
         (self.open, self.due) = (Some(Open::Played(Box::new(session))), None);
         self.tell_due();
-        self.say(News::Opened(company, interrupt));
+        self.say(News::Opened(company));
     }
 }

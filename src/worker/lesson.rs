@@ -6,6 +6,7 @@ use super::answering::answer_on_thread;
 use super::{Open, SessionThread};
 use crate::message::News;
 use crate::request::LessonRequest;
+use novamind_course::{PlayedPart, begin_part, guess_in_lesson, take_hint, try_step_again};
 use novamind_rules::answers_to_companies;
 use novamind_session::record::LeavingCause;
 use novamind_session::{Refusal, Session};
@@ -14,22 +15,20 @@ impl SessionThread {
     /// Does what a person asks of a lesson.
     pub(super) fn in_lesson(&mut self, asked: LessonRequest) {
         match asked {
-            LessonRequest::Guess(value) => {
-                self.with_run(|run| {
-                    let refused = run.session.guess_in_lesson(value).err();
-                    Some(News::InLesson(refused, run.company()))
-                });
-            }
-            LessonRequest::Hint => self.with_run(|run| {
-                let refused = run.session.hint_in_lesson().err();
-                Some(News::InLesson(refused, run.company()))
+            LessonRequest::Guess(value) => self.report(|run| {
+                let refused = guess_in_lesson(run.session, value).err();
+                News::InLesson(refused, run.company())
+            }),
+            LessonRequest::Hint => self.report(|run| {
+                let refused = take_hint(run.session).err();
+                News::InLesson(refused, run.company())
             }),
             LessonRequest::TryAgain(step) => self.go_to(
-                |session| session.try_step_again(step),
+                |session| try_step_again(session, step),
                 &format!("step {} again; the run before is unchanged", step + 1),
             ),
             LessonRequest::BeginPart(part) => {
-                self.go_to(|session| session.begin_part(part), &format!("part {} begins", part + 1));
+                self.go_to(|session| begin_part(session, part), &format!("part {} begins", part + 1));
             }
             LessonRequest::Debrief => self.find_debrief(),
         }
@@ -50,7 +49,7 @@ impl SessionThread {
     /// Finds what came of the lesson on a thread of its own: its plays are simulated.
     fn find_debrief(&mut self) {
         let Some(open) = &mut self.open else { return };
-        let (played, news) = (open.session().played_part(), self.news.clone());
+        let (played, news) = (PlayedPart::of(open.session()), self.news.clone());
         let work = move || played.map(|played| Some(played.debrief(answers_to_companies)));
         answer_on_thread(news, work, |debrief| News::Debriefed(Arc::new(debrief)));
     }

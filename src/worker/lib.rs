@@ -1,36 +1,30 @@
 //! The threads behind the screen: one that owns the session, two that ask the database.
 //!
-//! The screen sends jobs and never waits; what comes of them returns as news through the channel that also
-//! carries the input. A query waits for the session's thread, so that it sees everything that was confirmed,
-//! unless a week is running: then it sees the state before it.
+//! The screen sends jobs and never waits. The result returns through the channel that also carries the input: as the answer to
+//! the page that asked ([`asking`]), or as news if it concerns more than one page. A query waits for the session's thread, so
+//! that it sees everything that was confirmed, unless a week is running: then it sees the state before it.
 
 mod answering;
-mod branches;
-mod causes;
+pub mod asking;
+pub mod branches;
+pub mod causes;
 mod class;
 pub mod company;
-mod curve;
-mod desk;
-mod folder;
-mod inside;
-mod kin;
+pub mod folder;
 mod lesson;
-mod limits;
 pub mod look_inside;
-mod mending;
 pub mod message;
-mod opponents;
 mod player;
 pub mod posts;
 pub mod preferences;
-mod queries;
+pub mod queries;
+pub mod questions;
 pub mod readings;
 pub mod request;
-pub mod resimulation;
 mod run;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;
-mod values;
+mod upkeep;
 mod visit;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -41,30 +35,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use serde_json::Value;
-
 use crate::company::Company;
-use crate::look_inside::LookQuestion;
 use crate::message::{Message, News};
 use crate::preferences::Preferences;
 use crate::request::Request;
-use crate::resimulation::{BranchesAsked, WhyAsked};
 use answering::words_of;
-use desk::Desk;
 use novamind_insight::{Causes, LastRead, WhatIf};
-use novamind_report::opponents::PlayOpponents;
-use novamind_session::identifiers::Group;
-use novamind_session::record::{LeavingCause, PresenceEvent};
+use novamind_session::record::LeavingCause;
 use novamind_session::{
-    Activity, Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError,
-    Session, UnsentTexts,
+    Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError, Session,
 };
-use novamind_tools::ToolId;
 use queries::QueryThreads;
 use run::OpenRun;
+use visit::Desk;
 
 pub use answering::answer_on_thread;
-pub use queries::Question;
 
 /// Work for the session's thread.
 pub enum Job {
@@ -76,42 +61,18 @@ pub enum Job {
     GoOn(Duration),
     /// Do not go on.
     Hold,
-    /// What a call would do.
-    Check(u64, ToolId, Value),
-    /// Pass a question on once everything confirmed is in the database.
-    Ask(Question),
-    /// Ask the database and the tables of the x-ray; the number tells the answer from others.
-    AskInside(u64, String),
-    /// Find out why a figure changed.
-    FindCauses(WhyAsked),
-    /// Find out what would have been.
-    FindBranches(BranchesAsked),
-    /// Play the opponents of the run; the number tells the answer from others, the flag ends the work.
-    PlayOpponents(u64, PlayOpponents, Arc<AtomicBool>),
-    /// Draw the curve of a group; the number tells the answer from others.
-    FindCurve(u64, Group),
-    /// Read the tree of branches in which the run stands.
-    ReadKin,
-    /// Look at hidden state of the run.
-    LookInside(u64, LookQuestion),
-    /// Look at the true values of a day.
-    ReadHiddenValues(u32),
+    /// Answer a question of a page.
+    Ask(Box<dyn FnOnce(&mut SessionThread) + Send>),
     /// Give the query threads new connections: a defect has ended one.
     Reconnect,
     /// Record what the person asked.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
     /// Record that the person takes up the run.
     TakeUp(Interface),
-    /// Record what the person did besides acting.
-    Note(Activity),
-    /// Record that the person went away or came back, or that the window changed: milliseconds without a key, its size.
-    NotePresence(PresenceEvent, Option<u64>, Option<(u16, u16)>),
-    /// Record that the clock was stopped, and why.
-    StopClock(Option<String>),
-    /// Record that it was started again.
+    /// Record something about the user; nothing is reported.
+    Note(Box<dyn FnOnce(&mut Session) + Send>),
+    /// Record that the clock was started again.
     StartClock,
-    /// Keep texts that were typed and not sent.
-    KeepDrafts(Box<UnsentTexts>),
     /// Say that everything handed over before is done.
     Settle(Sender<()>),
     /// Start with this look the next time, too. One after the other: what was chosen last counts.
@@ -126,6 +87,7 @@ pub enum Job {
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
+    news: Sender<Message>,
     /// Stops the script that the session's thread runs, or its question to the tables of the x-ray, while it does.
     running_stop: Arc<Mutex<Option<Interrupt>>>,
     session: Option<JoinHandle<()>>,
@@ -140,8 +102,8 @@ impl Workers {
         lists_everybody: bool,
     ) -> Workers {
         let (jobs, todo) = channel();
-        let queries = QueryThreads::start(&news, &jobs);
-        let for_session = queries.clone();
+        let queries = QueryThreads::start(&jobs);
+        let (for_session, for_answers) = (queries.clone(), news.clone());
         let running_stop: Arc<Mutex<Option<Interrupt>>> = Arc::default();
         let stop = running_stop.clone();
         let session = std::thread::spawn(move || {
@@ -168,7 +130,7 @@ impl Workers {
             };
             thread.run(&todo);
         });
-        Workers { jobs, queries, running_stop, session: Some(session) }
+        Workers { jobs, queries, news: for_answers, running_stop, session: Some(session) }
     }
 
     /// Hands over a job.
@@ -176,13 +138,9 @@ impl Workers {
         let _ = self.jobs.send(job);
     }
 
-    /// Asks at once, without waiting for the session's thread.
-    pub fn ask_now(&self, question: Question) {
-        self.queries.ask(question);
-    }
-
-    /// Stops the script that runs, and the question that the tables of the x-ray are asked.
+    /// Stops the query of the user, the script that runs, and the question that the tables of the x-ray are asked.
     pub fn stop_what_runs(&self) {
+        self.queries.stop();
         let stop = self.running_stop.lock().unwrap_or_else(PoisonError::into_inner);
         stop.iter().for_each(Interrupt::stop);
     }
@@ -219,7 +177,8 @@ impl Open {
     }
 }
 
-struct SessionThread {
+/// The thread that owns the session.
+pub struct SessionThread {
     open: Option<Open>,
     /// The folder of runs: after a hand-out was opened that of its student.
     runs: PathBuf,
@@ -304,45 +263,18 @@ impl SessionThread {
             Job::Close(cause) => self.close(cause),
             // A run that is still open was not left in good order: the terminal has failed.
             Job::End => self.close(LeavingCause::Hangup),
-            Job::Check(number, tool, arguments) => {
-                self.with_run(|run| Some(News::Checked(number, run.session.check(tool, &arguments))))
+            Job::Ask(answer) => answer(self),
+            Job::Reconnect => drop(self.with_run(|run| run.queries.connect(run.session))),
+            Job::NoteQuery(sql, answer, took, via) => {
+                self.with_run(|run| run.session.note_query(&sql, answer.as_ref(), took, via));
             }
-            Job::Ask(question) => self.with_run(|run| {
-                // A database that cannot be written answers with what it has; the screen says that it is behind.
-                let _ = run.session.wait_for_database();
-                run.queries.ask(question);
-                None
-            }),
-            Job::Reconnect => {
-                self.with_run(|run| run.queries.connect(run.session).map(News::Reconnected));
-            }
-            Job::NoteQuery(sql, answer, took, via) => self.with_run(|run| {
-                run.session.note_query(&sql, answer.as_ref(), took, via);
-                None
-            }),
-            Job::FindCauses(asked) => self.find_causes(asked),
-            Job::FindBranches(asked) => self.find_branches(asked),
-            Job::PlayOpponents(number, play, stop) => self.play_opponents(number, play, stop),
-            Job::FindCurve(number, group) => self.find_curve(number, group),
-            Job::ReadKin => self.read_kin(),
-            Job::AskInside(number, sql) => self.ask_inside(number, &sql),
-            Job::LookInside(number, question) => self.look_inside(number, &question),
-            Job::ReadHiddenValues(day) => self.read_hidden_values(day),
             Job::TakeUp(interface) => self.take_up(interface),
-            Job::Note(activity) => self.with_session(|session| session.activity().note(activity)),
-            Job::NotePresence(event, idle_ms, window) => {
-                self.with_session(|session| session.activity().note_presence(event, idle_ms, window));
-            }
-            // The screen is covered already; a disk that refuses the line is no reason to uncover it.
-            Job::StopClock(reason) => {
-                self.with_session(|session| drop(session.activity().stop_clock(reason.as_deref())));
-            }
+            Job::Note(note) => self.with_session(note),
             Job::StartClock => {
                 self.with_session(|session| drop(session.activity().start_clock()));
                 // Questions may be due after a break.
                 self.tell_due();
             }
-            Job::KeepDrafts(texts) => self.with_session(|session| session.drafts().keep(&texts)),
             Job::Settle(done) => drop(done.send(())),
         }
     }
@@ -390,8 +322,7 @@ impl SessionThread {
     /// Does what a person asked for.
     fn answer(&mut self, request: Request) {
         match request {
-            Request::ListRuns => self.list_runs(),
-            Request::PreviewRun(id) => self.preview_run(id),
+            Request::ListRuns => self.list_runs(None),
             Request::EndRun(id) => self.end_run(&id),
             Request::DeleteRun(id) => self.delete_run(&id),
             Request::ReadClass(folder, shown) => self.read_class(&folder, shown),
@@ -402,35 +333,47 @@ impl SessionThread {
             Request::Replay { recorded, goal, follow } => self.replay(recorded, goal, follow),
             Request::TakeOver(mode) => self.take_over(mode),
             Request::AdoptBranch { week, edits } => self.adopt_branch(week, &edits),
-            Request::Call { tool, arguments } => self.with_run(|run| run.call(tool, &arguments)),
-            Request::Undo => self.with_run(|run| run.undo()),
-            Request::Redo => self.with_run(|run| run.redo()),
+            Request::Call { tool, arguments } => self.report(|run| run.call(tool, &arguments)),
+            Request::Undo => self.report(|run| run.undo()),
+            Request::Redo => self.report(|run| run.redo()),
             Request::Advance { rationale, forecasts } => {
-                self.with_run(|run| run.advance(&rationale, &forecasts));
+                self.report(|run| run.advance(&rationale, &forecasts));
             }
-            Request::RunDays(days) => self.with_run(|run| run.run_days(days)),
-            Request::SetMemo(text) => self.with_run(|run| run.set_memo(&text)),
-            Request::TellStory => self.with_run(|run| run.tell_story()),
-            Request::WriteReport => self.with_run(|run| run.write_report()),
+            Request::RunDays(days) => self.report(|run| run.run_days(days)),
+            Request::SetMemo(text) => self.report(|run| run.set_memo(&text)),
+            Request::TellStory => self.report(|run| run.tell_story()),
+            Request::WriteReport => self.report(|run| run.write_report()),
             Request::Lesson(asked) => self.in_lesson(asked),
             Request::Visit(request) => self.lead(request),
         }
     }
 
-    /// Works on the run that is open, if there is one, and reports what comes of it.
-    fn with_run(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> Option<News>) {
+    /// Works on the run that is open, if there is one.
+    fn with_run<T>(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> T) -> Option<T> {
         let SessionThread { open: Some(open), company: shown, news, queries, running_stop: stop, .. } = self
         else {
-            return;
+            return None;
         };
-        let news = work(&mut OpenRun { session: open.session(), shown, news, queries, stop });
+        let result = work(&mut OpenRun { session: open.session(), shown, news, queries, stop });
         let loss = self.open.as_mut().and_then(|open| open.session().log().loss().map(str::to_owned));
         if let Some(words) = loss {
             // Before what came of the work: nothing goes on from here.
             self.say(News::RecordLost(words));
         }
         self.tell_due();
-        news.into_iter().for_each(|news| self.say(news));
         self.look_after_database();
+        Some(result)
+    }
+
+    /// The same, and reports what came of it.
+    fn report(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> News) {
+        if let Some(news) = self.with_run(work) {
+            self.say(news);
+        }
+    }
+
+    /// Notices a line that the disk has refused, as after any other work.
+    fn notice_losses(&mut self) {
+        self.with_run(|_| ());
     }
 }

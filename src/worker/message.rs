@@ -1,24 +1,15 @@
 //! What arrives at the screen: input, and news of the threads behind it.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use crossterm::event::Event;
 
 use crate::company::Company;
-use crate::look_inside::{DaysRan, LookFound};
-use crate::readings::Reading;
-use crate::resimulation::BranchesFound;
-use novamind_course::CollectedClass;
-use novamind_insight::{CurveExplorer, HiddenValues, Kin, Why, WhyProgress};
+use novamind_course::{CollectedClass, Debrief};
 use novamind_report::Story;
 use novamind_report::class::Shown;
-use novamind_report::opponents::Opponents;
 use novamind_session::record::Limit;
-use novamind_session::{
-    Change, Debrief, Interrupt, Library, PlaybackPosition, Preview, Refusal, Rows, TimeLeft, UnsentTexts,
-    Week,
-};
+use novamind_session::{Change, Library, PlaybackPosition, Refusal, RunSummary, TimeLeft, UnsentTexts, Week};
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, ToolId};
 
@@ -28,6 +19,8 @@ pub enum Message {
     Input(Event),
     /// From the threads behind the screen.
     News(News),
+    /// The answer to a question of a page, or how far the work for it has come.
+    Arrived(Delivery),
     /// A signal asks the program to end, to stop for a while, or to go on.
     Signal(i32),
     /// Time has passed, as the application has asked.
@@ -40,8 +33,6 @@ pub struct Arrival {
     pub company: Option<Arc<Company>>,
     /// Where it is.
     pub place: PlaybackPosition,
-    /// The company has a new database: a handle that stops the person's queries of it.
-    pub interrupt: Option<Interrupt>,
     /// What the person should know.
     pub problem: Option<String>,
 }
@@ -66,22 +57,43 @@ pub struct DayTold {
     pub subscribers: u32,
 }
 
+/// An answer, or how far the work for one has come, on its way to the page that asked.
+pub struct Delivery {
+    pub(super) put: Box<dyn FnOnce() + Send>,
+    /// It is the answer: nothing follows it.
+    pub is_answer: bool,
+}
+
+impl Delivery {
+    /// Gives it to the page, if that still waits for it.
+    pub fn deliver(self) {
+        (self.put)();
+    }
+}
+
+/// Days of a debug run that were simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DaysRan {
+    /// Why they stopped, in words.
+    pub lines: Vec<String>,
+    /// The run is over.
+    pub is_over: bool,
+}
+
 /// What a thread behind the screen reports.
 pub enum News {
-    /// The runs of the folder.
-    Runs(Result<Vec<novamind_session::RunSummary>, String>),
-    /// How a run went; with its id.
-    Preview(String, Result<novamind_session::RunPreview, String>),
-    /// A run was given up or deleted: a sentence, or what went wrong; and the runs of the folder now.
-    Kept(Result<String, String>, Result<Vec<novamind_session::RunSummary>, String>),
+    /// The runs of the folder; if a run was given up or deleted, after a sentence, or what went wrong.
+    Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
     /// A class was read, to be shown in some way.
     Class(Box<Result<(CollectedClass, Shown), String>>),
     /// The runs are those of a student from now on, because a hand-out of theirs was opened.
     HandedOut(String),
-    /// A run is open; with a handle that stops the person's queries.
-    Opened(Arc<Company>, Option<Interrupt>),
-    /// A run is played again; with a handle that stops the person's queries.
-    Replays(Arc<Company>, Option<Interrupt>, Box<PlaybackPosition>),
+    /// A run is open.
+    Opened(Arc<Company>),
+    /// A run is played again.
+    Replays(Arc<Company>, Box<PlaybackPosition>),
+    /// The run was changed by a look at its hidden state.
+    Changed(Arc<Company>),
     /// The replay has gone where it was sent, or tried to.
     SeekResult(Box<Arrival>),
     /// The replay has gone on by itself: it plays, or somebody else has played.
@@ -96,48 +108,20 @@ pub enum News {
     Unsent(Box<UnsentTexts>),
     /// A run could not be opened or created; with what can be done instead.
     NotOpened(String, Option<Instead>),
-    /// What a call would do; the number says which question this answers.
-    Checked(u64, Result<Preview, Refusal>),
     /// A tool was called.
     Called(ToolId, Result<Box<Answer>, Refusal>, Arc<Company>),
-    /// A setting was taken back.
-    Undone(Result<Vec<Change>, Refusal>, Arc<Company>),
-    /// A setting that was taken back was set again.
-    Redone(Result<Vec<Change>, Refusal>, Arc<Company>),
+    /// A setting was undone or redone.
+    Restored(&'static str, Result<Vec<Change>, Refusal>, Arc<Company>),
     /// A day was simulated, or simulated again; with what it came to, where that is news.
     Day(u32, Option<DayTold>),
     /// A week has passed, or was refused.
     Advanced(Result<Box<Week>, Refusal>, Arc<Company>),
-    /// The person's query was answered; the number says which.
-    Answered(u64, Result<Rows, Refusal>, Duration),
-    /// A screen's question was answered; the number counts the changes of the run before it was asked.
-    Read(Reading, u64, Result<Rows, Refusal>),
     /// The database cannot be written: what it tells is older than the company. It is tried again.
     DatabaseBehind(String),
-    /// The database holds everything again; with a handle that stops the person's queries.
-    DatabaseWhole(Option<Interrupt>),
-    /// Queries have a new connection after a defect; with a handle that stops the user's queries.
-    Reconnected(Interrupt),
-    /// How many days were simulated for a question what would have been, and of how many; the number says which.
-    BranchesProgress(u64, usize, usize),
-    /// What would have been.
-    Branches(u64, Box<Result<BranchesFound, Refusal>>),
-    /// What the strong policies make of the world of the run; the number says which question it answers.
-    Opponents(u64, Box<Result<Opponents, Refusal>>),
-    /// The curve of a group was drawn; the number says which question it answers.
-    Curve(u64, Box<Result<Arc<CurveExplorer>, Refusal>>),
-    /// The tree of branches in which a run stands, with its id.
-    Kin(String, Result<Vec<Kin>, Refusal>),
-    /// What was seen of the run from within; the number says which question it answers. With the company where it has changed.
-    LookedInside(u64, Box<Result<LookFound, Refusal>>, Option<Arc<Company>>),
-    /// True values of a day were seen, or are not shown.
-    HiddenValues(Box<Result<Arc<HiddenValues>, Refusal>>),
+    /// The database holds everything again.
+    DatabaseWhole,
     /// Days of a debug run were simulated up to a breakpoint.
     Ran(Result<DaysRan, Refusal>, Arc<Company>),
-    /// How far a question why has come; the number says which.
-    WhyProgress(u64, WhyProgress),
-    /// It was answered.
-    Why(u64, Box<Result<Why, Refusal>>),
     /// The question of a lesson was answered, or a hint was taken: what was refused, if something was.
     InLesson(Option<Refusal>, Arc<Company>),
     /// What came of a part of a lesson.

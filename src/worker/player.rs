@@ -57,12 +57,10 @@ impl SessionThread {
             Ok(false) => return,
             Ok(true) if at_end => self.arrive(Goal::Last, &AtomicBool::new(false)),
             // Whoever looks back stays there, and sees that the record has grown.
-            Ok(true) => {
-                Some(Arrival { company: None, place: playback.place(), interrupt: None, problem: None })
-            }
+            Ok(true) => Some(Arrival { company: None, place: playback.place(), problem: None }),
             Err(problem) => {
                 let problem = Some(format!("{problem}. No longer watching it"));
-                Some(Arrival { company: None, place: playback.place(), interrupt: None, problem })
+                Some(Arrival { company: None, place: playback.place(), problem })
             }
         };
         if let Some(arrival) = arrival {
@@ -92,12 +90,12 @@ impl SessionThread {
         };
         // Everything confirmed is on the disk already; what is left are rows that can be made again.
         let _ = self.put_down(LeavingCause::Quit);
-        let interrupt = self.queries.connect(playback.session());
+        self.queries.connect(playback.session());
         let company = Arc::new(company_of(&playback, None));
         let place = playback.place();
         (self.company, self.due, self.inside) = (Some(company.clone()), None, None);
         self.open = Some(Open::Replayed(Box::new(playback)));
-        self.say(News::Replays(company, interrupt, Box::new(place)));
+        self.say(News::Replays(company, Box::new(place)));
     }
 
     fn open_playback(&self, path: &Path, goal: Goal, follow: bool) -> Result<Playback, RunError> {
@@ -136,7 +134,9 @@ impl SessionThread {
         });
         // What went wrong on the way has led to a new session, too.
         let anew = !matches!(went, Ok(SeekResult::There | SeekResult::Stopped));
-        let interrupt = if anew { self.queries.connect(playback.session()) } else { None };
+        if anew {
+            self.queries.connect(playback.session());
+        }
         let before = self.company.take().filter(|_| !anew);
         let company = Arc::new(company_of(&playback, before.as_deref()));
         self.company = Some(company.clone());
@@ -147,7 +147,7 @@ impl SessionThread {
             Ok(_) => None,
             Err(error) => Some(error.to_string()),
         };
-        Some(Arrival { company: Some(company), place, interrupt, problem })
+        Some(Arrival { company: Some(company), place, problem })
     }
 
     /// Opens a branch that begins at this moment.

@@ -1,99 +1,179 @@
 //! The threads that ask the database, each over a connection of its own.
 
 use std::sync::mpsc::{Sender, channel};
-use std::time::Instant;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-use super::Job;
 use super::answering::catch_defect;
-use crate::message::{Message, News};
+use super::{Job, SessionThread, Workers};
+use crate::asking::{Question, Reply};
 use crate::readings::Reading;
 use novamind_database::query::Limits;
 use novamind_session::{
     Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket, query_refusal,
 };
 
-/// A question for the database.
-pub struct Question {
-    sql: String,
-    by: AskedBy,
+/// A query of the user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Query {
+    /// The statement.
+    pub sql: String,
+    /// What is asked.
+    pub of: QueriedTables,
 }
 
-/// Who asked, with what tells the answer from others.
-enum AskedBy {
-    Person(u64, Option<Ticket>, QuerySource),
-    Screen(Reading, u64),
+/// What a query of the user asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QueriedTables {
+    /// The visible tables; with where the query came from.
+    Visible(QuerySource),
+    /// The tables of the x-ray, too.
+    Hidden,
 }
 
-impl Question {
-    /// A question of the person: its number, the ticket by which it can be stopped, and where it came from.
-    pub fn of_person(sql: String, number: u64, ticket: Option<Ticket>, via: QuerySource) -> Question {
-        Question { sql, by: AskedBy::Person(number, ticket, via) }
+impl Question for Query {
+    /// Rows, and how long they took.
+    type Answer = (Rows, Duration);
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        match self.of {
+            QueriedTables::Visible(via) => thread.ask_database(DatabaseQuestion::Query(self.sql, via, reply)),
+            QueriedTables::Hidden => reply.answer(thread.ask_inside(&self.sql)),
+        }
     }
 
-    /// A question of a screen, with the number of changes of the run before it.
-    pub fn of_screen(reading: Reading, changes: u64) -> Question {
-        Question { sql: reading.sql().to_owned(), by: AskedBy::Screen(reading, changes) }
+    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
+        match self.of {
+            QueriedTables::Visible(via) => {
+                workers.queries.ask(DatabaseQuestion::Query(self.sql, via, reply));
+            }
+            QueriedTables::Hidden => workers.ask_in_turn(self, reply),
+        }
     }
 }
 
-/// The way to the threads that ask: the person's questions and those of screens do not wait for each other.
+impl Question for Reading {
+    type Answer = Rows;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        thread.ask_database(DatabaseQuestion::Reading(self, reply));
+    }
+
+    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
+        workers.queries.ask(DatabaseQuestion::Reading(self, reply));
+    }
+}
+
+impl SessionThread {
+    /// Passes a question on once everything confirmed is in the database.
+    fn ask_database(&mut self, question: DatabaseQuestion) {
+        self.with_run(|run| {
+            // A database that cannot be written answers with what it has; the screen says that it is behind.
+            let _ = run.session.wait_for_database();
+            run.queries.ask(question);
+        });
+    }
+}
+
+/// A question for the database, with the way back to the page that asked.
+enum DatabaseQuestion {
+    Query(String, QuerySource, Reply<Query>),
+    Reading(Reading, Reply<Reading>),
+}
+
+impl DatabaseQuestion {
+    fn sql(&self) -> &str {
+        match self {
+            DatabaseQuestion::Query(sql, ..) => sql,
+            DatabaseQuestion::Reading(reading, _) => reading.sql(),
+        }
+    }
+
+    fn ticket(&self) -> Option<Ticket> {
+        match self {
+            DatabaseQuestion::Query(.., reply) => reply.ticket,
+            DatabaseQuestion::Reading(..) => None,
+        }
+    }
+}
+
+/// The way to the threads that ask: the user's queries and readings of screens do not wait for each other.
 #[derive(Clone)]
 pub(super) struct QueryThreads {
-    person: Sender<QueryJob>,
+    user: Sender<QueryJob>,
     screens: Sender<QueryJob>,
+    /// Stops the user's queries.
+    interrupt: Arc<Mutex<Option<Interrupt>>>,
 }
 
 type Connection = (Box<QueryConnection>, Limits);
 
 /// Answers a question over a connection.
-type AskDatabase = fn(&Connection, &Question) -> Result<Rows, Refusal>;
+type AskDatabase = fn(&Connection, &DatabaseQuestion) -> Result<Rows, Refusal>;
 
 enum QueryJob {
     Connect(Box<QueryConnection>, Limits),
-    Ask(Question),
+    Ask(DatabaseQuestion),
     Disconnect,
 }
 
 impl QueryThreads {
-    /// Starts the threads; what they report goes into the channel of news, what is recorded into that of jobs.
-    pub(super) fn start(news: &Sender<Message>, jobs: &Sender<Job>) -> QueryThreads {
-        let start = || start_thread(news.clone(), jobs.clone(), ask);
-        QueryThreads { person: start(), screens: start() }
+    /// Starts the threads; what is recorded goes into the channel of jobs.
+    pub(super) fn start(jobs: &Sender<Job>) -> QueryThreads {
+        let start = || start_thread(jobs.clone(), ask);
+        QueryThreads { user: start(), screens: start(), interrupt: Arc::default() }
     }
 
-    /// Gives each thread a connection to a run's database; returns what stops the person's queries.
-    pub(super) fn connect(&self, session: &Session) -> Option<Interrupt> {
+    /// Gives each thread a connection to a run's database.
+    pub(super) fn connect(&self, session: &Session) {
         let limits = session.company().query_limits();
-        let mut interrupt = None;
-        if let Ok(own) = session.database().open_connection() {
-            interrupt = Some(own.interrupt());
-            let _ = self.person.send(QueryJob::Connect(Box::new(own), limits));
+        let database = session.database();
+        let user = database.open_connection().ok();
+        self.hold(user.as_ref().map(QueryConnection::interrupt));
+        for (thread, own) in [(&self.user, user), (&self.screens, database.open_connection().ok())] {
+            if let Some(own) = own {
+                let _ = thread.send(QueryJob::Connect(Box::new(own), limits));
+            }
         }
-        if let Ok(own) = session.database().open_connection() {
-            let _ = self.screens.send(QueryJob::Connect(Box::new(own), limits));
-        }
-        interrupt
+    }
+
+    fn hold(&self, interrupt: Option<Interrupt>) {
+        *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
     }
 
     /// Ends the connections, so that the database can be closed.
     pub(super) fn disconnect(&self) {
-        for thread in [&self.person, &self.screens] {
+        self.hold(None);
+        for thread in [&self.user, &self.screens] {
             let _ = thread.send(QueryJob::Disconnect);
         }
     }
 
+    /// The ticket of the user's next query.
+    pub(super) fn ticket(&self) -> Option<Ticket> {
+        let interrupt = self.interrupt.lock().unwrap_or_else(PoisonError::into_inner);
+        interrupt.as_ref().map(Interrupt::ticket)
+    }
+
+    /// Stops the user's query.
+    pub(super) fn stop(&self) {
+        self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(Interrupt::stop);
+    }
+
     /// Asks on the thread that it is for.
-    pub(super) fn ask(&self, question: Question) {
-        let thread = match question.by {
-            AskedBy::Person(..) => &self.person,
-            AskedBy::Screen(..) => &self.screens,
+    fn ask(&self, question: DatabaseQuestion) {
+        let thread = match question {
+            DatabaseQuestion::Query(..) => &self.user,
+            DatabaseQuestion::Reading(..) => &self.screens,
         };
         // The threads end with the program.
         let _ = thread.send(QueryJob::Ask(question));
     }
 }
 
-fn start_thread(news: Sender<Message>, jobs: Sender<Job>, ask: AskDatabase) -> Sender<QueryJob> {
+fn start_thread(jobs: Sender<Job>, ask: AskDatabase) -> Sender<QueryJob> {
     let (asked, questions) = channel();
     std::thread::spawn(move || {
         let mut connection: Option<Connection> = None;
@@ -101,7 +181,7 @@ fn start_thread(news: Sender<Message>, jobs: Sender<Job>, ask: AskDatabase) -> S
             match job {
                 QueryJob::Connect(own, limits) => connection = Some((own, limits)),
                 QueryJob::Disconnect => connection = None,
-                QueryJob::Ask(question) => answer(question, &mut connection, ask, &news, &jobs),
+                QueryJob::Ask(question) => answer(question, &mut connection, ask, &jobs),
             }
         }
     });
@@ -109,10 +189,9 @@ fn start_thread(news: Sender<Message>, jobs: Sender<Job>, ask: AskDatabase) -> S
 }
 
 fn answer(
-    question: Question,
+    question: DatabaseQuestion,
     connection: &mut Option<Connection>,
     ask: AskDatabase,
-    news: &Sender<Message>,
     jobs: &Sender<Job>,
 ) {
     let started = Instant::now();
@@ -127,21 +206,19 @@ fn answer(
         }
     };
     let took = started.elapsed();
-    let report = match question.by {
-        AskedBy::Person(number, _, via) => {
-            let noted = rows.clone();
-            let _ = jobs.send(Job::NoteQuery(question.sql, noted, took, via));
-            News::Answered(number, rows, took)
+    match question {
+        DatabaseQuestion::Query(sql, via, reply) => {
+            let _ = jobs.send(Job::NoteQuery(sql, rows.clone(), took, via));
+            reply.answer(rows.map(|rows| (rows, took)));
         }
-        AskedBy::Screen(reading, changes) => News::Read(reading, changes, rows),
-    };
-    let _ = news.send(Message::News(report));
+        DatabaseQuestion::Reading(_, reply) => reply.answer(rows),
+    }
 }
 
-fn ask((connection, limits): &Connection, question: &Question) -> Result<Rows, Refusal> {
-    let rows = match question.by {
-        AskedBy::Person(_, Some(ticket), _) => connection.ask_as(ticket, &question.sql, *limits),
-        AskedBy::Person(..) | AskedBy::Screen(..) => connection.ask(&question.sql, *limits),
+fn ask((connection, limits): &Connection, question: &DatabaseQuestion) -> Result<Rows, Refusal> {
+    let rows = match question.ticket() {
+        Some(ticket) => connection.ask_as(ticket, question.sql(), *limits),
+        None => connection.ask(question.sql(), *limits),
     };
     rows.map_err(query_refusal)
 }
@@ -149,11 +226,13 @@ fn ask((connection, limits): &Connection, question: &Question) -> Result<Rows, R
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::asking::Pending;
+    use crate::message::Message;
     use crate::test_kit::played;
 
     /// Panics on one statement.
-    fn ask_or_panic(connection: &Connection, question: &Question) -> Result<Rows, Refusal> {
-        assert_ne!(question.sql, "SELECT 'defect'", "a defect");
+    fn ask_or_panic(connection: &Connection, question: &DatabaseQuestion) -> Result<Rows, Refusal> {
+        assert_ne!(question.sql(), "SELECT 'defect'", "a defect");
         ask(connection, question)
     }
 
@@ -162,30 +241,32 @@ mod tests {
         let session = played(0);
         let (news, answers) = channel();
         let (jobs, asked) = channel();
-        let thread = start_thread(news, jobs, ask_or_panic);
+        let thread = start_thread(jobs, ask_or_panic);
         let connect = || {
             let connection = session.database().open_connection().expect("a connection");
             let _ = thread.send(QueryJob::Connect(Box::new(connection), session.company().query_limits()));
         };
-        let answer = |sql: &str, number| {
-            let question = Question::of_person(sql.to_owned(), number, None, QuerySource::Typed);
-            let _ = thread.send(QueryJob::Ask(question));
-            match answers.recv().expect("an answer") {
-                Message::News(News::Answered(of, rows, _)) if of == number => rows,
-                _ => panic!("other news"),
-            }
+        let answer = |sql: &str| {
+            let via = QuerySource::Typed;
+            let query = Query { sql: sql.to_owned(), of: QueriedTables::Visible(via) };
+            let mut pending = Pending::default();
+            let reply = pending.ask(query).reply::<Query>(news.clone()).expect("a query");
+            let _ = thread.send(QueryJob::Ask(DatabaseQuestion::Query(sql.to_owned(), via, reply)));
+            let Ok(Message::Arrived(delivery)) = answers.recv() else { panic!("other news") };
+            delivery.deliver();
+            pending.try_take().expect("an answer").1
         };
         connect();
-        assert!(answer("SELECT 1", 1).is_ok());
-        let refused = answer("SELECT 'defect'", 2).expect_err("a panic");
+        assert!(answer("SELECT 1").is_ok());
+        let refused = answer("SELECT 'defect'").expect_err("a panic");
         assert_eq!(refused.code, "internal_error");
         // The connection that met the panic is never used again.
-        assert_eq!(answer("SELECT 1", 3).expect_err("no connection").code, "sql_error");
+        assert_eq!(answer("SELECT 1").expect_err("no connection").code, "sql_error");
         let noted = |job| matches!(job, Job::NoteQuery(..));
         assert!(noted(asked.recv().expect("a job")));
         assert!(matches!(asked.recv().expect("a job"), Job::Reconnect));
         assert!(noted(asked.recv().expect("a job")));
         connect();
-        assert!(answer("SELECT 1", 4).is_ok());
+        assert!(answer("SELECT 1").is_ok());
     }
 }

@@ -15,8 +15,6 @@ use novamind_tools::ToolId;
 pub enum Request {
     /// List the runs of the folder.
     ListRuns,
-    /// Tell how a run of the folder went.
-    PreviewRun(String),
     /// Give up a run of the folder.
     EndRun(String),
     /// Delete a run of the folder.
@@ -174,7 +172,6 @@ impl Request {
     pub fn is_kept_from_participants(&self) -> bool {
         match self {
             Request::ListRuns
-            | Request::PreviewRun(_)
             | Request::EndRun(_)
             | Request::DeleteRun(_)
             | Request::ReadClass(..)

@@ -9,8 +9,7 @@ use serde_json::Value;
 use super::BETWEEN_DAYS;
 use super::queries::QueryThreads;
 use crate::company::Company;
-use crate::look_inside::DaysRan;
-use crate::message::{DayTold, Message, News};
+use crate::message::{DayTold, DaysRan, Message, News};
 use novamind_insight::Inspect;
 use novamind_report::xray::stop_in_words;
 use novamind_report::{Story, as_html, as_markdown};
@@ -36,7 +35,7 @@ impl OpenRun<'_> {
         company
     }
 
-    pub(super) fn call(&mut self, tool: ToolId, arguments: &Value) -> Option<News> {
+    pub(super) fn call(&mut self, tool: ToolId, arguments: &Value) -> News {
         let hold = |own| *self.stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
         hold(
             self.session
@@ -47,26 +46,26 @@ impl OpenRun<'_> {
         );
         let answer = self.session.call(tool, arguments, Via::Form).map(Box::new);
         hold(None);
-        Some(News::Called(tool, answer, self.company()))
+        News::Called(tool, answer, self.company())
     }
 
-    pub(super) fn undo(&mut self) -> Option<News> {
-        let back = self.session.undo(Via::Palette);
-        Some(News::Undone(back, self.company()))
+    pub(super) fn undo(&mut self) -> News {
+        let changes = self.session.undo(Via::Palette);
+        News::Restored("undone", changes, self.company())
     }
 
-    pub(super) fn redo(&mut self) -> Option<News> {
-        let again = self.session.redo(Via::Palette);
-        Some(News::Redone(again, self.company()))
+    pub(super) fn redo(&mut self) -> News {
+        let changes = self.session.redo(Via::Palette);
+        News::Restored("redone", changes, self.company())
     }
 
-    pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> Option<News> {
+    pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> News {
         let mut tell = tell_days(self.news);
         let week = self.session.advance(rationale, forecasts, Via::Form, &mut tell);
-        Some(News::Advanced(week.map(Box::new), self.company()))
+        News::Advanced(week.map(Box::new), self.company())
     }
 
-    pub(super) fn run_days(&mut self, days: u32) -> Option<News> {
+    pub(super) fn run_days(&mut self, days: u32) -> News {
         let mut tell = tell_days(self.news);
         let breakpoints = self.session.inspect().breakpoints().map_or(0, |set| set.len());
         let run = self.session.inspect().run_until_breakpoint(days, &mut tell);
@@ -74,21 +73,21 @@ impl OpenRun<'_> {
             lines: stop_in_words(&run, self.session.day(), breakpoints),
             is_over: run.week.ended.is_some(),
         });
-        Some(News::Ran(ran, self.company()))
+        News::Ran(ran, self.company())
     }
 
-    pub(super) fn set_memo(&mut self, text: &str) -> Option<News> {
+    pub(super) fn set_memo(&mut self, text: &str) -> News {
         let kept = self.session.set_memo(text);
-        Some(News::MemoKept(kept, self.company()))
+        News::MemoKept(kept, self.company())
     }
 
-    pub(super) fn tell_story(&mut self) -> Option<News> {
-        Some(News::Told(Arc::new(Story::of(self.session))))
+    pub(super) fn tell_story(&mut self) -> News {
+        News::Told(Arc::new(Story::of(self.session)))
     }
 
-    pub(super) fn write_report(&mut self) -> Option<News> {
+    pub(super) fn write_report(&mut self) -> News {
         let story = Story::of(self.session);
-        Some(News::Reported(vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))]))
+        News::Reported(vec![("report.md", as_markdown(&story)), ("report.html", as_html(&story))])
     }
 }
 

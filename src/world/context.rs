@@ -4,9 +4,9 @@ use super::events::ServiceDay;
 use super::morning::Morning;
 use super::params::Params;
 use super::product::ads::AdLoad;
-use super::product::quality::TenureTable;
 use super::random::Streams;
 use super::settings::Settings;
+use crate::quality::TenureTable;
 
 /// The day as those who feel, decide, negotiate and pay meet it.
 #[derive(Clone, Copy)]

@@ -16,23 +16,24 @@ use super::held::Held;
 use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
-use super::market::reputation::ReputationWrite;
 use super::market::social::crowd::{self, Voices};
 use super::market::social::opinions::Scene;
 use super::market::social::press;
-use super::market::{arrivals, competitors, drift, economy, reputation, studies, surges, yields};
+use super::market::{arrivals, competitors, economy, studies, surges, yields};
 use super::morning::Morning;
 use super::params::Params;
 use super::product::ads::AdLoad;
-use super::product::quality::{TenureTable, service_penalty};
 use super::product::{ads, development, research, service, usage};
 use super::random::Streams;
 use super::retention::billing::{self, Bills};
 use super::retention::issues::{self, IssueBatch, Settled};
-use super::retention::refresh_block;
 use super::retention::renewal::{self, Decisions, RenewalContext};
-use super::retention::satisfaction::{self, Mood};
+use super::retention::{refresh_block, satisfaction};
 use super::state::World;
+use crate::customers::drift;
+use crate::quality::{TenureTable, service_penalty};
+use crate::reputation;
+use crate::reputation::{Mood, ReputationWrite};
 
 /// What the player never sees of a day; read by the x-ray and by the comparison with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]

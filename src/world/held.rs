@@ -3,6 +3,7 @@
 
 use super::identifiers::ByGroup;
 use super::market::leads::LeadFactors;
+use super::product::service::HeldService;
 
 /// Which inputs are held from a day on, and at what. What is not named takes its course.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,15 +24,6 @@ pub struct Held {
     pub month_days: Vec<f64>,
     /// What strains the service, day by day; empty where it takes its course.
     pub service: Vec<HeldService>,
-}
-
-/// What strains the service on a day.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldService {
-    /// Share of the metered usage that counts as its load.
-    pub load: f64,
-    /// The day whose luck decides on outages, latency and errors.
-    pub luck_of: u32,
 }
 
 impl Held {

@@ -2,6 +2,10 @@
 //!
 //! Read [`day::step_day`] first: it is the story of a day. Every mechanism it calls is a function over the parts
 //! it touches, and every formula a small pure function with check values as its test (`docs/mechanics/README.md`).
+//!
+//! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`, `quota`, `series`;
+//! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`; `held`,
+//! `state`; `command`, `day`.
 
 pub mod canonical;
 pub mod command;
@@ -18,8 +22,10 @@ pub mod market;
 pub mod morning;
 pub mod params;
 pub mod product;
+pub mod quality;
 pub mod quota;
 pub mod random;
+pub mod reputation;
 pub mod retention;
 mod series;
 pub mod settings;

@@ -1,9 +1,9 @@
 //! What is frozen in the morning for the whole day.
 
 use super::identifiers::{ByGroup, ByPlan, Group, Plan};
-use super::market::drift::Expectation;
-use super::product::quality::delivered_quality;
 use super::settings::CoreSettings;
+use crate::customers::drift::Expectation;
+use crate::quality::delivered_quality;
 
 /// What is frozen in the morning: today's improvements, finished research, drift and rivals reach individuals tomorrow.
 #[derive(Debug, Clone)]

@@ -28,7 +28,7 @@ fn older_figures_are_marked_until_the_database_is_whole_again() {
         console.shows(BANNER);
     }
     console.size = (120, 40);
-    console.app.update(Message::News(News::DatabaseWhole(None)));
+    console.app.update(Message::News(News::DatabaseWhole));
     console.hand_over();
     console.settle().expect("everything is asked again");
     let after = console.screen();

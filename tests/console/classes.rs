@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::course::{Class, ClassCollection, ClassSources, Handout, ToHandOut};
+use novamind::course::{Class, ClassCollection, ClassSources, Handout, Lesson, ToHandOut, guess_in_lesson};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Lesson, Session, Via};
+use novamind::session::{Access, Session, Via};
 use novamind::tui::theme::Theme;
 use serde_json::json;
 
@@ -29,7 +29,7 @@ fn play(handout: &Path, runs: &Path, price: f64) {
     let prices = json!({"A": price, "B": price * 2.5, "C": price * 6.25});
     session.call("set_prices", &prices, Via::Script).expect("prices");
     while session.ended().is_none() {
-        let _ = session.guess_in_lesson(if price < 20.0 { 2.0 } else { 1.0 });
+        let _ = guess_in_lesson(&mut session, if price < 20.0 { 2.0 } else { 1.0 });
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }

@@ -4,11 +4,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use novamind::course::{
+    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, guess_in_lesson, try_step_again,
+};
 use novamind::report::{debrief_as_html, debrief_as_markdown};
 use novamind::rules::answers_to_companies;
 use novamind::session::{
-    Access, Configuration, Debrief, DecisionComparison, Lesson, LessonEntry, Mode, NewRun, PartPlay,
-    ReferencePlay, Session, Storage, WeekFigure, play_part,
+    Access, Configuration, LessonEntry, Mode, NewRun, PartPlay, Session, Storage, WeekFigure, play_part,
 };
 use serde_json::json;
 
@@ -49,7 +51,7 @@ fn played(folder: &Path, price: u32, from: u32) -> Session {
 
 fn finished(mut session: Session, price: u32, from: u32) -> Session {
     for at in 0..2 {
-        session.guess_in_lesson(1.0).expect("a guess");
+        guess_in_lesson(&mut session, 1.0).expect("a guess");
         if at == from {
             call(&mut session, "set_prices", json!({"A": price, "B": price, "C": price}));
         }
@@ -59,7 +61,7 @@ fn finished(mut session: Session, price: u32, from: u32) -> Session {
 }
 
 fn debrief(session: &Session) -> Debrief {
-    session.played_part().expect("it is over").debrief(answers_to_companies)
+    PlayedPart::of(session).expect("it is over").debrief(answers_to_companies)
 }
 
 fn reference(play: &ReferencePlay) -> Vec<f64> {
@@ -146,16 +148,16 @@ fn a_part_that_is_judged_by_another_figure_than_cash_is_told_in_it() {
 fn another_try_begins_where_the_first_one_did() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = played(folder.path(), 30, 0);
-    let mut again = first.try_step_again(0).expect("another try");
+    let mut again = try_step_again(&first, 0).expect("another try");
     let begun = student(&folder.path().join("other"));
     assert_eq!(again.settings(), begun.settings());
     assert_eq!(again.lesson().map(|own| (own.tries(0), own.guess(0))), Some((2, Some(1.0))));
-    assert_eq!(again.guess_in_lesson(2.0).err().map(|refusal| refusal.code), Some("no_question"));
+    assert_eq!(guess_in_lesson(&mut again, 2.0).err().map(|refusal| refusal.code), Some("no_question"));
     for _ in 0..2 {
         if again.day() == 0 {
             call(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
         } else {
-            again.guess_in_lesson(1.0).expect("the step after it asks");
+            guess_in_lesson(&mut again, 1.0).expect("the step after it asks");
         }
         week(&mut again);
     }
@@ -169,11 +171,11 @@ fn another_try_begins_where_the_first_one_did() {
 fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = student(folder.path());
-    session.guess_in_lesson(0.5).expect("a guess");
+    guess_in_lesson(&mut session, 0.5).expect("a guess");
     week(&mut session);
-    assert_eq!(session.played_part().expect_err("it goes on").code, "lesson_not_over");
+    assert_eq!(PlayedPart::of(&session).expect_err("it goes on").code, "lesson_not_over");
     let other = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
-    assert_eq!(other.played_part().expect_err("no lesson").code, "not_in_a_lesson");
+    assert_eq!(PlayedPart::of(&other).expect_err("no lesson").code, "not_in_a_lesson");
 }
 
 #[test]

@@ -4,9 +4,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use novamind::course::{Lesson, begin_part, try_step_again};
 use novamind::insight::{Inspect, WeekQuestion, look_at_figure, open_to_look_inside};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Lesson, PartPlay, Playback, SealKey, Session, may_look_inside, play_part};
+use novamind::session::{Access, PartPlay, Playback, SealKey, Session, may_look_inside, play_part};
 use novamind::world::identifiers::Group;
 
 use crate::support::lessons::{begin, code, lesson_of, week};
@@ -86,7 +87,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
         assert!(!may_look_inside(session.manifest(), session.ended(), session.folder()));
     };
     hidden(&mut first);
-    let mut second = first.begin_part(1).expect("the second part");
+    let mut second = begin_part(&first, 1).expect("the second part");
     hidden(&mut first);
     drop(first);
     let playback = Playback::open(&own).expect("a replay");
@@ -128,7 +129,7 @@ fn a_try_that_was_cut_before_its_step_began_is_counted_when_it_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path(), "gates", PARTS);
     week(&mut session).expect("a week");
-    let again = session.try_step_again(0).expect("another try");
+    let again = try_step_again(&session, 0).expect("another try");
     let own = folder_of(&again);
     let standing = again.lesson().expect("a lesson").clone();
     assert_eq!(standing.tries(0), 2);
@@ -155,63 +156,7 @@ fn cut(folder: &Path, lines: &[&str]) {
 }
 
 /// Companies are waiting after some weeks; the good play answers them by rules.
-const RULED: &str = r#"
-title = "Answers"
-minutes = 5
-learning_goal = "You find out what an answer is worth."
-
-[[part]]
-scenario = "competitor-off"
-seed = 11
-cash = 20_000_000
-capacity = "follows usage"
-start_weeks = 4
-
-[[part.start]]
-week = 0
-calls = [
-  'set_prices {"A": 14, "B": 32, "C": 55}',
-  'set_model_tiers {"A": 4, "B": 4, "C": 4}',
-  'set_usage_quotas {"A": 300, "B": 30000, "C": 1000000}',
-  'set_targeted_dev_spend {"targeted_spend": {"E1": 4000, "E2": 5000, "E3": 5000}}',
-  'set_targeted_ad_spend {"targeted_spend": {"social_media": {"E1": 4000, "E2": 4000, "E3": 4000}, "linkedin": {"E1": 4000, "E2": 4000, "E3": 4000}}}',
-]
-
-[[part.step]]
-title = "Answer"
-text = "Answer them."
-weeks = 4
-hints = ["Answer."]
-
-[[part.step.goal]]
-text = "Recurring revenue as of the good play"
-figure = "recurring revenue"
-relative = 0.9
-
-[[part.step]]
-title = "Wait"
-text = "Wait."
-weeks = 1
-hints = ["Wait."]
-
-[[pitfall]]
-name = "silence"
-figure = "recurring revenue"
-below = 1.0
-say = "Nobody has signed."
-
-[good]
-text = "Half of the list price for everybody."
-[[good.play]]
-week = 4
-every = 1
-until = 8
-calls = ['rules: offer rest: C list*0.5, B list*0.5, A list*0.5']
-
-[bad]
-text = "No answer."
-pitfall = "silence"
-"#;
+const RULED: &str = include_str!("../data/lessons/answers-by-rules.toml");
 
 #[test]
 fn a_goal_is_held_against_a_good_play_that_answers_by_rules() {

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use novamind::course::{Lesson, LessonPage, guess_in_lesson, lesson_step, take_hint, try_step_again};
 use novamind::insight::{DecisionEdit, OfRecord, WhatIf, branch_with_decisions};
 use novamind::lab::check_plays;
-use novamind::session::{Access, Configuration, Ended, Lesson, Mode, Session, Via, verify};
+use novamind::session::{Access, Configuration, Ended, Mode, Session, Via, verify};
 use serde_json::json;
 
 use crate::support::lessons::{self, code, lesson_of, week};
@@ -130,20 +131,20 @@ fn a_lesson_asks_judges_and_ends() {
     assert_eq!(code(refused), "not_in_this_lesson");
     let refused = session.call("set_capacity_tier", &json!({"tier": 3}), Via::Plain);
     assert_eq!(code(refused), "not_in_this_lesson");
-    assert_eq!(code(session.guess_in_lesson(f64::NAN)), "guess_not_possible");
-    session.guess_in_lesson(950_000.0).expect("a guess");
-    assert_eq!(code(session.guess_in_lesson(1.0)), "no_question");
-    assert_eq!(session.hint_in_lesson().expect("a hint"), "Try.");
+    assert_eq!(code(guess_in_lesson(&mut session, f64::NAN)), "guess_not_possible");
+    guess_in_lesson(&mut session, 950_000.0).expect("a guess");
+    assert_eq!(code(guess_in_lesson(&mut session, 1.0)), "no_question");
+    assert_eq!(take_hint(&mut session).expect("a hint"), "Try.");
     week(&mut session).expect("a week");
     week(&mut session).expect("a week");
     let standing = session.lesson().expect("a lesson");
     let cash = session.weeks().last().expect("a week").cash;
     assert_eq!(standing.outcome(0).expect("an outcome").value, Some(cash));
     assert_eq!(standing.goals(0)[0].met, Some(cash >= 900_000.0));
-    assert_eq!(session.lesson_step(), Some(1));
+    assert_eq!(lesson_step(&session), Some(1));
     assert_eq!(session.params().quality.base_product_quality, 0.4);
-    assert_eq!(code(session.guess_in_lesson(3.0)), "guess_not_possible");
-    session.guess_in_lesson(2.0).expect("a guess");
+    assert_eq!(code(guess_in_lesson(&mut session, 3.0)), "guess_not_possible");
+    guess_in_lesson(&mut session, 2.0).expect("a guess");
     week(&mut session).expect("a week");
     week(&mut session).expect("a week");
     assert_eq!(session.ended(), Some(Ended::Lesson));
@@ -162,7 +163,7 @@ fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_lock
     assert_eq!(code(what_if().decisions(1)), "guess_first");
     assert_eq!(code(what_if().compare(1, None, &[], on)), "guess_first");
     assert_eq!(code(session.branch(1, Mode::Sandbox)), "guess_first");
-    session.guess_in_lesson(950_000.0).expect("a guess");
+    guess_in_lesson(&mut session, 950_000.0).expect("a guess");
     week(&mut session).expect("a week");
     let decided = |text: &str| vec![vec![text.parse::<DecisionEdit>().expect(text)]];
     for text in [
@@ -186,17 +187,17 @@ fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_lock
 fn the_record_of_a_lesson_is_replayed_and_taken_up_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path());
-    session.guess_in_lesson(1.0).expect("a guess");
-    session.hint_in_lesson().expect("a hint");
+    guess_in_lesson(&mut session, 1.0).expect("a guess");
+    take_hint(&mut session).expect("a hint");
     week(&mut session).expect("a week");
     let (hash, own) = (session.state_hash(), session.folder().expect("a folder").to_owned());
-    let page = session.lesson_page().expect("a page");
+    let page = LessonPage::of(&mut session).expect("a page");
     drop(session);
     let mut again = Session::open(&own, Access::Write, true).expect("it opens");
     assert_eq!(again.state_hash(), hash);
-    assert_eq!(again.lesson_page().expect("a page"), page);
+    assert_eq!(LessonPage::of(&mut again).expect("a page"), page);
     week(&mut again).expect("a week");
-    again.guess_in_lesson(1.0).expect("a guess");
+    guess_in_lesson(&mut again, 1.0).expect("a guess");
     week(&mut again).expect("a week");
     week(&mut again).expect("a week");
     assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
@@ -212,7 +213,7 @@ fn a_company_that_goes_bankrupt_in_a_lesson_is_judged_before_the_end_and_once() 
         let spend = json!({"operations": operations, "development": 0});
         session.call("set_daily_spend", &spend, Via::Plain).expect("spending");
         for own in 0..=step {
-            session.guess_in_lesson(1.0).expect("a guess");
+            guess_in_lesson(&mut session, 1.0).expect("a guess");
             for _ in 0..2 {
                 if session.ended().is_none() {
                     week(&mut session).expect("a week");
@@ -240,7 +241,7 @@ fn a_company_that_goes_bankrupt_in_a_lesson_is_judged_before_the_end_and_once() 
 fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path());
-    session.guess_in_lesson(1.0).expect("a guess");
+    guess_in_lesson(&mut session, 1.0).expect("a guess");
     week(&mut session).expect("a week");
     week(&mut session).expect("a week");
     let standing = session.lesson().expect("a lesson").clone();
@@ -269,21 +270,21 @@ fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opene
 fn another_try_begins_where_the_step_began_and_is_counted() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin(folder.path());
-    session.guess_in_lesson(1.0).expect("a guess");
+    guess_in_lesson(&mut session, 1.0).expect("a guess");
     week(&mut session).expect("a week");
     week(&mut session).expect("a week");
-    session.guess_in_lesson(1.0).expect("a guess");
+    guess_in_lesson(&mut session, 1.0).expect("a guess");
     let begun = session.state_hash();
     week(&mut session).expect("a week");
-    let again = session.try_step_again(1).expect("another try");
+    let again = try_step_again(&session, 1).expect("another try");
     assert_eq!(again.state_hash(), begun);
     let standing = again.lesson().expect("a lesson");
     assert_eq!((standing.tries(0), standing.tries(1)), (1, 2));
     assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess stands");
     assert!(standing.goals(0).len() == 1 && standing.goals(1).is_empty());
-    let third = again.try_step_again(1).expect("a third try");
+    let third = try_step_again(&again, 1).expect("a third try");
     assert_eq!(third.lesson().expect("a lesson").tries(1), 3);
-    assert_eq!(code(third.try_step_again(2)), "step_unknown");
+    assert_eq!(code(try_step_again(&third, 2)), "step_unknown");
 }
 
 #[test]

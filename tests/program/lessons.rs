@@ -1,8 +1,10 @@
-//! Lessons of one's own, as the author's guide says.
+//! Lessons of one's own, as the author's guide says, and lessons line by line.
 
 use std::fs;
 
-use crate::support::home::Home;
+use serde_json::Value;
+
+use crate::support::home::{Home, said};
 
 #[test]
 fn a_lesson_is_copied_changed_and_checked() {
@@ -43,4 +45,18 @@ fn a_lesson_is_copied_changed_and_checked() {
     assert_eq!(home.run(&["lesson", "show", &path]).code, 0);
     home.run(&["lesson", "copy", "ladder", "somewhere/lesson.txt"]).fails(2, &[".toml"]);
     home.run(&["lesson", "copy", "nothing", "mine"]).fails(2, &["there is no lesson nothing"]);
+}
+
+#[test]
+fn another_try_is_judged_by_a_good_play_that_answers_by_rules() {
+    let home = Home::new();
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/lessons/answers-by-rules.toml");
+    let lines = "next\nnext\nnext\nnext\nagain 1\nnext\nnext\nnext\nnext\nnext\n";
+    let played = said(home.program().args(["lesson", "play", plan, "--plain", "--json"]), lines);
+    let pages = played.objects();
+    let weeks: Vec<bool> =
+        pages.iter().filter(|page| page["command"] == "next").map(|page| page["ok"] == true).collect();
+    assert_eq!(weeks, [true; 9], "the second step begins once the first is judged: {}", played.out);
+    let again = pages.iter().find(|page| page["command"] == "again").expect("another try");
+    assert_eq!(again["data"]["goals"][0]["met"], Value::Null, "it is not judged yet: {again}");
 }

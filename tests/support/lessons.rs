@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::session::{Configuration, Lesson, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via};
+use novamind::course::Lesson;
+use novamind::session::{Configuration, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via};
 
 /// The lesson of a plan, in a file of that name.
 pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {

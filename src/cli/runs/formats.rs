@@ -97,5 +97,5 @@ fn surroundings(run: &Transcript) -> Surroundings {
 /// Without the server's page, the list of tools.
 #[cfg(not(feature = "server"))]
 fn surroundings(_: &Transcript) -> Surroundings {
-    Surroundings { page: crate::tools::describe::overview(), tools: Vec::new() }
+    Surroundings { page: crate::tools::catalogue::overview(), tools: Vec::new() }
 }

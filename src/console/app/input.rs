@@ -1,8 +1,5 @@
 //! Keys, clicks and pasted text.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use crossterm::event::{Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Position;
 
@@ -14,8 +11,6 @@ use crate::dialogs::help::Help;
 use crate::dialogs::palette::Palette;
 use crate::dialogs::reader::Reader;
 use crate::dialogs::report::Report;
-use crate::dialogs::rows::RowsBehind;
-use crate::dialogs::why::WhyBox;
 use crate::dialogs::{Dialog, Outcome};
 use crate::effect::Effect;
 use crate::keys::Meaning;
@@ -25,7 +20,6 @@ use novamind_tui::text::number;
 use novamind_worker::Job;
 use novamind_worker::preferences::Preferences;
 use novamind_worker::request::Request;
-use novamind_worker::resimulation::WhyAsked;
 
 /// What stops a script that runs.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
@@ -371,36 +365,10 @@ impl App {
         }
     }
 
-    pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
-        let Some(sql) = sql else {
-            let explain = self.keys.label(Action::Explain).unwrap_or_default();
-            return self.complain(format!("{title} has no source rows; {explain} explains it"));
-        };
-        let here = self.run().map_or("", |run| run.here.action().entry().title);
-        self.note_opened("figure", title.clone());
-        self.open(RowsBehind::new(format!("{here} › {title}"), sql.clone()));
-        self.follow(vec![Effect::AskBehind(sql)]);
-    }
-
     fn show_why(&mut self) {
         if let Some(figure) = self.selected_figure() {
             self.ask_why(figure);
         }
-    }
-
-    pub(super) fn ask_why(&mut self, figure: Figure) {
-        let Some((quantity, week)) = figure.why else {
-            let key = self.keys.label(Action::Why).unwrap_or_default();
-            return self.complain(format!(
-                "{key} explains a week's cash, leads, sales, churn, service: Overview, Cash, Customers"
-            ));
-        };
-        let stop = Arc::new(AtomicBool::new(false));
-        self.why_question += 1;
-        self.note_opened("figure", figure.title.clone());
-        self.open(WhyBox::new(figure, quantity, week, stop.clone()));
-        let asked = WhyAsked { number: self.why_question, quantity, week, stop };
-        self.orders.push(Order::Job(Job::FindCauses(asked)));
     }
 
     /// The breakpoints on the X-ray screen.

@@ -11,8 +11,9 @@ use crate::dialogs::debrief::DebriefPage;
 use crate::dialogs::lesson::LessonDialog;
 use crate::effect::Effect;
 use crate::lesson::{WIDE, why_closed};
+use novamind_course::{Debrief, LessonPage};
 use novamind_report::count;
-use novamind_session::{Debrief, LessonPage, Refusal};
+use novamind_session::Refusal;
 use novamind_worker::company::Company;
 use novamind_worker::request::{LessonRequest, Request};
 

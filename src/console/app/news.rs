@@ -18,31 +18,21 @@ use novamind_base::notation::{dollars, signed_dollars};
 use novamind_course::CollectedClass;
 use novamind_report::Story;
 use novamind_report::class::Shown;
-use novamind_session::{Change, Interrupt, Refusal, Week};
+use novamind_session::{Change, Refusal, Week};
 use novamind_tui::text::number;
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
-use novamind_worker::look_inside::DaysRan;
-use novamind_worker::message::{Instead, News};
+use novamind_worker::message::{DaysRan, Instead, News};
 use novamind_worker::request::Request;
 
 impl App {
     pub(super) fn news(&mut self, news: News) {
         match news {
-            News::Runs(list) => {
-                if let Stage::Menu(menu) = &mut self.stage {
-                    let effects = menu.take(list);
-                    self.follow(effects);
-                }
-            }
-            News::Preview(id, preview) => {
-                if let Stage::Menu(menu) = &mut self.stage {
-                    menu.learn(id, preview);
-                }
-            }
-            News::Kept(done, list) => {
+            News::Runs(done, list) => {
                 match done {
-                    Ok(text) => self.say(text),
-                    Err(problem) => self.complain(problem),
+                    Some(Ok(text)) => self.say(text),
+                    Some(Err(problem)) => self.complain(problem),
+                    None => {}
                 }
                 if let Stage::Menu(menu) = &mut self.stage {
                     let effects = menu.take(list);
@@ -51,10 +41,9 @@ impl App {
             }
             News::Class(read) => self.class_was_read(*read),
             News::HandedOut(label) => self.again = as_student(&self.again, &label),
-            News::Opened(company, interrupt) => self.opened(company, interrupt, None),
-            News::Replays(company, interrupt, place) => {
-                self.opened(company, interrupt, Some(Viewer::new(*place)));
-            }
+            News::Opened(company) => self.opened(company, None),
+            News::Replays(company, place) => self.opened(company, Some(Viewer::new(*place))),
+            News::Changed(company) => self.changed(company),
             News::SeekResult(arrival) => self.arrived(*arrival, true),
             News::WentOn(arrival) => self.arrived(*arrival, false),
             News::NotOpened(problem, instead) => {
@@ -107,12 +96,14 @@ impl App {
                     run.behind = Some(problem);
                 }
             }
-            News::Reconnected(interrupt) => {
-                if let Stage::Run(run) = &mut self.stage {
-                    run.interrupt = Some(interrupt);
+            News::DatabaseWhole => self.database_whole(),
+            News::MemoKept(kept, company) => {
+                match kept {
+                    Ok(()) => self.say("notes saved"),
+                    Err(refusal) => self.complain(refusal.to_string()),
                 }
+                self.changed(company);
             }
-            News::DatabaseWhole(interrupt) => self.database_whole(interrupt),
             News::Told(story) => self.told(&story),
             News::Reported(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
@@ -122,7 +113,6 @@ impl App {
             News::Written(Ok(text)) => self.say(text),
             News::Written(Err(problem)) => self.complain(problem),
             News::Visit(news) => self.visited(news),
-            News::HiddenValues(found) => self.take_hidden_values(*found),
             other => self.heard(other),
         }
     }
@@ -133,47 +123,6 @@ impl App {
             return;
         }
         let screen = match &news {
-            News::Checked(number, _) if *number != self.checks => return,
-            News::Answered(number, ..) if *number == self.rows_question => {
-                return self.in_dialog(|dialog, look| dialog.hear(&news, look));
-            }
-            News::Branches(number, _) | News::BranchesProgress(number, ..) => {
-                if *number == self.branches_question {
-                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
-                }
-                return;
-            }
-            News::Opponents(number, _) => {
-                if *number == self.opponents_question {
-                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
-                }
-                return;
-            }
-            News::Curve(number, _) => {
-                if *number == self.curve_question {
-                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
-                }
-                return;
-            }
-            News::Why(number, _) | News::WhyProgress(number, _) => {
-                if *number == self.why_question {
-                    self.in_dialog(|dialog, look| dialog.hear(&news, look));
-                }
-                return;
-            }
-            News::LookedInside(number, _, company) => {
-                if let Some(company) = company {
-                    self.changed(company.clone());
-                }
-                if *number != self.look_question {
-                    return;
-                }
-                ScreenId::Xray
-            }
-            News::Kin(..) => ScreenId::Journal,
-            News::Answered(number, ..) if *number != self.sql_question => return,
-            News::Checked(..) => self.checker,
-            News::Answered(..) => ScreenId::Sql,
             News::Called(tool, answer, company) => {
                 // A run that is left meanwhile goes on being saved.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
@@ -184,62 +133,81 @@ impl App {
                 }
                 ScreenId::Tools
             }
-            News::Undone(changes, company) => {
-                self.restored("undone", changes, company);
-                ScreenId::Tools
-            }
-            News::Redone(changes, company) => {
-                self.restored("redone", changes, company);
-                ScreenId::Tools
-            }
-            News::MemoKept(kept, company) => {
-                match kept {
-                    Ok(()) => self.say("notes saved"),
-                    Err(refusal) => self.complain(refusal.to_string()),
-                }
+            News::Restored(what, changes, company) => {
                 self.changed(company.clone());
-                ScreenId::Journal
-            }
-            News::Read(reading, changes, answer) => {
-                self.play_on_when_known();
-                let Stage::Run(run) = &mut self.stage else { return };
-                if run.asked.get(reading) != Some(changes) {
-                    return;
+                match changes {
+                    Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
+                    Err(refusal) => self.complain(refusal.message.clone()),
                 }
-                match answer {
-                    Ok(rows) => {
-                        let company = run.company.clone();
-                        let look = Look { company: &company, keys: &self.keys, page: self.page };
-                        for id in ScreenId::ALL {
-                            let screen = run.screens.get_mut(id);
-                            if screen.readings().contains(reading) {
-                                screen.take(*reading, rows, &look);
-                            }
-                        }
-                    }
-                    Err(refusal) => self.complain(refusal.to_string()),
-                }
-                return;
+                ScreenId::Tools
             }
             _ => return,
         };
+        self.tell_screens(|screens, here, look| {
+            let mut effects = screens.get_mut(screen).hear(&news, look);
+            // A call may come from a form or from the screen that is shown.
+            if matches!(news, News::Called(..)) && here != screen {
+                effects.extend(screens.get_mut(here).hear(&news, look));
+            }
+            effects
+        });
+    }
+
+    /// Lets screens take something in, and what they ask for follow.
+    fn tell_screens(&mut self, tell: impl FnOnce(&mut Screens, ScreenId, &Look<'_>) -> Vec<Effect>) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
         let focus = run.screens.get(run.here).focus();
-        let mut effects = run.screens.get_mut(screen).hear(&news, &look);
-        // A call may come from a form or from the screen that is shown.
-        if matches!(news, News::Called(..)) && run.here != screen {
-            effects.extend(run.screens.get_mut(run.here).hear(&news, &look));
-        }
+        let effects = tell(&mut run.screens, run.here, &look);
         // What has the whole screen keeps it: the answer stands in it.
-        if run.zoomed {
+        if run.zoomed && run.screens.get(run.here).focus() != focus {
             run.screens.get_mut(run.here).set_focus(focus);
         }
         self.follow(effects);
     }
 
-    fn opened(&mut self, company: Arc<Company>, interrupt: Option<Interrupt>, viewer: Option<Viewer>) {
+    /// Lets every page take the answer that it waits for, if it has arrived.
+    pub(super) fn take_answers(&mut self) {
+        if let Stage::Menu(menu) = &mut self.stage {
+            menu.take_answers();
+        }
+        self.tell_screens(|screens, _, look| {
+            let take = |id| screens.get_mut(id).take_answers(look);
+            ScreenId::ALL.into_iter().flat_map(take).collect()
+        });
+        for layer in self.layers.iter_mut() {
+            if let Layer::Dialog(dialog) = layer {
+                dialog.take_answers();
+            }
+        }
+        self.note_step();
+        self.take_readings();
+        self.take_hidden_values();
+    }
+
+    /// Takes what the database has answered; once a screen shows everything, the next week of a replay may follow.
+    fn take_readings(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let answers: Vec<_> = run.asked.values_mut().filter_map(Pending::try_take).collect();
+        for (reading, answer) in answers {
+            match answer {
+                Ok(rows) => self.tell_screens(|screens, _, look| {
+                    for id in ScreenId::ALL {
+                        let screen = screens.get_mut(id);
+                        if screen.readings().contains(&reading) {
+                            screen.take(reading, &rows, look);
+                        }
+                    }
+                    Vec::new()
+                }),
+                Err(refusal) => self.complain(refusal.to_string()),
+            }
+            self.play_on();
+        }
+    }
+
+    fn opened(&mut self, company: Arc<Company>, viewer: Option<Viewer>) {
         self.busy = None;
         // Whoever takes a replay over goes on where they look.
         let here = self.run().filter(|run| run.viewer.is_some()).map_or(ScreenId::Overview, |run| run.here);
@@ -265,7 +233,6 @@ impl App {
         }
         self.stage = Stage::Run(Box::new(Run {
             company: company.clone(),
-            interrupt,
             here,
             before: Vec::new(),
             trail: Vec::new(),
@@ -277,7 +244,6 @@ impl App {
             screens: Screens::default(),
             filing: FilingDialog::default(),
             story: None,
-            changes: 0,
             asked: BTreeMap::new(),
             tour,
             viewer,
@@ -326,29 +292,20 @@ impl App {
         }
     }
 
-    /// Settings were restored, or could not be.
-    fn restored(&mut self, what: &str, changes: &Result<Vec<Change>, Refusal>, company: &Arc<Company>) {
-        self.changed(company.clone());
-        match changes {
-            Ok(changes) => self.say(format!("{what}: {}", in_words(changes))),
-            Err(refusal) => self.complain(refusal.message.clone()),
-        }
-    }
-
     /// The run has changed.
     pub(super) fn changed(&mut self, company: Arc<Company>) {
         if let Stage::Run(run) = &mut self.stage {
             run.take_company(company);
-            run.changes += 1;
+            run.asked.clear();
         }
         self.renew();
     }
 
     /// What the screens were told while the database was behind is asked again.
-    fn database_whole(&mut self, interrupt: Option<Interrupt>) {
+    fn database_whole(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
-            (run.behind, run.interrupt) = (None, interrupt);
-            run.changes += 1;
+            run.behind = None;
+            run.asked.clear();
         }
         self.say("the database is up to date again");
         self.load();
@@ -397,7 +354,7 @@ impl App {
         let ended = week.ended;
         let unfiled = self.end_limit_of_week();
         let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
-        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended));
+        let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended.is_some()));
         self.say(if hides_result { "the run is over".to_owned() } else { text });
         match ended {
             Some(_) => self.show_end(),

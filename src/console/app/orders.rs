@@ -5,11 +5,11 @@ use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::dialogs::reader::Reader;
 use crate::effect::Effect;
+use novamind_session::Goal;
 use novamind_session::record::DraftOutcome;
-use novamind_session::{Goal, QuerySource};
+use novamind_worker::Job;
 use novamind_worker::company::Company;
 use novamind_worker::request::Request;
-use novamind_worker::{Job, Question};
 
 /// Days of a week, of which starts of lessons are made.
 const DAYS_PER_WEEK: u32 = 7;
@@ -56,40 +56,11 @@ impl App {
                 self.request(Request::Replay { recorded, goal, follow: false });
             }
             Effect::Go(goal) => self.go(goal),
-            Effect::Check { tool, arguments } => {
-                self.checks += 1;
-                self.checker = self.run().map_or(ScreenId::Tools, |run| run.here);
-                self.orders.push(Order::Job(Job::Check(self.checks, tool, arguments)));
-            }
-            Effect::Ask(sql) => {
-                self.end_text("sql", DraftOutcome::Sent);
-                let named = self.library.queries().iter().any(|query| query.sql.trim() == sql.trim());
-                let derived = self.run().is_some_and(|run| run.screens.sql.is_derived(&sql));
-                let via = match (named, derived) {
-                    (true, _) => QuerySource::Library,
-                    (false, true) => QuerySource::Derived,
-                    (false, false) => QuerySource::Typed,
-                };
-                self.sql_question = self.ask(sql, via);
-            }
-            Effect::AskInside(sql) => {
-                self.end_text("sql", DraftOutcome::Sent);
-                self.questions += 1;
-                self.sql_question = self.questions;
-                self.orders.push(Order::Job(Job::AskInside(self.questions, sql)));
-            }
-            Effect::AskBehind(sql) => self.rows_question = self.ask(sql, QuerySource::DrillDown),
+            Effect::Ask(ask) => self.orders.push(Order::Ask(ask, self.busy.is_some())),
+            Effect::SentText(place) => self.end_text(place, DraftOutcome::Sent),
             Effect::ShowCurve(group) => self.show_curve(group),
-            Effect::AskCurve(group) => self.ask_curve(group),
-            Effect::AskBranches(question, stop) => self.ask_branches(question, stop),
             Effect::ShowOpponents => self.show_opponents(),
-            Effect::PlayOpponents(stop) => self.ask_opponents(stop),
-            Effect::ReadKin => self.orders.push(Order::Job(Job::ReadKin)),
             Effect::OpenRun(id) => self.open_other(id),
-            Effect::LookInside(question) => {
-                self.look_question += 1;
-                self.orders.push(Order::Job(Job::LookInside(self.look_question, question)));
-            }
             Effect::ConfirmWords(words) => {
                 let text = format!(
                     "{words}: the change is recorded, and the run is never ranked. Set the parameter?"
@@ -182,18 +153,6 @@ impl App {
             Effect::LeaveNow => self.leave(Closing::ToShell),
             Effect::Do(action) => self.act(action),
         }
-    }
-
-    /// Asks the database for the person; returns the number of the question.
-    fn ask(&mut self, sql: String, via: QuerySource) -> u64 {
-        self.questions += 1;
-        let interrupt = self.run().and_then(|run| run.interrupt.as_ref());
-        // Drawn now: a stop may come before the query has begun.
-        let ticket = interrupt.map(|interrupt| interrupt.ticket());
-        let question = Question::of_person(sql, self.questions, ticket, via);
-        let running = self.busy.is_some();
-        self.orders.push(if running { Order::AskNow(question) } else { Order::Job(Job::Ask(question)) });
-        self.questions
     }
 
     /// Hands over work for the session's thread, unless it has to wait for a week.

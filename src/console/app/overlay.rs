@@ -4,17 +4,18 @@
 use super::{App, Order, Run, Stage};
 use crate::context::ScreenId;
 use novamind_insight::HiddenValues;
-use novamind_session::{REFUSED_LOOK, Refusal};
-use novamind_worker::Job;
+use novamind_session::REFUSED_LOOK;
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
+use novamind_worker::questions::HiddenValuesQuestion;
 use std::sync::Arc;
 
 /// Whether they are shown, and which were asked for.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Overlay {
     is_on: bool,
     /// The day that is being looked at.
-    asked: Option<u32>,
+    asked: Pending<HiddenValuesQuestion>,
     /// What was seen last.
     seen: Option<Arc<HiddenValues>>,
 }
@@ -66,20 +67,21 @@ impl App {
         let is_here =
             matches!(run.here, ScreenId::Customers | ScreenId::Market) && run.company.may_look_inside;
         let is_known = run.overlay.seen.as_ref().is_some_and(|seen| seen.day == day);
-        if !run.overlay.is_on || !is_here || is_busy || run.overlay.asked == Some(day) || day == 0 {
+        let is_asked = run.overlay.asked.question().is_some_and(|asked| asked.day == day);
+        if !run.overlay.is_on || !is_here || is_busy || is_asked || day == 0 {
             return;
         }
         if is_known {
             return self.show_hidden_values();
         }
-        run.overlay.asked = Some(day);
-        self.orders.push(Order::Job(Job::ReadHiddenValues(day)));
+        let ask = run.overlay.asked.ask(HiddenValuesQuestion { day });
+        self.orders.push(Order::Ask(ask, false));
     }
 
     /// Takes what was seen.
-    pub(super) fn take_hidden_values(&mut self, found: Result<Arc<HiddenValues>, Refusal>) {
+    pub(super) fn take_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        run.overlay.asked = None;
+        let Some((_, found)) = run.overlay.asked.try_take() else { return };
         match found {
             Ok(seen) => run.overlay.seen = Some(seen),
             Err(refusal) => {

@@ -11,7 +11,7 @@ use crate::context::ScreenId;
 use novamind_session::record::{
     Activity, DialogOutcome, Draft, DraftOutcome, Help, PresenceEvent, Select, View,
 };
-use novamind_session::{DraftsKept, Interface};
+use novamind_session::{DraftsKept, Interface, Session};
 use novamind_tools::ToolId;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
@@ -25,16 +25,21 @@ impl App {
         self.run().is_some_and(|run| run.viewer.is_none())
     }
 
+    /// Lets the session record something.
+    pub(super) fn record(&mut self, note: impl FnOnce(&mut Session) + Send + 'static) {
+        self.orders.push(Order::Job(Job::Note(Box::new(note))));
+    }
+
     /// Records something.
     pub(super) fn note(&mut self, activity: Activity) {
         if self.is_played() {
-            self.orders.push(Order::Job(Job::Note(activity)));
+            self.record(|session| session.activity().note(activity));
         }
     }
 
     fn note_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
         if self.is_played() {
-            self.orders.push(Order::Job(Job::NotePresence(event, idle_ms, window)));
+            self.record(move |session| session.activity().note_presence(event, idle_ms, window));
         }
     }
 

@@ -48,7 +48,8 @@ impl App {
         self.pending.clear();
         let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| Field::default());
         self.cover = Some(Cover { code, wrong: false, by_limit });
-        self.orders.push(Order::Job(Job::StopClock(reason)));
+        // The screen is covered already; a disk that refuses the line is no reason to uncover it.
+        self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
     }
 
     fn start_clock(&mut self) {

@@ -3,11 +3,10 @@
 
 use std::time::Duration;
 
-use super::{App, Layer, Order, Stage};
+use super::{App, Layer, Stage};
 use crate::dialogs::restore::Restore;
 use novamind_session::UnsentTexts;
 use novamind_session::record::{Draft, DraftOutcome};
-use novamind_worker::Job;
 
 /// Texts that change are kept this often.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);
@@ -46,7 +45,7 @@ impl App {
         let texts = self.unsent_texts();
         if self.unsent.offered.is_none() && self.unsent.texts.as_ref() != Some(&texts) {
             self.unsent.texts = Some(texts.clone());
-            self.orders.push(Order::Job(Job::KeepDrafts(Box::new(texts))));
+            self.record(move |session| session.drafts().keep(&texts));
         }
     }
 

@@ -10,6 +10,7 @@ use crate::dialogs::take_over::TakeOver;
 use crate::viewer::{Viewer, told};
 use novamind_session::Goal;
 use novamind_worker::Job;
+use novamind_worker::asking::Pending;
 use novamind_worker::message::Arrival;
 
 /// What only the person who plays can do.
@@ -194,18 +195,12 @@ impl App {
         self.play_on();
     }
 
-    /// An answer for a screen has come: once it shows everything, the next week may follow.
-    pub(super) fn play_on_when_known(&mut self) {
-        if let Some(viewer) = self.viewer() {
-            viewer.unanswered = viewer.unanswered.saturating_sub(1);
-            self.play_on();
-        }
-    }
-
-    fn play_on(&mut self) {
-        let busy = self.busy.is_some();
+    /// Orders the next week once the screen shows everything of this one.
+    pub(super) fn play_on(&mut self) {
+        let waits =
+            self.busy.is_some() || self.run().is_some_and(|run| run.asked.values().any(Pending::is_waiting));
         let Some(viewer) = self.viewer() else { return };
-        if viewer.playing && !viewer.ordered && viewer.unanswered == 0 && !busy {
+        if viewer.playing && !viewer.ordered && !waits {
             viewer.ordered = true;
             let pause = viewer.pause();
             self.orders.push(Order::Job(Job::GoOn(pause)));
@@ -214,7 +209,7 @@ impl App {
 
     /// A moment of the record was reached, as asked or by itself.
     pub(super) fn arrived(&mut self, arrival: Arrival, asked: bool) {
-        let Arrival { company, place, interrupt, problem } = arrival;
+        let Arrival { company, place, problem } = arrival;
         if asked {
             self.busy = None;
         }
@@ -225,9 +220,6 @@ impl App {
         let ends = viewer.playing && viewer.place.at_end;
         if ends {
             viewer.playing = false;
-        }
-        if let Some(interrupt) = interrupt {
-            run.interrupt = Some(interrupt);
         }
         if let Some(company) = company {
             self.changed(company);

@@ -42,7 +42,7 @@ const KEYS: [Action; 7] = [
 ];
 
 fn hides_result(company: &Company) -> bool {
-    company.rules.hide_result(company.seen.ended)
+    company.rules.hide_result(company.seen.ended.is_some())
 }
 
 /// Shows a moment of the run, from which it can be played again or taken over.

@@ -31,10 +31,10 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::Look;
 use super::effect::Effect;
+use novamind_course::Debrief;
 use novamind_report::Story;
-use novamind_session::{Debrief, Refusal};
+use novamind_session::Refusal;
 use novamind_tui::canvas::Canvas;
-use novamind_worker::message::News;
 
 /// What follows from an action in a dialog.
 #[derive(Debug, Default)]
@@ -123,10 +123,8 @@ pub trait Dialog {
         Outcome::stay()
     }
 
-    /// Takes news that it waits for.
-    fn hear(&mut self, _: &News, _: &Look<'_>) -> Outcome {
-        Outcome::stay()
-    }
+    /// Takes the answer that it waits for, if it has arrived.
+    fn take_answers(&mut self) {}
 
     /// Takes the story of the run, which was told meanwhile.
     fn take_story(&mut self, _: &Arc<Story>) {}

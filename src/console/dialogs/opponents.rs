@@ -1,23 +1,20 @@
 //! What the strong policies make of the world of a run that is over, beside the run.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::context::Look;
-use crate::effect::Effect;
 use novamind_base::notation::dollars;
-use novamind_report::opponents::{Opponent, Opponents};
+use novamind_report::opponents::{Opponent, Opponents, PlayOpponents};
 use novamind_session::{Ended, Refusal};
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::{fitting, wrapped};
 use novamind_tui::theme::Role;
+use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::company::Company;
-use novamind_worker::message::News;
+use novamind_worker::questions::OpponentsQuestion;
 
 /// Widest that reads well, and its rows.
 const SIZE: (u16, u16) = (96, 16);
@@ -28,14 +25,14 @@ const NAMED: usize = 38;
 #[derive(Default)]
 pub struct OpponentsPage {
     found: Option<Result<Opponents, Refusal>>,
-    /// Ends the work.
-    stop: Arc<AtomicBool>,
+    asked: Pending<OpponentsQuestion>,
 }
 
 impl OpponentsPage {
-    /// What it asks when it is opened.
-    pub fn opening_question(&self) -> Effect {
-        Effect::PlayOpponents(self.stop.clone())
+    /// Asks for the opponents, which `play` plays.
+    pub fn new(play: PlayOpponents) -> (OpponentsPage, Ask) {
+        let (asked, ask) = Pending::asking(OpponentsQuestion(play));
+        (OpponentsPage { found: None, asked }, ask)
     }
 }
 
@@ -53,18 +50,13 @@ impl Dialog for OpponentsPage {
     }
 
     fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
-        if action != Action::Close {
-            return Outcome::stay();
-        }
-        self.stop.store(true, Ordering::Relaxed);
-        Outcome::close()
+        if action == Action::Close { Outcome::close() } else { Outcome::stay() }
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
-        if let News::Opponents(_, found) = news {
-            self.found = Some((**found).clone());
+    fn take_answers(&mut self) {
+        if let Some((_, found)) = self.asked.try_take() {
+            self.found = Some(found);
         }
-        Outcome::stay()
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {

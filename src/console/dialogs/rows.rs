@@ -9,12 +9,13 @@ use crate::context::Look;
 use crate::effect::Effect;
 use crate::screens::sql::values;
 use novamind_base::notation::grouped;
-use novamind_session::{Refusal, Rows};
+use novamind_session::{QuerySource, Refusal, Rows};
 use novamind_tui::canvas::{Canvas, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
-use novamind_worker::message::News;
+use novamind_worker::asking::{Ask, Pending};
+use novamind_worker::queries::{QueriedTables, Query};
 
 /// Most lines of the query that are shown above its rows.
 const QUERY_LINES: usize = 6;
@@ -23,22 +24,17 @@ const QUERY_LINES: usize = 6;
 pub struct RowsBehind {
     title: String,
     sql: String,
+    asked: Pending<Query>,
     answer: Option<Result<Rows, Refusal>>,
     table: Table,
 }
 
 impl RowsBehind {
-    /// Waits for the answer to the question behind a figure.
-    pub fn new(title: String, sql: String) -> RowsBehind {
-        RowsBehind { title, sql, answer: None, table: Table::default() }
-    }
-
-    fn take(&mut self, answer: &Result<Rows, Refusal>) {
-        if let Ok(rows) = answer {
-            self.table = Table::new(values::columns(rows)).by_cell();
-            self.table.set_rows(values::cells(rows));
-        }
-        self.answer = Some(answer.clone());
+    /// Asks the question behind a figure.
+    pub fn new(title: String, sql: String) -> (RowsBehind, Ask) {
+        let of = QueriedTables::Visible(QuerySource::DrillDown);
+        let (asked, ask) = Pending::asking(Query { sql: sql.clone(), of });
+        (RowsBehind { title, sql, asked, answer: None, table: Table::default() }, ask)
     }
 
     fn note(&self) -> String {
@@ -104,11 +100,14 @@ impl Dialog for RowsBehind {
         Outcome::stay()
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
-        if let News::Answered(_, answer, _) = news {
-            self.take(answer);
+    fn take_answers(&mut self) {
+        let Some((_, answer)) = self.asked.try_take() else { return };
+        let answer = answer.map(|(rows, _)| rows);
+        if let Ok(rows) = &answer {
+            self.table = Table::new(values::columns(rows)).by_cell();
+            self.table.set_rows(values::cells(rows));
         }
-        Outcome::stay()
+        self.answer = Some(answer);
     }
 
     fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {

@@ -1,8 +1,5 @@
 //! Why a figure of a week changed: the equation, and a line with a bar for each cause.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
@@ -17,7 +14,8 @@ use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
-use novamind_worker::message::News;
+use novamind_worker::asking::{Ask, Pending};
+use novamind_worker::causes::WhyQuestion;
 
 /// Widest that reads well.
 const WIDEST: u16 = 110;
@@ -30,17 +28,16 @@ pub struct WhyBox {
     figure: Figure,
     quantity: WeekQuantity,
     week: u32,
-    /// Ends the work.
-    stop: Arc<AtomicBool>,
-    progress: Option<WhyProgress>,
+    asked: Pending<WhyQuestion>,
     answer: Option<Result<Why, Refusal>>,
     selected: usize,
 }
 
 impl WhyBox {
-    /// Waits for the causes of a figure of a week; `stop` ends the work.
-    pub fn new(figure: Figure, quantity: WeekQuantity, week: u32, stop: Arc<AtomicBool>) -> WhyBox {
-        WhyBox { figure, quantity, week, stop, progress: None, answer: None, selected: 0 }
+    /// Asks for the causes of a figure of a week.
+    pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (WhyBox, Ask) {
+        let (asked, ask) = Pending::asking(WhyQuestion { quantity, week });
+        (WhyBox { figure, quantity, week, asked, answer: None, selected: 0 }, ask)
     }
 
     fn why(&self) -> Option<&Why> {
@@ -67,7 +64,6 @@ impl WhyBox {
         if !(2..=last).contains(&week) {
             return Outcome::stay();
         }
-        self.stop.store(true, Ordering::Relaxed);
         // The rows of the figure are those of its own week.
         let title = format!("{} in week {week}", self.quantity.name());
         let figure = Figure { title, sql: None, why: Some((self.quantity, week)), ..self.figure.clone() };
@@ -76,7 +72,7 @@ impl WhyBox {
 
     /// What is going on while there is no answer.
     fn waiting(&self) -> String {
-        match self.progress {
+        match self.asked.progress() {
             None => "reading the record …".to_owned(),
             Some(WhyProgress::Reaching(day, last)) => format!("simulating day {day} of {last} …"),
             Some(WhyProgress::Simulated(done, all)) => {
@@ -128,10 +124,7 @@ impl Dialog for WhyBox {
         match action {
             Action::Left => return self.turn(self.week.saturating_sub(1), look),
             Action::Right => return self.turn(self.week + 1, look),
-            Action::Close | Action::Cancel => {
-                self.stop.store(true, Ordering::Relaxed);
-                return Outcome::close();
-            }
+            Action::Close | Action::Cancel => return Outcome::close(),
             Action::Open | Action::Confirm => return self.follow(),
             Action::Down => self.select(self.selected + 1),
             Action::Up => self.select(self.selected.saturating_sub(1)),
@@ -142,13 +135,10 @@ impl Dialog for WhyBox {
         Outcome::stay()
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
-        match news {
-            News::WhyProgress(_, progress) => self.progress = Some(*progress),
-            News::Why(_, answer) => self.answer = Some(answer.as_ref().clone()),
-            _ => {}
+    fn take_answers(&mut self) {
+        if let Some((_, answer)) = self.asked.try_take() {
+            self.answer = Some(answer);
         }
-        Outcome::stay()
     }
 
     fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
@@ -246,11 +236,9 @@ mod tests {
     }
 
     fn answered(answer: Result<Why, Refusal>) -> WhyBox {
-        let mut dialog = WhyBox::new(asked(), cancellations(), 20, Arc::default());
-        let company = company();
-        let keys = crate::keys::Keys::shipped();
-        let look = Look { company: &company, keys: &keys, page: 5 };
-        dialog.hear(&News::Why(1, Box::new(answer)), &look);
+        let (mut dialog, _) = WhyBox::new(asked(), cancellations(), 20);
+        dialog.asked.put(answer);
+        dialog.take_answers();
         dialog
     }
 
@@ -282,33 +270,31 @@ mod tests {
     #[test]
     fn another_week_is_asked_about_and_none_without_a_week_before_it() {
         let company = novamind_worker::company::Company::of(&crate::test_kit::played(4));
-        let stop = Arc::new(AtomicBool::new(false));
-        let mut dialog = WhyBox::new(asked(), cancellations(), 3, stop.clone());
+        let (mut dialog, _) = WhyBox::new(asked(), cancellations(), 3);
         assert!(dialog_picture(&dialog, &company, 80, 24).contains("other week"));
         for (action, week) in [(Action::Left, 2), (Action::Right, 4)] {
             let outcome = in_dialog(&mut dialog, action, &company);
-            assert!(outcome.close && stop.load(Ordering::Relaxed));
+            assert!(outcome.close, "what is closed is not answered any more");
             let asked = outcome.effects.first();
             let Some(Effect::AskWhy(figure)) = asked else { panic!("nothing is asked") };
             assert_eq!(figure.why, Some((cancellations(), week)));
             assert!(figure.title.ends_with(&format!("in week {week}")), "{}", figure.title);
         }
         for (week, action) in [(2, Action::Left), (4, Action::Right)] {
-            let mut dialog = WhyBox::new(asked(), cancellations(), week, Arc::default());
+            let (mut dialog, _) = WhyBox::new(asked(), cancellations(), week);
             assert!(in_dialog(&mut dialog, action, &company).effects.is_empty());
         }
     }
 
     #[test]
-    fn the_work_is_told_and_esc_stops_it() {
+    fn the_work_is_told_and_esc_closes_it() {
         let company = company();
-        let stop = Arc::new(AtomicBool::new(false));
-        let mut dialog = WhyBox::new(asked(), cancellations(), 9, stop.clone());
+        let (mut dialog, _) = WhyBox::new(asked(), cancellations(), 9);
         assert!(dialog_picture(&dialog, &company, 60, 16).contains("reading the record"));
-        dialog.progress = Some(WhyProgress::Simulated(3, 16));
+        dialog.asked.put_progress(WhyProgress::Simulated(3, 16));
         assert!(dialog_picture(&dialog, &company, 60, 16).contains("3 of 16"));
         assert!(in_dialog(&mut dialog, Action::Open, &company).effects.is_empty());
-        assert!(in_dialog(&mut dialog, Action::Close, &company).close && stop.load(Ordering::Relaxed));
+        assert!(in_dialog(&mut dialog, Action::Close, &company).close);
         let refused = answered(Err(Refusal::new("not_in_this_mode", "not in an unfinished baseline run")));
         assert!(dialog_picture(&refused, &company, 60, 16).contains("not in an unfinished baseline run"));
     }

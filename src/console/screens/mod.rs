@@ -86,6 +86,11 @@ pub trait ScreenState {
         Vec::new()
     }
 
+    /// Takes the answers that it waits for, if they have arrived; effects follow.
+    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        Vec::new()
+    }
+
     /// The person sees it now, or saw it until now.
     fn looked_at(&mut self) {}
 

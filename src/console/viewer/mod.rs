@@ -35,8 +35,6 @@ pub struct Viewer {
     pub goes: bool,
     /// Stops it on the way.
     pub stop: Arc<AtomicBool>,
-    /// Questions of screens that were not answered yet.
-    pub unanswered: u32,
     /// The next week was asked for.
     pub ordered: bool,
     speed: usize,
@@ -56,7 +54,6 @@ impl Viewer {
             shows_decisions: true,
             goes: false,
             stop: Arc::default(),
-            unanswered: 0,
             ordered: false,
             speed: 2,
             scroll: 0,

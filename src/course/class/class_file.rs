@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::handed_run::HandedPast;
 use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::{create_folder, write_whole};
+use novamind_record::files::{create_folder, write_whole};
+use novamind_record::lesson::Lesson;
 use novamind_record::stamp::HandoutStamp;
-use novamind_record::trajectory::now;
-use novamind_session::{Lesson, new_id};
+use novamind_session::new_id;
 
 /// Name of the file in the folder of the class.
 const CLASS_FILE: &str = "class.toml";

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::class_file::Class;
 use super::collecting::ClassCollection;
 use novamind_record::error::RunError;
-use novamind_session::Lesson;
+use novamind_record::lesson::Lesson;
 
 /// A class with what was collected of it last.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,10 +12,11 @@ use super::finding::ClassFinding;
 use super::handout::{ENDING, HandedOut, Handout};
 use super::reference::{ClassReference, references};
 use novamind_record::error::RunError;
+use novamind_record::files::write_whole;
 use novamind_record::folder::derived::Derived;
-use novamind_record::folder::durable::write_whole;
 use novamind_record::folder::manifest::Manifest;
-use novamind_session::{AnswersCompanies, Lesson, Workshop};
+use novamind_record::lesson::Lesson;
+use novamind_session::{AnswersCompanies, Workshop};
 use novamind_study::{CollectNote, FoundRun, gather};
 
 /// Name of the file in the folder of the class.

@@ -7,12 +7,10 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
+use novamind_record::lesson::{GuessForm, Lesson, LessonStanding, Measurement};
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::{
-    GuessForm, Integrity, Lesson, LessonStanding, Measurement, SealKey, Session, WeekFigure, read_recorded,
-    setting_values,
-};
+use novamind_session::{Integrity, SealKey, Session, WeekFigure, measure, read_recorded, setting_values};
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -128,7 +126,7 @@ impl Replay {
             _ => return None,
         };
         let from = standing.own_part().weeks_of(step).0 * session.params().run.days_per_week;
-        let measured = measurement.of(session, from).ok().flatten();
+        let measured = measure(&measurement, session, from).ok().flatten();
         let is_same = match (measured, note.value) {
             (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs().max(1.0),
             (one, other) => one == other,

@@ -3,14 +3,15 @@
 use std::path::Path;
 
 use super::handout::HandedRun;
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::{FORMAT, Manifest};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::HandoutStamp;
 use novamind_record::trajectory::record::Parent;
-use novamind_record::trajectory::{Line, Record, Trajectory, now};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::{Workshop, verify, write_past};
 
 /// A run that can be handed out.

@@ -6,14 +6,15 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
+use novamind_record::files::{create_folder, write_whole};
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::derived::Derived;
-use novamind_record::folder::durable::{create_folder, write_whole};
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{list_runs, participant_folder};
+use novamind_record::lesson::Lesson;
+use novamind_record::mode::Mode;
 use novamind_record::stamp::{HandoutEntry, HandoutStamp};
-use novamind_session::{Lesson, LessonEntry, NewRun, Session, Storage, is_run_name};
+use novamind_session::{LessonEntry, NewRun, Session, Storage, is_run_name};
 use novamind_world::params::ParameterSource;
 
 /// Format of hand-outs that this program writes.

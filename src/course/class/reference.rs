@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
 use novamind_record::error::RunError;
-use novamind_session::{AnswersCompanies, GoalBound, Lesson, LessonPart, PartPlay, play_part};
+use novamind_record::lesson::{GoalBound, Lesson, LessonPart};
+use novamind_session::{AnswersCompanies, PartPlay, play_part};
 
 /// The good play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,8 +9,9 @@ use super::companies::{CallHere, in_other_numbers};
 use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
+use novamind_record::figures::MeasuredGroup;
 use novamind_session::engine::{
-    MeasuredGroup, ParameterChange, RunDatabase, Simulation, StateHash, Taken, count_groups, not_allowed,
+    ParameterChange, RunDatabase, Simulation, StateHash, Taken, count_groups, measured_group, not_allowed,
     value_of_json,
 };
 use novamind_session::{GroupWeek, WeekFigures};
@@ -374,7 +375,7 @@ impl<'a> OpenBranch<'a> {
         self.weeks.push(std::mem::take(&mut self.week));
         let (world, counted) = (&self.simulation.world, std::mem::take(&mut self.group_week));
         self.satisfaction.push(mean_satisfaction(world));
-        self.groups.push(ByGroup::from_fn(|group| MeasuredGroup::of(group, &counted[group], world)));
+        self.groups.push(ByGroup::from_fn(|group| measured_group(group, &counted[group], world)));
         self.cash_before = cash;
     }
 

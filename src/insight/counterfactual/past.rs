@@ -11,7 +11,8 @@ use super::kept_state::KeptState;
 use super::script::{Move, between, moves};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
-use novamind_session::{Origin, is_lesson_over, read_recorded as read};
+use novamind_record::lesson::is_lesson_over;
+use novamind_session::{Origin, read_recorded as read};
 
 /// Moments that are kept in memory besides the first: a moment is as large as its company.
 const KEPT: usize = 4;

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 

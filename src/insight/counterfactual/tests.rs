@@ -13,7 +13,7 @@ use super::last_read::OfRecord;
 use super::past::Past;
 use super::script::{Move, moves};
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Origin, Session, Storage, read_recorded as read};
 use novamind_tools::ToolId;

@@ -6,8 +6,8 @@ use super::assumed::{Reading, market_of};
 use super::explorer::{CurveBasis, CurveExplorer, OnOffer, PlanPoint};
 use novamind_session::{Look, Session};
 use novamind_tools::Refusal;
+use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
-use novamind_world::market::drift::Expectation;
 use novamind_world::retention::renewal::ongoing_discount;
 
 /// No customer has the number 0: promotions of single customers are left out.
@@ -62,7 +62,7 @@ impl CurveExplorer {
     /// `group_not_discovered`, `guess_first`.
     pub fn estimated(run: &Session, group: Group) -> Result<CurveExplorer, Refusal> {
         if let Some(lesson) = run.lesson() {
-            lesson.refuse_before_guess(run.weeks_passed())?;
+            lesson.refuse_before_guess(run.day() / run.params().run.days_per_week)?;
         }
         let all = run.company().estimates();
         let delivered = run.company().delivered_quality();

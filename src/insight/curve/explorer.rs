@@ -6,8 +6,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use novamind_world::customers::choice::Offer;
+use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
-use novamind_world::market::drift::Expectation;
 use novamind_world::market::lead_sample::{FirstChoices, LeadSample};
 use novamind_world::params::Params;
 use novamind_world::random::Streams;

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::explorer::{CurveBasis, CurveExplorer};
 use crate::curve::access::CurveLook;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 use novamind_world::identifiers::{ByPlan, Group};

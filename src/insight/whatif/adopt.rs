@@ -9,7 +9,7 @@ use super::lesson_limits::refuse_locked;
 use crate::counterfactual::companies::{CallHere, in_other_numbers};
 use crate::counterfactual::edits::{Edits, FollowedUsage};
 use crate::counterfactual::script::{Move, PastCall, moves};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{JudgedPost, Via, VoiceAnswer};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::engine::UsageRule;

@@ -9,7 +9,7 @@ use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage
 use crate::counterfactual::kept_state::KeptState;
 use crate::counterfactual::script::{Move, PastCall};
 use novamind_base::notation::json_number;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_session::engine::{UsageRule, unknown, value_of_json};
 use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
 use novamind_world::params::Params;

@@ -6,8 +6,9 @@ use std::path::Path;
 use super::decision_edit::DecisionEdit;
 use crate::counterfactual::past::Past;
 use crate::counterfactual::script::Move;
+use novamind_record::lesson::{Lesson, LessonPart, LessonStanding};
 use novamind_record::trajectory::Trajectory;
-use novamind_session::{Lesson, LessonPart, LessonStanding, not_readable};
+use novamind_session::not_readable;
 use novamind_tools::{Refusal, ToolId};
 
 /// Where the student of an unfinished lesson stands, and whether the lesson of a run, over or not, moves the capacity by itself.

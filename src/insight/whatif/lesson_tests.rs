@@ -7,9 +7,10 @@ use std::sync::Arc;
 use super::*;
 use crate::branch_with_decisions;
 use novamind_record::folder::configuration::Configuration;
+use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Via;
 use novamind_session::engine::UsageRule;
-use novamind_session::{Lesson, LessonEntry, NewRun, Storage};
+use novamind_session::{LessonEntry, NewRun, Storage};
 
 /// A company that grows out of its servers; what moves them is the lesson.
 const PLAN: &str = r#"

@@ -9,7 +9,7 @@ use super::*;
 use crate::counterfactual::last_read::LastRead;
 use crate::counterfactual::test_kit::played;
 use crate::xray::inspector::Inspect;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_session::{Access, Session};

@@ -2,7 +2,7 @@
 
 use super::quantity::WeekQuantity;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::identifiers::Group;
 

@@ -4,8 +4,9 @@ use super::cause::{Cause, Detail, InputDetail};
 use crate::counterfactual::branch::BranchOutcome;
 use crate::counterfactual::kept_state::KeptState;
 use novamind_world::events::DayFigures;
-use novamind_world::held::{Held, HeldService};
+use novamind_world::held::Held;
 use novamind_world::market::surges::surge_factor;
+use novamind_world::product::service::HeldService;
 
 /// Two weeks that follow each other, as they were: the moment between them, and what came of each.
 pub(super) struct TwoWeeks<'a> {
@@ -50,7 +51,7 @@ impl TwoWeeks<'_> {
         let moves = end.competitors.len() - eve.competitors.len();
         note(Cause::Rivals, moves > 0, vec![Detail::Happened(moves, "move")]);
         let law = &self.between.params.drift;
-        let drift = self.days().any(|day| novamind_world::market::drift::is_drift_day(day, law));
+        let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, law));
         note(Cause::Drift, drift, vec![Detail::Happened(1, "step")]);
         note(Cause::Yields, end.yields != eve.yields, Vec::new());
         let index = input("index", eve.economy.pmi, end.economy.pmi);

@@ -26,7 +26,8 @@ use crate::counterfactual::last_read::OfRecord;
 use crate::counterfactual::past::Past;
 pub(crate) use access::{Sight, sight};
 use laboratory::Laboratory;
-use novamind_session::{Look, Session, is_lesson_over, not_readable};
+use novamind_record::lesson::is_lesson_over;
+use novamind_session::{Look, Session, not_readable};
 use novamind_tools::Refusal;
 
 /// How far an answer has come.

@@ -6,7 +6,7 @@ use super::cause::{Cause, Detail};
 use super::laboratory::{Candidate, Laboratory, Without};
 use super::quantity::WeekQuantity;
 use super::shapley::shapley;
-use novamind_session::engine::SimulatedWeek;
+use novamind_record::figures::SimulatedWeek;
 use novamind_tools::Refusal;
 
 /// Causes that are valued for themselves; more of them would take too many simulations.

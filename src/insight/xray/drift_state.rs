@@ -3,8 +3,8 @@
 use super::inspector::Inspector;
 use novamind_session::Look;
 use novamind_tools::Refusal;
+use novamind_world::customers::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
 use novamind_world::identifiers::Group;
-use novamind_world::market::drift::{Expectation, next_drift_day, step_of_everyone, step_of_group};
 
 /// A group.
 #[derive(Debug, Clone, Copy, PartialEq)]

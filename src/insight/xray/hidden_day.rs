@@ -10,6 +10,7 @@ use novamind_session::engine::mood_of;
 use novamind_world::context::DayContext;
 use novamind_world::customers::Customers;
 use novamind_world::customers::columns::Block;
+use novamind_world::customers::drift::DriftTotals;
 use novamind_world::day::watch::DayWatch;
 use novamind_world::enterprise::{Enterprise, Negotiation, Thread};
 use novamind_world::events::{Facts, Reading, Sender, Snapshot};
@@ -17,13 +18,11 @@ use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::Market;
 use novamind_world::market::arrivals::{Arrivals, lead_context};
 use novamind_world::market::competitors::{Event, severity};
-use novamind_world::market::drift::DriftTotals;
 use novamind_world::market::economy::Dimension;
 use novamind_world::market::leads::{LeadFactors, word_of_mouth};
-use novamind_world::market::reputation::ReputationWrite;
 use novamind_world::morning::Morning;
 use novamind_world::params::Params;
-use novamind_world::retention::satisfaction::Mood;
+use novamind_world::reputation::{Mood, ReputationWrite};
 use novamind_world::state::World;
 
 /// A day, as far as groups and the market go.

@@ -5,8 +5,8 @@ use super::inspector::Inspector;
 use super::rival_state::{NextRivalMove, rival_move_after};
 use novamind_session::Look;
 use novamind_tools::Refusal;
+use novamind_world::customers::drift::next_drift_day;
 use novamind_world::identifiers::{ByGroup, Group};
-use novamind_world::market::drift::next_drift_day;
 
 /// A group on an evening.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::inspector::Inspector;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::manifest_of;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::Trajectory;
 use novamind_session::{Access, DayReport, Look, REFUSED_LOOK, SealKey, Session};
 use novamind_tools::Refusal;

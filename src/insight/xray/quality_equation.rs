@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
+use novamind_world::customers::drift::{DriftTotals, Expectation};
 use novamind_world::identifiers::{ByGroup, ByPlan, Group};
-use novamind_world::market::drift::{DriftTotals, Expectation};
 use novamind_world::morning::Morning;
 use novamind_world::params::Params;
 use novamind_world::product::Product;
 use novamind_world::product::development::development_gain;
-use novamind_world::product::quality::delivered_quality;
+use novamind_world::quality::delivered_quality;
 use novamind_world::settings::Settings;
 use novamind_world::state::World;
 

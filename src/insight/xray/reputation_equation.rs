@@ -4,11 +4,10 @@ use serde::Serialize;
 
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::Market;
-use novamind_world::market::reputation::{
-    ReputationBook, ReputationCause, ReputationWrite, Spill, called_change, daily_change, spill,
-};
 use novamind_world::params::Params;
-use novamind_world::retention::satisfaction::Mood;
+use novamind_world::reputation::{
+    Mood, ReputationBook, ReputationCause, ReputationWrite, Spill, called_change, daily_change, spill,
+};
 
 /// Departures of a day and what they took.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

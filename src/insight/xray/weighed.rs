@@ -5,7 +5,7 @@ use serde::Serialize;
 use novamind_world::customers::curve::{Curve, required_quality};
 use novamind_world::identifiers::{ByPlan, Plan};
 use novamind_world::params::Params;
-use novamind_world::product::quality::Experience;
+use novamind_world::quality::Experience;
 use novamind_world::retention::weighing::Weighing;
 
 /// A plan, as an individual sees it on a billing day.

@@ -1,9 +1,9 @@
 //! q_shared and what rivals do about it: the mean of some lucks of the world's own mechanism.
 
 use super::premises::Premises;
+use novamind_world::customers::drift::DriftTotals;
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::competitors::react;
-use novamind_world::market::drift::DriftTotals;
 use novamind_world::params::Params;
 use novamind_world::product::Product;
 use novamind_world::product::development::development_gain;

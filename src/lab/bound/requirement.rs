@@ -1,8 +1,8 @@
 //! mu, sigma and d: the quality that customers require at the highest price, and by how much it has risen on a day.
 
 use super::climate::Climate;
+use novamind_world::customers::drift::{is_drift_day, step_of_everyone, step_of_group};
 use novamind_world::identifiers::Group;
-use novamind_world::market::drift::{is_drift_day, step_of_everyone, step_of_group};
 use novamind_world::params::Params;
 
 /// Mean and spread of the quality required at the budget.

@@ -4,9 +4,9 @@ use super::law::{Law, Rounding};
 use super::world_draw::{Family, WorldDraw, group_at};
 use novamind_world::customers::columns::BLOCK;
 use novamind_world::enterprise::letters::reply_delay;
-use novamind_world::market::reputation::cancel_damage;
 use novamind_world::params::Params;
 use novamind_world::random::{Part, word_below};
+use novamind_world::reputation::cancel_damage;
 use novamind_world::retention::issues::issue_probability;
 use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
 

@@ -2,10 +2,11 @@
 
 use super::law::Law;
 use super::world_draw::{Family, Luck, WorldDraw};
+use novamind_world::events::Sentiment;
 use novamind_world::identifiers::Group;
 use novamind_world::market::social::engagement::engagement_ranges;
 use novamind_world::market::social::press::estimated_boost;
-use novamind_world::market::social::sentiment::{Sentiment, sentiment, sentiment_chances};
+use novamind_world::market::social::sentiment::{sentiment, sentiment_chances};
 use novamind_world::random::Part;
 
 const CROWD: &str = "market/social/crowd.rs";

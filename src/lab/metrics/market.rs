@@ -1,9 +1,8 @@
 //! Figures of the market: economy, posts, notices, negotiations and deals.
 
 use super::{Daily, Day, Kind, by_group, initial, now, push, sum};
-use novamind_world::events::{DealClosed, EndCause, Notice, Post, SubscriptionStatus, ThreadKind};
+use novamind_world::events::{DealClosed, EndCause, Notice, Post, Sentiment, SubscriptionStatus, ThreadKind};
 use novamind_world::identifiers::{Group, Plan};
-use novamind_world::market::social::sentiment::Sentiment;
 
 /// What is averaged over deals.
 type PerDeal = fn(&DealClosed) -> f64;

@@ -5,10 +5,14 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
+use novamind_course::{
+    Debrief, DecisionComparison, LessonPage, PlayedPart, begin_part, guess_in_lesson, take_hint,
+    try_step_again,
+};
 use novamind_report::debrief::in_words;
 use novamind_report::lesson::{page_in_words, typed_guess};
 use novamind_rules::answers_to_companies;
-use novamind_session::{Debrief, DecisionComparison, LessonPage, Refusal, Session};
+use novamind_session::{Refusal, Session};
 
 impl Interpreter {
     /// `lesson`, `lesson next`
@@ -22,18 +26,18 @@ impl Interpreter {
 
     /// What the student sees, or why there is nothing to see.
     fn lesson_page(&mut self, command: &str) -> Answer {
-        match self.session.lesson_page() {
+        match LessonPage::of(&mut self.session) {
             Some(page) => Answer::done(command, page_in_words(&page).join("\n"), as_data(&page)),
             None => Answer::refused(command, no_lesson()),
         }
     }
 
     fn next_part(&mut self) -> Answer {
-        let next = self.session.lesson_page().map(|page| page.next_part);
+        let next = LessonPage::of(&mut self.session).map(|page| page.next_part);
         let begun = match next {
             None => Err(no_lesson()),
             Some(None) => Err(Refusal::new("no_part", "there is no next part, or this one is not over")),
-            Some(Some(part)) => self.session.begin_part(part as usize - 1),
+            Some(Some(part)) => begin_part(&self.session, part as usize - 1),
         };
         self.go_to_lesson("lesson", begun)
     }
@@ -48,10 +52,10 @@ impl Interpreter {
             return Ok(Answer::refused("guess", no_lesson()));
         }
         // Where nothing is asked, the session says so whatever is answered.
-        let question = self.session.lesson_page().and_then(|page| page.question);
+        let question = LessonPage::of(&mut self.session).and_then(|page| page.question);
         let value = question.map_or(Ok(f64::NAN), |question| typed_guess(&question, &written));
         let value = value.map_err(|text| problem(arguments, &text))?;
-        Ok(match self.session.guess_in_lesson(value) {
+        Ok(match guess_in_lesson(&mut self.session, value) {
             Ok(()) => self.lesson_page("guess"),
             Err(refusal) => Answer::refused("guess", refusal),
         })
@@ -59,7 +63,7 @@ impl Interpreter {
 
     /// `hint`
     pub(super) fn hint(&mut self) -> Answer {
-        match self.session.hint_in_lesson() {
+        match take_hint(&mut self.session) {
             Ok(text) => Answer::done("hint", text.clone(), json!({ "hint": text })),
             Err(refusal) => Answer::refused("hint", refusal),
         }
@@ -76,13 +80,13 @@ impl Interpreter {
             }
             _ => return Err(problem(arguments, "again takes the number of a step, or nothing")),
         };
-        let again = self.session.try_step_again(step);
+        let again = try_step_again(&self.session, step);
         Ok(self.go_to_lesson("again", again))
     }
 
     /// `debrief`
     pub(super) fn debrief(&mut self) -> Answer {
-        match self.session.played_part() {
+        match PlayedPart::of(&self.session) {
             Ok(played) => {
                 let debrief = played.debrief(answers_to_companies);
                 Answer::done("debrief", in_words(&debrief).join("\n"), debrief_as_data(&debrief))

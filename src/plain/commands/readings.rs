@@ -205,7 +205,7 @@ pub(super) fn tools(
     let Some(name) = name else {
         let all = novamind_tools::CATALOGUE.iter().map(|tool| document(tool.spec(), numbers));
         let all: Vec<ToolDocument> = all.collect();
-        return Ok(Answer::done("tools", describe::overview(), json!({ "tools": all })));
+        return Ok(Answer::done("tools", novamind_tools::catalogue::overview(), json!({ "tools": all })));
     };
     let tool = novamind_tools::find(name)
         .or_else(|| tool_called(name))

@@ -16,6 +16,7 @@ use novamind_report::whatif::{
     bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
     name, table,
 };
+use novamind_rules::answers_to_companies;
 use novamind_session::record::LeavingCause;
 use novamind_session::{Interface, Refusal, Session};
 
@@ -210,6 +211,7 @@ impl Interpreter {
         self.session.activity().leave(LeavingCause::Quit);
         let _ = self.session.save();
         self.session = other;
+        self.session.answer_companies_by(answers_to_companies);
         self.session.activity().take_up(Interface { name: "plain", window: None });
         (self.session.manifest().id.clone(), self.session.day())
     }

@@ -1,6 +1,6 @@
 //! Where runs and configuration live, and the scenarios.
 
-use super::consent::ConsentText;
+use crate::consent::ConsentText;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;

@@ -8,7 +8,8 @@ use toml::{Table, Value};
 
 use super::manifest::Manifest;
 use crate::error::RunError;
-use crate::trajectory::{Line, open_regular_file};
+use crate::files::open_regular_file;
+use crate::trajectory::Line;
 
 /// What a run is, and what is wrong with its `run.toml`.
 pub struct Derived {

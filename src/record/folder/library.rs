@@ -13,8 +13,8 @@
 use std::path::PathBuf;
 
 use super::configuration::Configuration;
-use super::durable::{create_folder, write_whole};
 use crate::error::RunError;
+use crate::files::{create_folder, write_whole};
 use novamind_base::nearest;
 
 /// Folder of a person's own queries.

@@ -6,15 +6,15 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::configuration::Configuration;
-use super::consent::Consent;
-use super::durable::write_whole;
-use super::mode::Mode;
+use crate::consent::Consent;
 use crate::error::RunError;
+use crate::files::write_whole;
+use crate::mode::Mode;
 use crate::rules::{ResultsShown, SessionRules};
 use crate::stamp::HandoutStamp;
 use crate::stamp::LessonStamp;
 use crate::stamp::{EarlierRun, StudyStamp};
-use crate::trajectory::record::{Parent, first_mechanics};
+use crate::trajectory::record::{Parent, Start, first_mechanics};
 use crate::trajectory::{Line, Record};
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::MECHANICS;
@@ -274,6 +274,35 @@ fn differing(own: &Table, shipped: &Table) -> Table {
             (value, _) => Some((key.clone(), value.clone())),
         })
         .collect()
+}
+
+/// The first line of a trajectory: what the manifest says.
+pub fn start_of(manifest: &Manifest) -> Record {
+    let manifest = manifest.clone();
+    Record::Start(Box::new(Start {
+        format: manifest.format,
+        version: manifest.version,
+        mechanics: manifest.mechanics,
+        run: manifest.id,
+        seed: manifest.seed,
+        days: manifest.days,
+        cash: manifest.cash,
+        scenario: manifest.scenario,
+        overrides: manifest.parameters,
+        fault: manifest.fault,
+        parameters_digest: manifest.parameters_digest,
+        mode: manifest.mode,
+        participant: manifest.participant,
+        consent: manifest.consent,
+        study: manifest.study,
+        lesson: manifest.lesson,
+        handout: manifest.handout,
+        voice: manifest.voice,
+        rules: manifest.rules,
+        earlier_runs: manifest.earlier,
+        parent: manifest.parent,
+        line_sums: true,
+    }))
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use serde_json::Value;
 use super::derived::Derived;
 use super::runs::run_folder;
 use crate::error::RunError;
-use crate::trajectory::{Line, Record, open_regular_file};
+use crate::files::open_regular_file;
+use crate::trajectory::{Line, Record};
 
 /// The preview of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -8,12 +8,13 @@ use serde::Serialize;
 use super::derived::Derived;
 use super::lock::{is_served, lock_run};
 use super::manifest::Manifest;
-use super::mode::Mode;
 use crate::error::RunError;
+use crate::files::{open_regular_file, read_regular_file};
+use crate::mode::Mode;
 use crate::stamp::EarlierRun;
+use crate::trajectory::policy_of;
 use crate::trajectory::record::Ended;
 use crate::trajectory::{Line, Record};
-use crate::trajectory::{open_regular_file, policy_of, read_regular_file};
 
 /// A run in the list.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::record::Record;
-use super::regular_file::open_regular_file;
-use super::time::{nanoseconds, seconds};
+use crate::clock::{nanoseconds, seconds};
+use crate::files::open_regular_file;
 use crate::trajectory::DOES_NOT_FOLLOW;
 use novamind_database::Position;
 

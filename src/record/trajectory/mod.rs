@@ -8,11 +8,8 @@ mod line;
 mod medium;
 #[cfg(any(test, feature = "test-kit"))]
 mod page_cache;
-mod policy;
 pub mod record;
-mod regular_file;
 mod synced_file;
-mod time;
 mod writer;
 
 use std::path::Path;
@@ -23,20 +20,39 @@ pub use line::hash_of_first_line;
 pub use medium::Medium;
 #[cfg(any(test, feature = "test-kit"))]
 pub use page_cache::PageCache;
-pub use policy::{policy_of, policy_rationale};
 pub use record::Record;
-pub use regular_file::{append_to_regular_file, open_regular_file, read_regular_file, read_regular_text};
-pub use time::scripted_steady;
-pub use time::{ScriptedClock, nanoseconds, now, seconds, steady, written_moment};
 pub use writer::{Durability, TrajectoryWriter};
 
 use crate::error::RunError;
+use crate::files::read_regular_file;
 use line::line_hash;
 use novamind_database::Position;
+use record::Via;
+
+/// What the rationale of a policy's week says before the policy's name.
+const BEFORE_NAME: &str = "policy ";
 
 /// The line that says how a run ended, among its lines; none while it is unfinished.
 pub fn end_of(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
+}
+
+/// The rationale of a week that the policy of a name decides.
+pub fn policy_rationale(name: &str) -> String {
+    format!("{BEFORE_NAME}{name}")
+}
+
+/// The policy that decided every week among some lines, by their rationales; none where somebody else decided one, and without
+/// weeks.
+pub fn policy_of(lines: &[Line]) -> Option<&str> {
+    let mut weeks = lines.iter().filter_map(|line| match &line.record {
+        Record::Advance(week) => Some(week),
+        _ => None,
+    });
+    let first = weeks.next()?;
+    let is_one = first.via == Via::Policy
+        && weeks.all(|week| week.via == Via::Policy && week.rationale == first.rationale);
+    first.rationale.strip_prefix(BEFORE_NAME).filter(|_| is_one)
 }
 
 /// A trajectory that was read.

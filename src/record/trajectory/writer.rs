@@ -10,11 +10,11 @@ use serde_json::{Map, Value};
 use super::line::{Line, line_hash, with_sum};
 use super::medium::{Medium, NamedFile};
 use super::record::Record;
-use super::regular_file::{read_regular_file, write_to_regular_file};
 use super::synced_file::SyncedFile;
-use super::time::now;
+use crate::clock::now;
 use crate::error::RunError;
-use crate::folder::durable::{create_folder, folder_of, sync_folder, write_whole};
+use crate::files::{create_folder, folder_of, sync_folder, write_whole};
+use crate::files::{read_regular_file, write_to_regular_file};
 use crate::trajectory::Trajectory;
 use novamind_database::Position;
 

@@ -2,8 +2,7 @@
 
 use super::ClassView;
 use super::curves::StudentPoints;
-use novamind_course::ClassRun;
-use novamind_session::GuessForm;
+use novamind_course::{ClassRun, GuessForm};
 
 /// A question of the lesson and the answers of the class.
 pub struct AskedClass<'a> {
@@ -64,7 +63,7 @@ fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &
 pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
     let part = view.part_of(run);
     let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();
-    let is_choice = |step: &novamind_session::LessonStep| {
+    let is_choice = |step: &novamind_course::LessonStep| {
         step.guess.as_ref().is_some_and(|guess| matches!(guess.form, GuessForm::Choice { .. }))
     };
     let all = steps.iter().zip(&run.evidence.steps).filter(|(step, _)| is_choice(step));

@@ -19,9 +19,9 @@ pub use words::{collected_in_words, score_in_words, shown_in_words, state_in_wor
 
 use novamind_base::nearest;
 use novamind_course::{
-    Class, ClassCollection, ClassRun, CollectedClass, Evidence, RunVerdict, ranked_goal, share_of_good,
+    Class, ClassCollection, ClassRun, CollectedClass, Evidence, GoalBound, Lesson, LessonPart, RunVerdict,
+    ranked_goal, share_of_good,
 };
-use novamind_session::{GoalBound, Lesson, LessonPart};
 
 /// The figure of the scatter that is shown where none is named.
 const CASH: &str = "cash";

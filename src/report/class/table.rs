@@ -2,8 +2,7 @@
 
 use super::ClassView;
 use crate::tables::column::{Column, columns};
-use novamind_course::{ClassRun, StepEvidence};
-use novamind_session::LessonStep;
+use novamind_course::{ClassRun, LessonStep, StepEvidence};
 
 /// A row: a run of the class.
 struct ClassRow<'a> {

@@ -11,7 +11,6 @@ use super::lab_key::LabKey;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
 use super::workshop::Workshop;
 use crate::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
-use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::play::Session;
 use crate::play::memo::notes_file;
 use crate::play::open::Access;
@@ -19,9 +18,10 @@ use crate::recording::recorder::{AFTERWARDS, lines_afterwards};
 use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
+use novamind_record::files::{folder_of, sync_folder};
 use novamind_record::folder::derived::{Derived, check_start};
-use novamind_record::folder::durable::{folder_of, sync_folder};
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 use novamind_record::trajectory::{Line, Trajectory};
 
 /// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.

@@ -8,7 +8,7 @@ use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::{folder_of, sync_folder};
+use novamind_record::files::{folder_of, sync_folder};
 
 /// First line of the file of a private key.
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";

@@ -33,9 +33,9 @@ pub use lab_key::{read_seal_key, write_seal_key};
 pub use seal::Seal;
 pub use workshop::{Workshop, close_workshops};
 
-use crate::lesson::lesson_file::{PLAN_FILE, TEXTS_FILE};
 use crate::recording::recorder::AFTERWARDS;
 use novamind_record::error::RunError;
+use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 
 /// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
 const FILES: [(&str, u64); 9] = [

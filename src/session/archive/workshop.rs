@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard};
 
 use crate::recording::folders::new_id;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::create_folder;
+use novamind_record::files::create_folder;
 
 /// A folder of its own beside what is being made. It is hidden, holds nothing that is listed as a run, and is removed
 /// when the work is done or has failed.

@@ -14,9 +14,8 @@ use novamind_tools::PublicPost;
 use novamind_voice::judge::{Judgement, Original};
 use novamind_voice::posts::Writer;
 use novamind_voice::posts::names::profile_name;
-use novamind_world::events::{Facts, Matter, Post, Sender};
+use novamind_world::events::{Facts, Matter, Post, Sender, Sentiment};
 use novamind_world::identifiers::Group;
-use novamind_world::market::social::sentiment::Sentiment;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 

@@ -7,7 +7,7 @@ use super::this_week::ThisWeek;
 use crate::figures::changes::{Change, Decisions, changes};
 use crate::figures::groups::{self, GroupWeek};
 use crate::figures::journal::JournalEntry;
-use crate::figures::week::WeekFigures;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::{Calculated, Ended};
 use novamind_world::events::{DayFigures, LedgerEntry, Notice};
 use novamind_world::identifiers::ByGroup;

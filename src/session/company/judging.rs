@@ -38,7 +38,7 @@ impl Simulation {
             self.feed.judgements[at] = judgements;
         }
         let (world, facts, params, streams) = self.between_days(entries);
-        reach::receive(world, &verdicts, params, streams, facts);
+        reach::receive(&mut world.market.social, &world.customers, &verdicts, params, streams, facts);
     }
 }
 

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::xray::Xray;
-use crate::figures::week::WeekFigures;
 use novamind_base::notation::json_number;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 use novamind_world::events::DayFigures;
 

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::{NewRun, Storage};
+use novamind_record::consent::Consent;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::consent::Consent;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::runs::all_run_folders;
 
@@ -52,9 +52,9 @@ mod tests {
     use super::*;
     use crate::play::Session;
     use crate::play::open::Access;
+    use novamind_record::consent::ConsentGiven;
     use novamind_record::folder::configuration::CONSENT_FILE;
-    use novamind_record::folder::consent::ConsentGiven;
-    use novamind_record::folder::mode::Mode;
+    use novamind_record::mode::Mode;
 
     fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
         let agreed = agreed.then(|| ConsentGiven::on_paper().now());

@@ -4,8 +4,8 @@ use super::{NewRun, Storage};
 use novamind_base::notation::{dollars, grouped};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
-use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::label_of;
+use novamind_record::mode::Mode;
 
 impl NewRun {
     /// Checks that a person's baseline run has a label, and scenario, days and cash of the defaults. A study lays down its

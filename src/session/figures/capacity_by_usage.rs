@@ -1,6 +1,6 @@
 //! Rules by which the capacity follows usage: what is set at the start of a week.
 
-use crate::figures::week::WeekFigures;
+use novamind_record::figures::WeekFigures;
 use novamind_world::params::{CapacityTier, Params};
 
 /// Share of the capacity that mean use is to take.

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::week::{WeekFigures, week_of};
+use super::week::week_of;
 use novamind_base::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Calculated;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::market::social::own::OwnPost;

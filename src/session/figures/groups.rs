@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::dashboard::delivered_quality;
-use super::week::WeekFigures;
+use novamind_record::figures::MeasuredGroup;
 use novamind_world::canonical::canonical;
 use novamind_world::customers::columns::Block;
 use novamind_world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
@@ -150,24 +150,19 @@ pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
     (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
 }
 
-/// Churn of some days: their cancellations, as a share of the subscribers before the first of them. None without subscribers.
-pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
-    (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
-}
-
-/// Cancellations of individuals in the last week as a share of those who subscribed before it; none without any.
-pub fn churn_of_last_week(weeks: &[WeekFigures]) -> Option<f64> {
-    let [.., before, last] = weeks else { return None };
-    churn(last.cancellations.into(), before.individual_subscribers.into())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn churn_is_a_share_of_those_who_were_there_before() {
-        assert_eq!(churn(5.0, 200.0), Some(0.025));
-        assert_eq!((churn(0.0, 3.0), churn(0.0, 0.0)), (Some(0.0), None));
+/// Figures of a group in a world at the end of days on which `counted` was counted.
+pub fn measured_group(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
+    let (satisfaction, relationship) = mood_of(world, group).unzip();
+    let own = &world.customers.groups[group];
+    MeasuredGroup {
+        leads: counted.leads,
+        signed: counted.signed,
+        left: counted.left,
+        usage: counted.usage.0.iter().sum(),
+        subscribers: own.active(),
+        open_issues: own.blocks.iter().map(Block::open_issues).sum(),
+        reputation: world.market.reputation.of(group),
+        satisfaction,
+        relationship,
     }
 }

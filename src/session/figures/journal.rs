@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::week::WeekFigures;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
 use novamind_tools::{Forecast, ToolId};
 

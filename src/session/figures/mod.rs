@@ -12,7 +12,5 @@ pub(crate) mod naive;
 pub(crate) mod pace;
 pub(crate) mod scored_forecast;
 pub(crate) mod setting;
-pub(crate) mod simulated_week;
 pub(crate) mod sitting_count;
 pub(crate) mod week;
-pub(crate) mod week_figure;

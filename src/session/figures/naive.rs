@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 use super::pace::Pace;
-use super::week::{Forecasts, WeekFigures};
+use super::week::Forecasts;
+use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
@@ -277,7 +278,7 @@ fn cents(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::week::Booked;
+    use novamind_record::figures::Booked;
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::week::WeekFigures;
+use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
 /// Weeks that are recent.
@@ -59,7 +59,7 @@ fn flows(week: &WeekFigures) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::week::Booked;
+    use novamind_record::figures::Booked;
 
     fn week(income: f64, compute: f64) -> WeekFigures {
         let mut booked = Booked::default();

@@ -242,7 +242,7 @@ mod tests {
     use super::*;
     use crate::create::{NewRun, Storage};
     use novamind_record::folder::configuration::Configuration;
-    use novamind_record::folder::mode::Mode;
+    use novamind_record::mode::Mode;
     use novamind_record::rules::{ResultsShown, SessionRules};
     use novamind_record::stamp::StudyStamp;
 

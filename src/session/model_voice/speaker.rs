@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::endpoint::Endpoint;
 use novamind_record::error::RunError;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::settings::ModelSettings;

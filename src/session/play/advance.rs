@@ -11,11 +11,13 @@ use crate::company::overrides::DerivedOfParameters;
 use crate::company::reports::{DayReport, Week};
 use crate::company::simulation::Simulation;
 use crate::figures::journal::JournalEntry;
-use crate::figures::week::{Forecasts, WeekFigures};
+use crate::figures::week::Forecasts;
 use crate::snapshot::file::WEEKS_BETWEEN;
 use novamind_database::{Entry, ForecastRow, ProjectionError};
+use novamind_record::clock::seconds;
+use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
-use novamind_record::trajectory::{Durability, Record, seconds};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal, ToolId};
 use novamind_world::held::Held;
 
@@ -80,7 +82,8 @@ impl Session {
         let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
         let allowed = allowed.and_then(|()| self.refuse_unexpected_day(expected_day));
         let unasked = Value::from(UNASKED);
-        let rationale = if self.lesson_asks_no_rationale() { &unasked } else { rationale };
+        let asks_none = self.lesson().is_some_and(|lesson| lesson.access().asks_no_rationale());
+        let rationale = if asks_none { &unasked } else { rationale };
         let checked = allowed.and_then(|()| {
             let text = novamind_tools::rationale(rationale)?;
             let all = novamind_tools::forecasts(
@@ -164,7 +167,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode`, `run_over`.
     pub(crate) fn refuse_to_step(&self) -> Result<(), Refusal> {
-        if self.manifest.mode != novamind_record::folder::mode::Mode::Debug {
+        if self.manifest.mode != novamind_record::mode::Mode::Debug {
             return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
         self.refuse_if_over(Kind::Time)
@@ -221,7 +224,7 @@ impl Session {
             self.simulation.judge_own_posts(self.database.entries());
             let notices = self.simulation.notice_texts();
             self.history.count_day(&figures, &self.simulation, &notices);
-            let debug = self.manifest.mode == novamind_record::folder::mode::Mode::Debug;
+            let debug = self.manifest.mode == novamind_record::mode::Mode::Debug;
             let xray = (debug || self.is_shadow).then(|| self.hidden_state());
             progress(&DayReport { figures: &figures, week_end, xray });
             self.history.called.clear();

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::Session;
-use novamind_record::folder::durable::write_whole;
+use novamind_record::files::write_whole;
 use novamind_tools::ToolId;
 
 /// Name of the file in the folder of the run.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::Session;
 use super::open::Access;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::{folder_of, sync_folder};
+use novamind_record::files::{folder_of, sync_folder};
 use novamind_record::rules::FreeText;
 use novamind_record::trajectory::record::Note;
 use novamind_record::trajectory::{Durability, Record, Trajectory};

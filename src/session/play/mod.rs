@@ -6,6 +6,7 @@ pub(crate) mod advance;
 mod ask;
 pub(crate) mod companion;
 pub(crate) mod drafts;
+pub(crate) mod lesson;
 pub(crate) mod memo;
 mod mend;
 pub(crate) mod once;
@@ -33,8 +34,6 @@ use crate::company::surroundings::RunSurroundings;
 use crate::company::xray::Xray;
 use crate::database::RunDatabase;
 use crate::figures::journal::JournalEntry;
-use crate::figures::week::WeekFigures;
-use crate::lesson::standing::LessonStanding;
 use crate::model_voice::speaker::{ModelVoice, Speaker};
 use crate::permission;
 use crate::recording::RunLog;
@@ -44,8 +43,10 @@ use crate::snapshot::sealing::SealKey;
 use crate::view::CompanyView;
 use novamind_database::{Position, Projector};
 use novamind_record::error::RunError;
+use novamind_record::figures::WeekFigures;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::lesson::LessonStanding;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::Ended;
 use novamind_record::trajectory::{Durability, Record};
@@ -79,9 +80,9 @@ pub struct Session {
     /// A value that a higher crate keeps with the run.
     companion: Companion,
     /// The lesson that it belongs to, and how it went; none outside lessons.
-    pub(crate) lesson: Option<Box<LessonStanding>>,
+    lesson: Option<Box<LessonStanding>>,
     /// How rules answer companies; none where nobody has said it.
-    pub(crate) company_answers: Option<AnswersCompanies>,
+    company_answers: Option<AnswersCompanies>,
     /// Who speaks besides the built-in voice.
     voice: ModelVoice,
     /// Notes of a run without a folder.

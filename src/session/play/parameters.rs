@@ -9,7 +9,7 @@ use crate::company::overrides::{
 };
 use crate::figures::journal::JournalEntry;
 use crate::view::debug_parameters::ChangedParameter;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal};

@@ -13,7 +13,7 @@ use crate::resume::verify::verify;
 use novamind_database::Cell;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::StudyStamp;
 use novamind_record::trajectory::record::{AskedOfModel, Via, VoiceAnswer, WordedPost, WordedPosts};

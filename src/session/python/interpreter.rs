@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 
 /// Where baseline runs look for Python, in this order. On macOS `/usr/bin/python3` may be a stub that opens an installer.
 #[cfg(target_os = "macos")]

@@ -81,7 +81,7 @@ pub(crate) mod run {
     use std::time::Duration;
 
     use super::{Said, ScriptHost, failed};
-    use novamind_record::folder::mode::Mode;
+    use novamind_record::mode::Mode;
     use novamind_tools::Refusal;
 
     /// Refuses a script in Python.

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::interpreter::Interpreter;
 use super::process::{ScriptEnd, ScriptProcess};
 use super::{Said, ScriptHost, failed};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 
 /// Statements that one script may ask.

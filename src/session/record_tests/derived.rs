@@ -4,8 +4,8 @@ use crate::play::Session;
 use crate::play::open::Access;
 use crate::playback::tests::recorded;
 use crate::resume::verify::verify;
-use novamind_record::folder::mode::Mode;
 use novamind_record::folder::runs::{find_run, list_runs};
+use novamind_record::mode::Mode;
 use std::path::Path;
 use toml::Table;
 

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::create::NewRun;
 use crate::play::Session;
-use novamind_record::folder::{configuration::Configuration, durable::probe, first_line::start_of};
+use novamind_record::files::probe;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::manifest::start_of;
 use novamind_record::trajectory::record::Memo;
 use novamind_record::trajectory::{Durability, PageCache, Record, Trajectory, TrajectoryWriter};
 

@@ -17,7 +17,7 @@ fn start() -> Record {
         .expect("a run")
         .manifest()
         .clone();
-    novamind_record::folder::first_line::start_of(&manifest)
+    novamind_record::folder::manifest::start_of(&manifest)
 }
 
 /// A start, and memos after it.

@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use super::RunLog;
 use super::machine::Machine;
+use novamind_record::clock::{now, seconds};
 use novamind_record::trajectory::record::{
     Activity, Clock, ClockEvent, LeavingCause, Limit, LimitEvent, Presence, PresenceEvent, View,
 };
-use novamind_record::trajectory::{Durability, Record, now, seconds};
+use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::Refusal;
 
 /// Rationale of a week that is filed because its time is over.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use novamind_record::trajectory::scripted_steady;
+use novamind_record::clock::scripted_steady;
 
 /// The machine, as records name it: nobody learns from them which one it is, but two records of one machine agree.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -13,10 +13,11 @@ use self::recorder::Recorder;
 use crate::figures::attendance::TimeSpent;
 use novamind_database::Position;
 use novamind_record::answer_book::AnswerBook;
+use novamind_record::clock::{nanoseconds, now, seconds};
 use novamind_record::error::RunError;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LimitScope};
-use novamind_record::trajectory::{Durability, Line, Record, Trajectory, nanoseconds, now, seconds};
+use novamind_record::trajectory::{Durability, Line, Record, Trajectory};
 
 /// The lines of an open run, and what follows from them besides the company.
 pub struct RunLog {

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use crate::figures::attendance::Attendance;
 use novamind_database::Position;
+use novamind_record::clock::{nanoseconds, now};
 use novamind_record::error::RunError;
-use novamind_record::folder::first_line::start_of;
+use novamind_record::files::read_regular_file;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::{
-    Durability, Line, Record, Trajectory, TrajectoryWriter, nanoseconds, now, read_regular_file,
-};
+use novamind_record::folder::manifest::start_of;
+use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
 /// File in the folder of a run with what is done once it is over: lines like those of the trajectory that go on from its last.
 ///

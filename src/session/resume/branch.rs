@@ -5,13 +5,14 @@ use std::path::Path;
 use super::unnamed::{UnnamedBranch, write_branch};
 use crate::play::Session;
 use crate::recording::folders::new_id;
+use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::create_folder;
+use novamind_record::files::create_folder;
 use novamind_record::folder::manifest::{FORMAT, Manifest};
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LessonEvent, Parent, Via};
-use novamind_record::trajectory::{Line, Record, Trajectory, now};
+use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
 
 impl Session {
@@ -36,7 +37,7 @@ impl UnnamedBranch {
             let message = "an unfinished baseline run cannot be branched; end it first";
             return Err(Refusal::new("not_in_this_mode", message));
         }
-        if let Some(lesson) = run.lesson.as_deref().filter(|_| run.ended().is_none()) {
+        if let Some(lesson) = run.lesson().filter(|_| run.ended().is_none()) {
             lesson.refuse_before_guess(run.weeks_passed())?;
         }
         let Some(folder) = run.folder() else {
@@ -117,7 +118,7 @@ fn unnamed_branch(
 ///
 /// # Errors
 /// `not_saved`.
-pub(crate) fn branch_of_lesson(
+pub fn branch_of_lesson(
     folder: &Path,
     parent: &Manifest,
     trajectory: &Trajectory,

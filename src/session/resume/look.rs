@@ -8,7 +8,7 @@ use crate::play::open::Access;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::manifest_of;
 use novamind_record::folder::lock::lock_run;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{Activity, Look};
 use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 

@@ -109,7 +109,7 @@ mod tests {
     use crate::create::{NewRun, Storage};
     use crate::play::open::end_run;
     use novamind_record::folder::configuration::Configuration;
-    use novamind_record::folder::mode::Mode;
+    use novamind_record::mode::Mode;
     use novamind_record::trajectory::record::Via;
 
     const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];

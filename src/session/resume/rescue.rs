@@ -10,7 +10,7 @@ use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
 
 /// What was saved of a damaged run.

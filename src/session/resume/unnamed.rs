@@ -3,16 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::lesson::lesson_file::Lesson;
 use crate::play::Session;
 use crate::play::open::Access;
 use crate::recording::folders::remove_leftovers;
 use novamind_record::error::RunError;
-use novamind_record::folder::durable::{create_folder, sync_folder};
-use novamind_record::folder::first_line::start_of;
+use novamind_record::files::{create_folder, sync_folder};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest::start_of;
 use novamind_record::folder::runs::UNNAMED;
+use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Branch;
 use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 

@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::CompanyView;
 use crate::company::overrides::{json_of_value, unknown};
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::params::Params;
 

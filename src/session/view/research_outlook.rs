@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::CompanyView;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_world::params::ResearchTier;
 use novamind_world::product::research_spread::{
     days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,

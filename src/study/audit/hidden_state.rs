@@ -3,10 +3,11 @@
 use super::run_record::RunRecord;
 use super::{AuditFinding, AuditKind};
 use crate::definition::Study;
+use novamind_record::clock::seconds;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::mode::Mode;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Activity;
-use novamind_record::trajectory::{Line, Record, seconds};
+use novamind_record::trajectory::{Line, Record};
 use novamind_session::lines_afterwards;
 
 /// The first moment at which a run showed hidden state.

@@ -21,11 +21,12 @@ pub use finding::{AuditFinding, AuditKind};
 
 use crate::definition::{Study, shortened};
 use crate::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
+use novamind_record::clock::seconds;
 use novamind_record::error::RunError;
 use novamind_record::folder::derived::departures_of_file;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::rules::SessionRules;
-use novamind_record::trajectory::{Line, Trajectory, seconds};
+use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{Integrity, lines_afterwards, verify_sealed};
 use run_record::{RunRecord, runs_in};
 

@@ -2,9 +2,8 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, Sent, sent_per_group};
+use super::super::arguments::{Arguments, Sent, as_data, sent_per_group};
 use super::super::marketing::BUDGET;
-use super::super::plain::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,

@@ -2,9 +2,10 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, per_plan, replace};
+use super::super::arguments::{
+    Arguments, as_data, per_customer, per_group, per_group_plan, per_plan, replace,
+};
 use super::super::marketing::BUDGET;
-use super::super::plain::as_data;
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,

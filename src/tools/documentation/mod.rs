@@ -1,11 +1,9 @@
 //! Documents: what tables and tools there are.
 
 mod describe_tables;
-mod get_tool_documentation;
 mod list_all_tables;
 
 pub use describe_tables::DescribeTables;
-pub use get_tool_documentation::GetToolDocumentation;
 pub use list_all_tables::ListAllTables;
 use serde_json::Value;
 
@@ -23,7 +21,7 @@ pub enum Choice {
 
 impl Choice {
     /// Reads a name, a list of names, `all` alone or in the list, or nothing for all.
-    fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
+    pub(super) fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
         let wrong = || wrong_type(field, "a name, a list of names, or all");
         match arguments.get(field) {
             None => Ok(Choice::All),
@@ -39,7 +37,7 @@ impl Choice {
     }
 
     /// Those of the known names that are asked for. Names that are not known are passed over, unless none is.
-    fn among<'a>(
+    pub(super) fn among<'a>(
         &self,
         known: &[&'a str],
         field: &'static str,

@@ -9,8 +9,8 @@ pub use addressed::{highest_named, readdressed};
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
 pub use send_enterprise_deal::SendEnterpriseDeal;
 
-use super::deal_results::{DealResult, DealResults};
 use super::refusal::Refusal;
+use super::refusal::{DealResult, DealResults};
 use super::spec::Output;
 
 /// What becomes of one element of a list of deals.

@@ -1,7 +1,7 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::deal_results::DealResults;
+use super::super::refusal::DealResults;
 use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
 use super::reading::{Unreadable, customer, elements, malformed, offerings};
 use super::{Failure, Fate, RESULTS, unless_all_failed};

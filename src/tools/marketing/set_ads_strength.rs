@@ -1,7 +1,6 @@
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Amount, Arguments, number, per_customer, per_group, replace};
-use super::super::plain::as_data;
+use super::super::arguments::{Amount, Arguments, as_data, number, per_customer, per_group, replace};
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,

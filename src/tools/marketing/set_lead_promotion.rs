@@ -1,8 +1,7 @@
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_channel, per_channel_group, per_group, replace};
-use super::super::plain::as_data;
+use super::super::arguments::{Arguments, as_data, per_channel, per_channel_group, per_group, replace};
 use super::super::pricing::{DISCOUNT, global_discount};
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,

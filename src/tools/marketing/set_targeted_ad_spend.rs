@@ -4,8 +4,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, Sent, channel, sent_per_channel_group};
-use super::super::plain::as_data;
+use super::super::arguments::{Arguments, Sent, as_data, channel, sent_per_channel_group};
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,

@@ -1,8 +1,7 @@
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, per_customer, per_group, per_group_plan, replace};
-use super::super::plain::as_data;
+use super::super::arguments::{Arguments, as_data, per_customer, per_group, per_group_plan, replace};
 use super::super::{
     Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
     When,

@@ -3,7 +3,8 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::super::arguments::{Arguments, Sent, wrong_type};
-use super::super::bounds::{MOST_UNITS, too_large};
+use super::super::bounds::too_large;
+use super::super::spec::MOST_UNITS;
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };

@@ -1,9 +1,8 @@
 use serde::Serialize;
 
-use super::super::arguments::Arguments;
-use super::super::plain::plain;
+use super::super::arguments::{Arguments, plain};
 use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use novamind_world::market::economy::round_to;
+use novamind_base::notation::round_to;
 use novamind_world::params::ResearchTier;
 
 /// Lists the R&D tiers.

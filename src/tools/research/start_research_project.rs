@@ -1,15 +1,14 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::super::arguments::Arguments;
-use super::super::plain::plain;
+use super::super::arguments::{Arguments, plain};
 use super::super::{
     Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
 };
 use super::affordable;
+use novamind_base::notation::round_to;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::events::Project;
-use novamind_world::market::economy::round_to;
 
 /// Buys an R&D project.
 pub struct StartResearchProject;

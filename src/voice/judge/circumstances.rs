@@ -2,13 +2,12 @@
 //! (docs/mechanics/market/social/judge.md#circumstances). The judge never sees more.
 
 use super::lexicon::Lexicon;
-use novamind_world::events::Severity;
-use novamind_world::events::Trend;
+use novamind_world::events::{Severity, Trend};
 use novamind_world::identifiers::{ByGroup, Group, Plan};
 use novamind_world::market::competitors::severity;
 use novamind_world::market::social::chronicle::Page;
 use novamind_world::params::Params;
-use novamind_world::product::quality::{quota_demand, quota_factor};
+use novamind_world::quality::{quota_demand, quota_factor};
 use novamind_world::state::World;
 
 /// The facts behind a judgement.

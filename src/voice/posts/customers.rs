@@ -4,8 +4,7 @@ use std::sync::LazyLock;
 
 use super::words::{self, Register};
 use crate::grammar::{Chooser, Context, Grammar};
-use novamind_world::events::{Cause, Opinion, PostAuthor, Theme};
-use novamind_world::market::social::sentiment::Sentiment;
+use novamind_world::events::{Cause, Opinion, PostAuthor, Sentiment, Theme};
 use novamind_world::params::Params;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {

@@ -2,12 +2,8 @@
 
 use super::customers::tests::{author, situations};
 use super::*;
-use novamind_world::events::Cause;
-use novamind_world::events::Severity;
-use novamind_world::events::Trend;
+use novamind_world::events::{Cause, Engagement, Sentiment, Severity, Trend};
 use novamind_world::identifiers::Group;
-use novamind_world::market::social::engagement::Engagement;
-use novamind_world::market::social::sentiment::Sentiment;
 
 const NOBODY: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
 

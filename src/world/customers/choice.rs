@@ -4,7 +4,7 @@
 use super::curve::{Curve, required_quality};
 use crate::identifiers::{ByPlan, Plan};
 use crate::params::Params;
-use crate::product::quality::quota_factor;
+use crate::quality::quota_factor;
 
 /// What is on offer to a lead of one group today, before its own demand and discount.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +76,7 @@ pub fn passes_gate(offers: &ByPlan<Offer>, demand: f64, curve: &Curve, params: &
 mod tests {
     use super::super::curve::tests::X;
     use super::*;
-    use crate::product::quality::delivered_quality;
+    use crate::quality::delivered_quality;
 
     fn offers(
         shared: f64,

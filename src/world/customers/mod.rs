@@ -3,6 +3,7 @@
 pub mod choice;
 pub mod columns;
 pub mod curve;
+pub mod drift;
 pub mod numbers;
 pub mod persona;
 pub mod traits;

@@ -9,11 +9,10 @@ use crate::identifiers::{ByGroup, Group};
 use crate::market::Market;
 use crate::market::arrivals::Arrivals;
 use crate::market::leads::LeadFactors;
-use crate::market::reputation::ReputationWrite;
 use crate::morning::Morning;
 use crate::params::Params;
+use crate::reputation::{Mood, ReputationWrite};
 use crate::retention::renewal::RenewalContext;
-use crate::retention::satisfaction::Mood;
 use crate::state::World;
 
 /// Looks into a day while it is simulated. Blocks are shown on any thread, in any order.

@@ -5,10 +5,10 @@ use super::{Standing, Step};
 use crate::customers::columns::Subscriber;
 use crate::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
 use crate::identifiers::Group;
-use crate::market::reputation::{ReputationCause, event_damage};
 use crate::params::Params;
-use crate::product::quality::{quota_demand, relationship_as_read, relationship_bonus};
+use crate::quality::{quota_demand, relationship_as_read, relationship_bonus};
 use crate::random::Part;
+use crate::reputation::{ReputationCause, event_damage};
 
 /// A subscriber whose thread died today; companies like to talk about that.
 ///

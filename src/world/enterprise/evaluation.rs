@@ -3,8 +3,8 @@
 use crate::customers::curve::{Curve, required_quality};
 use crate::events::Offering;
 use crate::identifiers::ByPlan;
-use crate::market::economy::round_to;
 use crate::params::Params;
+use novamind_base::notation::round_to;
 
 /// What a company answers.
 #[derive(Debug, Clone, Copy, PartialEq)]

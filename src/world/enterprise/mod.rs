@@ -32,9 +32,9 @@ use super::canonical::canonical;
 use super::context::DayContext;
 use super::customers::Customers;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
-use super::market::drift::DriftTotals;
-use super::market::reputation::{OnWrite, ReputationBook};
 use super::product::Product;
+use crate::customers::drift::DriftTotals;
+use crate::reputation::{OnWrite, ReputationBook};
 
 /// Negotiations with companies.
 #[derive(Debug, Clone, PartialEq)]

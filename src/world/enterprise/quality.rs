@@ -5,7 +5,7 @@ use crate::customers::columns::Subscriber;
 use crate::customers::curve::Curve;
 use crate::identifiers::{ByPlan, Group};
 use crate::params::ServicePenalty;
-use crate::product::quality::{
+use crate::quality::{
     Experience, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
     relationship_bonus,
 };

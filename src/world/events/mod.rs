@@ -22,7 +22,8 @@ pub use economy::{Phase, Reading, Trend};
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use posts::{
-    Cause, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Severity, Theme, Troubles,
+    Cause, Engagement, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Sentiment, Severity,
+    Theme, Troubles,
 };
 pub use research::{Attempt, Knowledge, Project, Snapshot, Study};
 pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};

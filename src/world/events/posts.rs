@@ -5,11 +5,10 @@ use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, can
 use crate::customers::persona::PersonaPicks;
 use crate::events::ThreadKind;
 use crate::identifiers::{Group, Plan};
-use crate::market::social::engagement::Engagement;
-use crate::market::social::sentiment::Sentiment;
 
 canonical! {
     Post { post, author, sentiment, engagement, matter }
+    Engagement { likes, shares, virality }
     PostAuthor { customer, group, n, persona, company }
     Opinion { cause, troubles, theme, days_subscribed, plan, price, seats, waiting_days, downtime_minutes }
     Troubles { overload, outage, issue, quota }
@@ -17,6 +16,7 @@ canonical! {
     OwnPostSeen { post, views, comments }
 }
 canonical_codes! {
+    Sentiment { Positive, Neutral, Negative }
     Theme { Price, Quality, Rivals, Service, Support, Limits, Ads, Progress, Habit }
     Severity { Minor, Moderate, Major, Transformative }
 }
@@ -34,6 +34,29 @@ pub struct Post {
     pub engagement: Engagement,
     /// What it is about.
     pub matter: Matter,
+}
+
+/// Tone of a post.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Sentiment {
+    /// Praise.
+    Positive,
+    /// Neither.
+    Neutral,
+    /// Complaint.
+    Negative,
+}
+
+/// How far a post carries; hidden, and without effect on the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Engagement {
+    /// Likes.
+    pub likes: u32,
+    /// Shares.
+    pub shares: u32,
+    /// 0..=1.
+    pub virality: f64,
 }
 
 /// A customer who writes.

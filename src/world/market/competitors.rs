@@ -1,7 +1,7 @@
 //! Competitor events: rivals raise everyone's expectations, and copy what we improved (docs/mechanics/market/competitors.md).
 
-use super::drift::DriftTotals;
 use crate::canonical::canonical;
+use crate::customers::drift::DriftTotals;
 use crate::events::Severity;
 use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};

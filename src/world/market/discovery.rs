@@ -1,7 +1,7 @@
 //! Market research: paying for a chance to find an unknown group (docs/mechanics/market/discovery.md).
 
 use super::Market;
-use super::drift::DriftTotals;
+use crate::customers::drift::DriftTotals;
 use crate::events::{Attempt, Snapshot};
 use crate::identifiers::Group;
 use crate::params::Params;

@@ -6,6 +6,7 @@ use crate::fault::Fault;
 use crate::identifiers::Group;
 use crate::params::{MacroEconomy, Params};
 use crate::random::{Part, Streams};
+use novamind_base::notation::round_to;
 
 /// The state of the economy.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,11 +42,6 @@ pub fn next_pmi(pmi: f64, target: f64, z: f64, law: &MacroEconomy) -> f64 {
 /// Factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
 pub fn macro_multiplier(beta: f64, pmi: f64, law: &MacroEconomy) -> f64 {
     (law.multiplier_neutral + beta * (pmi - law.neutral_pmi) / law.pmi_scale).max(law.multiplier_min)
-}
-
-/// Rounds to decimals, half to even on the exact binary value.
-pub fn round_to(value: f64, decimals: u32) -> f64 {
-    format!("{value:.*}", decimals as usize).parse().expect("a formatted number reads back")
 }
 
 /// What the economy acts on.
@@ -261,13 +257,6 @@ pub(crate) mod tests {
         ] {
             assert_eq!(Phase::of(value, change, &law).id(), phase);
         }
-    }
-
-    #[test]
-    fn rounding_is_half_to_even_on_the_binary_value() {
-        assert_eq!(round_to(0.25, 1), 0.2);
-        assert_eq!(round_to(0.35, 1), 0.3);
-        assert_eq!(round_to(-0.049, 1), -0.0);
     }
 
     #[test]

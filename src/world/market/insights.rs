@@ -2,13 +2,13 @@
 //! (docs/mechanics/market/discovery.md).
 
 use super::Market;
-use super::drift::DriftTotals;
-use super::economy::round_to;
 use super::leads::market_cap;
+use crate::customers::drift::DriftTotals;
 use crate::events::Snapshot;
 use crate::identifiers::Group;
 use crate::params::{GroupParams, InsightNoise, Params};
 use crate::random::{NumpyStream, Part, Streams};
+use novamind_base::notation::round_to;
 
 impl Snapshot {
     /// The group on a day, with the drift of the whole group and without that of single customers.

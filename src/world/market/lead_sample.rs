@@ -2,9 +2,9 @@
 //! (docs/mechanics/customers/curve-explorer.md).
 
 use super::arrivals::{FirstLook, curve_and_demand_under};
-use super::drift::Expectation;
 use crate::customers::choice::{Offer, passes_gate};
 use crate::customers::curve::{Curve, required_quality};
+use crate::customers::drift::Expectation;
 use crate::customers::traits::traits_from;
 use crate::identifiers::{ByPlan, Group};
 use crate::params::Params;

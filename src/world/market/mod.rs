@@ -3,21 +3,21 @@
 pub mod arrivals;
 pub mod competitors;
 pub mod discovery;
-pub mod drift;
 pub mod economy;
 pub mod insights;
 pub mod lead_sample;
 pub mod leads;
-pub mod reputation;
 pub mod social;
 pub mod studies;
 pub mod surges;
 pub mod yields;
 
 use super::canonical::canonical;
+use super::customers::drift;
 use super::events::{Knowledge, Study};
 use super::identifiers::{ByChannel, ByGroup, Group};
 use super::params::Params;
+use super::reputation;
 use super::settings::Settings;
 
 /// The hidden state of the market.

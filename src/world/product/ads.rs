@@ -1,11 +1,11 @@
 //! In-app advertising: what it earns (`docs/mechanics/product/ads.md`). What it costs in quality is in `quality`.
 
-use super::quality::ads_effect;
 use crate::customers::Customers;
 use crate::customers::columns::Block;
 use crate::events::{AdsRevenueRow, Facts};
 use crate::identifiers::{ByGroup, Group};
 use crate::params::Params;
+use crate::quality::ads_effect;
 use crate::settings::AdsStrength;
 
 /// Effective strength for customers of a group without a level of their own, and with one.

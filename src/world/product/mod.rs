@@ -2,7 +2,6 @@
 
 pub mod ads;
 pub mod development;
-pub mod quality;
 pub mod research;
 pub mod research_spread;
 pub mod service;

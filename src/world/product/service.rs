@@ -1,7 +1,6 @@
 //! Service health of the day (`docs/mechanics/product/service.md`).
 
 use crate::events::{Facts, ServiceDay};
-use crate::held::HeldService;
 use crate::morning::Morning;
 use crate::params::{Operations, Params};
 use crate::random::{Part, Stream, Streams};
@@ -41,6 +40,15 @@ pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
         u -= probability;
     }
     choices[2]
+}
+
+/// What strains the service on a day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldService {
+    /// Share of the metered usage that counts as its load.
+    pub load: f64,
+    /// The day whose luck decides on outages, latency and errors.
+    pub luck_of: u32,
 }
 
 /// Observes the service of the day, under what is held of its strain, and records it.

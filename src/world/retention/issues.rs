@@ -13,7 +13,7 @@ use crate::customers::columns::{BLOCK, Block, place_in_block};
 use crate::events::{Facts, IssueOpened};
 use crate::identifiers::Group;
 use crate::params::{Issues, Params, Quality};
-use crate::product::quality::relationship_as_read;
+use crate::quality::relationship_as_read;
 use crate::random::{Part, word_below};
 use crate::settings::Settings;
 

@@ -4,10 +4,9 @@ use crate::context::DayContext;
 use crate::customers::columns::{BLOCK, Block};
 use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::identifiers::{ByGroup, Group, Plan};
-use crate::market::reputation::{OnWrite, ReputationBook, ReputationCause, cancel_damage};
-use crate::market::social::crowd::GaveUp;
 use crate::params::{DriftCounted, InvoluntaryChurn, Params};
 use crate::random::{Part, Streams, Word, word_below};
+use crate::reputation::{OnWrite, ReputationBook, ReputationCause, cancel_damage};
 use crate::retention::due_today;
 use crate::retention::weighing::{drifted_curve, weigh};
 use crate::settings::Settings;
@@ -39,6 +38,25 @@ pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &St
     let z = streams.open_since(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
     let own = params.group(group);
     involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
+}
+
+/// An individual who gave up today because no plan was acceptable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaveUp {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Satisfaction after today's update.
+    pub satisfaction: f64,
+    /// Days subscribed.
+    pub days_subscribed: u32,
+    /// Plan it leaves.
+    pub plan: Plan,
+    /// Price it paid, dollars a month.
+    pub price: f64,
 }
 
 /// What happened at the billing decisions of a day.

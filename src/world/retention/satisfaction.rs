@@ -1,38 +1,22 @@
 //! Daily satisfaction of every active subscriber (`docs/mechanics/retention/satisfaction.md`).
 
-use std::ops::{AddAssign, Range};
+use std::ops::Range;
 
 use crate::context::DayContext;
 use crate::customers::columns::Block;
 use crate::fault::Fault;
 use crate::identifiers::{ByGroup, ByPlan, Group};
-use crate::market::reputation::contribution;
 use crate::params::{Params, Quality};
-use crate::product::quality::{
+use crate::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
     service_penalty,
 };
+use crate::reputation::{Mood, contribution};
 
 /// Moving average: (1 - alpha) old + alpha instant.
 #[inline]
 pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
-}
-
-/// What some subscribers contribute to the reputation of their group today.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mood {
-    /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
-    pub sum: f64,
-    /// How many contributed.
-    pub count: u32,
-}
-
-impl AddAssign for Mood {
-    fn add_assign(&mut self, other: Mood) {
-        self.sum += other.sum;
-        self.count += other.count;
-    }
 }
 
 /// Adds up what the blocks of each group contribute, in their order.

@@ -4,12 +4,10 @@ use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;
 use crate::customers::columns::Block;
 use crate::customers::curve::{Curve, required_quality};
+use crate::customers::drift::Expectation;
 use crate::identifiers::{ByPlan, Group, Plan};
-use crate::market::drift::Expectation;
 use crate::params::{Params, ServicePenalty};
-use crate::product::quality::{
-    Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus,
-};
+use crate::quality::{Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus};
 
 /// The plans as an individual sees them, and what it asks of them.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,6 @@
 mod decisions;
 mod outcome;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
@@ -18,9 +15,9 @@ use novamind_insight::FORMS;
 use novamind_session::Refusal;
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
-use novamind_worker::message::News;
+use novamind_worker::asking::{Ask, Pending};
+use novamind_worker::branches::{BranchesFound, BranchesQuestion};
 use novamind_worker::request::Request;
-use novamind_worker::resimulation::{BranchesFound, BranchesQuestion};
 use outcome::Figures;
 
 /// Futures that are drawn.
@@ -30,8 +27,8 @@ const FUTURES: u32 = 20;
 enum Page {
     /// The decisions, which can be edited.
     Decisions,
-    /// Days are simulated: how many, of how many.
-    Working(usize, usize),
+    /// Days are simulated.
+    Working,
     /// What came of it.
     Figures(Box<Figures>),
 }
@@ -40,25 +37,16 @@ enum Page {
 pub struct BranchesPage {
     decisions: Decisions,
     page: Page,
-    /// Ends the work.
-    stop: Arc<AtomicBool>,
+    asked: Pending<BranchesQuestion>,
     problem: Option<String>,
 }
 
 impl BranchesPage {
-    /// For branches from a week on, at most from the last one; what was decided is not known yet.
-    pub fn new(week: u32, last_week: u32) -> BranchesPage {
-        BranchesPage {
-            decisions: Decisions::new(week, last_week),
-            page: Page::Decisions,
-            stop: Arc::default(),
-            problem: None,
-        }
-    }
-
-    /// What it asks when it is opened.
-    pub fn opening_question(&self) -> Effect {
-        Effect::AskBranches(BranchesQuestion::Decisions, self.stop.clone())
+    /// For branches from a week on, at most from the last one; asks what was decided.
+    pub fn new(week: u32, last_week: u32) -> (BranchesPage, Ask) {
+        let (asked, ask) = Pending::asking(BranchesQuestion::Decisions);
+        let decisions = Decisions::new(week, last_week);
+        (BranchesPage { decisions, page: Page::Decisions, asked, problem: None }, ask)
     }
 
     fn ask(&mut self, futures: Option<u32>) -> Outcome {
@@ -67,20 +55,16 @@ impl BranchesPage {
             self.problem = Some(format!("decide something otherwise first; for instance {}", FORMS[0]));
             return Outcome::stay();
         }
-        self.stop = Arc::default();
-        self.page = Page::Working(0, 0);
+        self.page = Page::Working;
         let question = BranchesQuestion::Compare { week: self.decisions.week(), alternatives, futures };
-        Outcome::with(vec![Effect::AskBranches(question, self.stop.clone())])
+        Outcome::with(vec![Effect::Ask(self.asked.ask(question))])
     }
 
     fn leave(&mut self) -> Outcome {
         match self.page {
-            Page::Decisions => {
-                self.stop.store(true, Ordering::Relaxed);
-                Outcome::close()
-            }
-            Page::Working(..) => {
-                self.stop.store(true, Ordering::Relaxed);
+            Page::Decisions => Outcome::close(),
+            Page::Working => {
+                self.asked.cancel();
                 self.page = Page::Decisions;
                 Outcome::stay()
             }
@@ -98,20 +82,20 @@ impl BranchesPage {
         Outcome::close_with(vec![Effect::Request(Request::AdoptBranch { week, edits })])
     }
 
-    fn take(&mut self, found: &Result<BranchesFound, Refusal>) {
+    fn take(&mut self, found: Result<BranchesFound, Refusal>) {
         match found {
-            Ok(BranchesFound::Decisions(calls, days)) => self.decisions.take(calls.clone(), *days),
+            Ok(BranchesFound::Decisions(calls, days)) => self.decisions.take(calls, days),
             Ok(BranchesFound::Compared(comparison, futures)) => {
                 let figure = match &self.page {
                     Page::Figures(figures) => figures.figure(),
                     _ => 0,
                 };
                 let days = self.decisions.days_per_week();
-                let figures = Figures::new((**comparison).clone(), futures.as_deref().cloned(), days, figure);
+                let figures = Figures::new(*comparison, futures.map(|own| *own), days, figure);
                 self.page = Page::Figures(Box::new(figures));
             }
             Err(refusal) => {
-                self.problem = Some(refusal.message.clone());
+                self.problem = Some(refusal.message);
                 self.decisions.refuse();
                 self.page = Page::Decisions;
             }
@@ -127,7 +111,7 @@ impl Dialog for BranchesPage {
     fn step(&self) -> Option<&'static str> {
         Some(match self.page {
             Page::Decisions => "decisions",
-            Page::Working(..) => "simulating",
+            Page::Working => "simulating",
             Page::Figures(_) => "figures",
         })
     }
@@ -136,7 +120,7 @@ impl Dialog for BranchesPage {
         match self.page {
             Page::Decisions if self.decisions.is_typing() => vec![Scope::Field],
             Page::Decisions => vec![Scope::Decisions, Scope::List, Scope::Dialog],
-            Page::Working(..) => vec![Scope::Dialog],
+            Page::Working => vec![Scope::Dialog],
             Page::Figures(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }
     }
@@ -152,7 +136,7 @@ impl Dialog for BranchesPage {
                 Action::Open,
                 Action::Close,
             ],
-            Page::Working(..) => vec![Action::Cancel],
+            Page::Working => vec![Action::Cancel],
             Page::Figures(_) => {
                 vec![Action::NextFigure, Action::DrawFutures, Action::AdoptBranch, Action::Close]
             }
@@ -168,7 +152,7 @@ impl Dialog for BranchesPage {
             (Page::Figures(_), Action::AdoptBranch) => return self.adopt(),
             (Page::Decisions, action) => self.problem = self.decisions.act(action).err(),
             (Page::Figures(figures), action) => figures.act(action),
-            (Page::Working(..), _) => {}
+            (Page::Working, _) => {}
         }
         Outcome::stay()
     }
@@ -184,24 +168,17 @@ impl Dialog for BranchesPage {
         Outcome::stay()
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
-        match news {
-            News::BranchesProgress(_, done, all) => {
-                if let Page::Working(..) = self.page {
-                    self.page = Page::Working(*done, *all);
-                }
-            }
-            News::Branches(_, found) => self.take(found),
-            _ => {}
+    fn take_answers(&mut self) {
+        if let Some((_, found)) = self.asked.try_take() {
+            self.take(found);
         }
-        Outcome::stay()
     }
 
     fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
         match &mut self.page {
             Page::Decisions => self.decisions.select(row),
             Page::Figures(figures) => figures.select(row),
-            Page::Working(..) => {}
+            Page::Working => {}
         }
         Outcome::stay()
     }
@@ -216,8 +193,9 @@ impl Dialog for BranchesPage {
         let page = Rect { height: inside.height - below, ..inside };
         match &self.page {
             Page::Decisions => self.decisions.draw(canvas, page),
-            Page::Working(done, all) => {
-                let share = 100 * done / all.max(&1);
+            Page::Working => {
+                let (done, all) = self.asked.progress().unwrap_or_default();
+                let share = 100 * done / all.max(1);
                 canvas.text(page, &format!("simulating days again: {share} % …"), Role::Warning);
             }
             Page::Figures(figures) => figures.draw(canvas, page),

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::*;
 use crate::keys::Keys;
-use crate::test_kit::{company, dialog_picture, in_dialog};
+use crate::test_kit::{asked, company, dialog_picture, in_dialog};
 use novamind_insight::{DecisionEdit, PastCall, PastDecision};
 use novamind_session::ToolId;
 
@@ -22,8 +22,8 @@ fn call(seq: u64, day: u32, accepted: bool) -> PastDecision {
 }
 
 fn page() -> BranchesPage {
-    let mut page = BranchesPage::new(5, 8);
-    page.take(&Ok(BranchesFound::Decisions(
+    let (mut page, _) = BranchesPage::new(5, 8);
+    page.take(Ok(BranchesFound::Decisions(
         vec![call(4, 0, true), call(9, 28, true), call(12, 35, false)],
         7,
     )));
@@ -76,17 +76,14 @@ fn other_decisions_are_typed_and_alternatives_stand_side_by_side() {
     type_in(&mut page, "set_prices * 0.9");
     in_dialog(&mut page, Action::NextAlternative, &company);
     type_in(&mut page, "keep set_prices");
-    let asked = in_dialog(&mut page, Action::SimulateBranches, &company);
-    let [Effect::AskBranches(BranchesQuestion::Compare { week: 5, alternatives, futures: None }, _)] =
-        &asked.effects[..]
-    else {
-        panic!("{:?}", asked.effects)
+    let effects = in_dialog(&mut page, Action::SimulateBranches, &company).effects;
+    let BranchesQuestion::Compare { week: 5, alternatives, futures: None } = asked(&effects) else {
+        panic!("{effects:?}")
     };
     let told: Vec<String> = alternatives.iter().map(|own| own[0].to_string()).collect();
     assert_eq!(told, ["set_prices * 0.9", "keep set_prices"]);
     // esc stops the work and leads back; a second one leaves.
-    let stop = page.stop.clone();
-    assert!(!in_dialog(&mut page, Action::Cancel, &company).close && stop.load(Ordering::Relaxed));
+    assert!(!in_dialog(&mut page, Action::Cancel, &company).close && !page.asked.is_waiting());
     assert!(in_dialog(&mut page, Action::Close, &company).close);
 }
 
@@ -94,6 +91,6 @@ fn other_decisions_are_typed_and_alternatives_stand_side_by_side() {
 fn a_refusal_leads_back_to_the_decisions() {
     let company = company();
     let mut page = page();
-    page.take(&Err(Refusal::new("not_in_this_mode", "not in an unfinished baseline run")));
+    page.take(Err(Refusal::new("not_in_this_mode", "not in an unfinished baseline run")));
     assert!(dialog_picture(&page, &company, 60, 16).contains("not in an unfinished baseline run"));
 }

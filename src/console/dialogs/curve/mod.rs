@@ -5,8 +5,6 @@ mod draw;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use ratatui::layout::Rect;
 use serde_json::{Map, Value, json};
 
@@ -19,7 +17,8 @@ use novamind_session::Refusal;
 use novamind_session::identifiers::{ByPlan, Group, Plan};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
-use novamind_worker::message::News;
+use novamind_worker::asking::{Ask, Pending};
+use novamind_worker::questions::CurveQuestion;
 
 /// Qualities are dragged by this much, with page keys by ten times as much.
 const QUALITY_STEP: f64 = 0.01;
@@ -28,7 +27,7 @@ const MOST_QUALITY: f64 = 2.0;
 
 /// What is known of a group, with the plans as they are dragged.
 struct ExploredCurve {
-    explorer: Arc<CurveExplorer>,
+    explorer: CurveExplorer,
     plans: ByPlan<PlanPoint>,
     outcome: CurveOutcome,
 }
@@ -36,6 +35,7 @@ struct ExploredCurve {
 /// The explorer of a group.
 pub struct CurvePage {
     group: Group,
+    asked: Pending<CurveQuestion>,
     /// What was found; none while it is drawn.
     found: Option<Result<ExploredCurve, Refusal>>,
     /// The plan that is dragged; none for all of them.
@@ -43,24 +43,20 @@ pub struct CurvePage {
 }
 
 impl CurvePage {
-    /// Waits for the curve of a group.
-    pub fn new(group: Group) -> CurvePage {
-        CurvePage { group, found: None, chosen: Some(Plan::A) }
+    /// Asks for the curve of a group.
+    pub fn new(group: Group) -> (CurvePage, Ask) {
+        let (asked, ask) = Pending::asking(CurveQuestion(group));
+        (CurvePage { group, asked, found: None, chosen: Some(Plan::A) }, ask)
     }
 
-    fn take(&mut self, found: &Result<Arc<CurveExplorer>, Refusal>) {
-        self.found = Some(match found {
-            Ok(explorer) => {
-                let (explorer, plans) = (explorer.clone(), explorer.plans);
-                let outcome = explorer.outcome(&plans);
-                // Plans that are one product at one price move together.
-                if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
-                    self.chosen = None;
-                }
-                Ok(ExploredCurve { explorer, plans, outcome })
-            }
-            Err(refusal) => Err(refusal.clone()),
-        });
+    fn take(&mut self, explorer: CurveExplorer) -> ExploredCurve {
+        let plans = explorer.plans;
+        let outcome = explorer.outcome(&plans);
+        // Plans that are one product at one price move together.
+        if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
+            self.chosen = None;
+        }
+        ExploredCurve { explorer, plans, outcome }
     }
 
     fn opened(&self) -> Option<&ExploredCurve> {
@@ -110,7 +106,7 @@ impl CurvePage {
         let step = if forward { 1 } else { known.len() - 1 };
         self.group = known[(at + step) % known.len()];
         self.found = None;
-        Outcome::with(vec![Effect::AskCurve(self.group)])
+        Outcome::with(vec![Effect::Ask(self.asked.ask(CurveQuestion(self.group)))])
     }
 
     /// To the form of prices with those that were dragged typed into it.
@@ -194,11 +190,10 @@ impl Dialog for CurvePage {
         Outcome::stay()
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Outcome {
-        if let News::Curve(_, found) = news {
-            self.take(found);
+    fn take_answers(&mut self) {
+        if let Some((_, found)) = self.asked.try_take() {
+            self.found = Some(found.map(|explorer| self.take(explorer)));
         }
-        Outcome::stay()
     }
 
     fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {

@@ -1,20 +1,17 @@
 //! The explorer is dragged with keys, says what would come of it, and changes nothing.
 
 use super::*;
-use crate::keys::Keys;
-use crate::test_kit::{dialog_picture, in_dialog, played};
+use crate::test_kit::{asked, dialog_picture, in_dialog, played};
 use novamind_insight::CurveExplorer;
 use novamind_worker::company::Company;
 
 fn explored(group: &str) -> (CurvePage, Company) {
     let mut session = played(1);
     let group = Group::parse(group).expect("a group");
-    let found = CurveExplorer::of(&mut session, group).map(Arc::new);
-    let company = Company::of(&session);
-    let mut page = CurvePage::new(group);
-    let keys = Keys::shipped();
-    page.hear(&News::Curve(1, Box::new(found)), &Look { company: &company, keys: &keys, page: 5 });
-    (page, company)
+    let (mut page, _) = CurvePage::new(group);
+    page.asked.put(CurveExplorer::of(&mut session, group));
+    page.take_answers();
+    (page, Company::of(&session))
 }
 
 #[test]
@@ -59,10 +56,10 @@ fn what_was_dragged_is_typed_into_the_form_and_nothing_is_set() {
             if arguments.as_object().is_some_and(|own| own.len() == 1 && own.contains_key("A")))
     );
     let next = in_dialog(&mut page, Action::NextCurve, &company);
-    assert!(matches!(next.effects[..], [Effect::AskCurve(group)] if group.id() == "S2"));
+    assert_eq!(asked::<CurveQuestion>(&next.effects).0.id(), "S2");
     assert!(dialog_picture(&page, &company, 80, 21).contains("asking 2000 leads"));
     let back = in_dialog(&mut page, Action::PreviousCurve, &company);
-    assert!(matches!(back.effects[..], [Effect::AskCurve(group)] if group.id() == "S1"));
+    assert_eq!(asked::<CurveQuestion>(&back.effects).0.id(), "S1");
     assert!(in_dialog(&mut page, Action::Close, &company).close);
 }
 
@@ -79,9 +76,10 @@ fn every_window_has_its_page() {
             }
         }
     }
-    let mut page = CurvePage::new(Group::parse("D_S05").expect("a group"));
+    let (mut page, _) = CurvePage::new(Group::parse("D_S05").expect("a group"));
     let refused = Refusal::new("group_not_discovered", "group D_S05 is not known yet");
-    page.take(&Err(refused));
+    page.asked.put(Err(refused));
+    page.take_answers();
     let company = explored("S1").1;
     assert!(dialog_picture(&page, &company, 60, 16).contains("not known yet"));
 }

@@ -16,6 +16,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 use novamind_worker::company::Company;
+use novamind_worker::questions::RelatedRunsQuestion;
 
 /// The tree.
 pub struct BranchesPane;
@@ -72,25 +73,20 @@ impl Journal {
 
     /// Asks for the tree, unless it is being read, or cannot have changed.
     pub(super) fn ask_tree(&mut self, company: &Company) -> Vec<Effect> {
-        let is_known = company.replayed && self.tree_of == company.seen.run;
-        if company.study.is_some() || company.folder.is_none() || self.reads_tree || is_known {
+        let is_known = company.replayed && self.is_tree_read;
+        if company.study.is_some() || company.folder.is_none() || self.asked.is_waiting() || is_known {
             return Vec::new();
         }
-        self.reads_tree = true;
-        vec![Effect::ReadKin]
+        vec![Effect::Ask(self.asked.ask(RelatedRunsQuestion))]
     }
 
-    /// Takes the tree that was read for a run.
-    pub(super) fn take_tree(&mut self, run: &str, tree: &[Kin], company: &Company) {
-        self.reads_tree = false;
-        if run != company.seen.run || company.study.is_some() {
-            return;
-        }
-        run.clone_into(&mut self.tree_of);
+    /// Takes the tree that was read.
+    pub(super) fn take_tree(&mut self, tree: Vec<Kin>, company: &Company) {
+        let run = &company.seen.run;
         let is_first = self.tree.is_empty();
-        self.tree = tree.to_vec();
-        self.branches.set_rows(rows(tree, run));
-        if is_first && let Some(own) = tree.iter().position(|kin| kin.run.id == run) {
+        (self.tree, self.is_tree_read) = (tree, true);
+        self.branches.set_rows(rows(&self.tree, run));
+        if is_first && let Some(own) = self.tree.iter().position(|kin| kin.run.id == *run) {
             self.branches.select(own);
         }
         if self.focus == JournalPane::Branches && !self.has_tree() {

@@ -20,7 +20,8 @@ use novamind_insight::Kin;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Editor, Table};
-use novamind_worker::message::News;
+use novamind_worker::asking::Pending;
+use novamind_worker::questions::RelatedRunsQuestion;
 use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.
@@ -53,10 +54,8 @@ pub struct Journal {
     /// The tree of branches, and a row for each of its runs.
     tree: Vec<Kin>,
     branches: Table,
-    /// The run whose tree it is.
-    tree_of: String,
-    /// It is being read.
-    reads_tree: bool,
+    is_tree_read: bool,
+    asked: Pending<RelatedRunsQuestion>,
 }
 
 impl Default for Journal {
@@ -73,8 +72,8 @@ impl Default for Journal {
             editing: false,
             tree: Vec::new(),
             branches: branches::table(),
-            tree_of: String::new(),
-            reads_tree: false,
+            is_tree_read: false,
+            asked: Pending::default(),
         }
     }
 }
@@ -134,14 +133,11 @@ impl ScreenState for Journal {
         self.ask_tree(look.company)
     }
 
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
-        match news {
-            News::Kin(run, Ok(tree)) => self.take_tree(run, tree, look.company),
-            News::Kin(_, Err(refusal)) => {
-                self.reads_tree = false;
-                return vec![Effect::Complain(refusal.message.clone())];
-            }
-            _ => {}
+    fn take_answers(&mut self, look: &Look<'_>) -> Vec<Effect> {
+        match self.asked.try_take() {
+            Some((_, Ok(tree))) => self.take_tree(tree, look.company),
+            Some((_, Err(refusal))) => return vec![Effect::Complain(refusal.message)],
+            None => {}
         }
         Vec::new()
     }

@@ -27,9 +27,11 @@ use novamind_session::{Preview, Rows};
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
 use novamind_worker::message::News;
 use novamind_worker::posts::Posts;
+use novamind_worker::questions::CallCheck;
 use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
@@ -75,7 +77,7 @@ pub struct Market {
     /// First line of the report that is shown.
     from: usize,
     /// Call that is being looked at before the question.
-    asking: Option<(ToolId, Value)>,
+    asking: Pending<CallCheck>,
 }
 
 impl Market {
@@ -164,8 +166,7 @@ impl Market {
     }
 
     fn check(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
-        self.asking = Some((tool, arguments.clone()));
-        vec![Effect::Check { tool, arguments }]
+        vec![Effect::Ask(self.asking.ask(CallCheck { tool, arguments }))]
     }
 
     fn study(&mut self, company: &Company) -> Vec<Effect> {
@@ -238,15 +239,16 @@ impl ScreenState for Market {
         Some(("study", group.id().to_owned()))
     }
 
+    fn take_answers(&mut self, look: &Look<'_>) -> Vec<Effect> {
+        match self.asking.try_take() {
+            Some((call, Ok(preview))) => vec![self.ask(call.tool, call.arguments, &preview, look.company)],
+            Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
+            None => Vec::new(),
+        }
+    }
+
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
-            News::Checked(_, preview) => match (preview, self.asking.take()) {
-                (Ok(preview), Some((tool, arguments))) => {
-                    vec![self.ask(tool, arguments, preview, look.company)]
-                }
-                (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
-                _ => Vec::new(),
-            },
             News::Called(_, Ok(answer), _) => self.answered(answer, look.company),
             _ => Vec::new(),
         }

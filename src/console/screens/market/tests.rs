@@ -4,7 +4,7 @@ use super::*;
 use crate::keys::Keys;
 use novamind_worker::posts::PostKind;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, on_screen, played, shown};
+use crate::test_kit::{act, asked, drawn, on_screen, played, shown};
 use novamind_session::{Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -16,9 +16,9 @@ fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
 fn order(screen: &mut Market, session: &mut Session, action: Action) -> (String, Vec<Effect>) {
     let company = Company::of(session);
     let effects = act(screen, action, &company);
-    let [Effect::Check { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
-    let checked = News::Checked(1, session.check(tool, arguments));
-    let effects = with_look(&company, |look| screen.hear(&checked, look));
+    let CallCheck { tool, arguments } = asked(&effects);
+    screen.asking.put(session.check(*tool, arguments));
+    let effects = with_look(&company, |look| screen.take_answers(look));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     let answer = session.call(tool, arguments, Via::Form);
     let company = Company::of(session);

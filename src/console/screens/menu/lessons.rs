@@ -5,8 +5,9 @@ use std::sync::Arc;
 use ratatui::layout::Rect;
 
 use crate::effect::Effect;
+use novamind_course::Lesson;
 use novamind_report::count;
-use novamind_session::{Configuration, Lesson, LessonEntry, Mode, NewRun};
+use novamind_session::{Configuration, LessonEntry, Mode, NewRun};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -30,6 +30,8 @@ use novamind_session::{Access, Configuration, Mode, RunPreview, RunSummary};
 use novamind_tui::canvas::{Align, Canvas};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
+use novamind_worker::asking::Pending;
+use novamind_worker::folder::PreviewQuestion;
 use novamind_worker::message::Instead;
 use novamind_worker::request::Request;
 use path_form::{PathForm, PathWanted};
@@ -55,6 +57,8 @@ pub struct Menu {
     /// Runs to be compared, in the order in which they were marked.
     marked: Vec<String>,
     previews: Previews,
+    /// Runs whose previews are read.
+    reading: Vec<Pending<PreviewQuestion>>,
     /// What is asked about before it is done.
     asked: Option<Asked>,
     /// What was to be done on the first page before the runs were known: what it offers depends on them.
@@ -91,6 +95,7 @@ impl Menu {
             table: Table::new(runs::columns()),
             marked: Vec::new(),
             previews: Previews::new(),
+            reading: Vec::new(),
             asked: None,
             early: Vec::new(),
             lessons: LessonList::default(),
@@ -113,6 +118,7 @@ impl Menu {
         self.marked.retain(|id| known.contains(id));
         // What was played since may have gone further.
         self.previews.clear();
+        self.reading.clear();
         self.asked = None;
         self.renew_table();
         let last = self.list().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
@@ -130,9 +136,12 @@ impl Menu {
         self.choices().get(self.selected).map(|choice| choice.0)
     }
 
-    /// Takes how a run went.
-    pub fn learn(&mut self, id: String, preview: Result<RunPreview, String>) {
-        self.previews.insert(id, Some(preview));
+    /// Takes how runs went, as far as that was read.
+    pub fn take_answers(&mut self) {
+        for (run, preview) in self.reading.iter_mut().filter_map(Pending::try_take) {
+            self.previews.insert(run.id, Some(preview.map_err(|refusal| refusal.message)));
+        }
+        self.reading.retain(Pending::is_waiting);
     }
 
     /// A run could not be started or opened; what can be done instead is asked.
@@ -160,7 +169,9 @@ impl Menu {
             return None;
         }
         self.previews.insert(id.to_owned(), None);
-        Some(Effect::Request(Request::PreviewRun(id.to_owned())))
+        let (pending, ask) = Pending::asking(PreviewQuestion { id: id.to_owned() });
+        self.reading.push(pending);
+        Some(Effect::Ask(ask))
     }
 
     fn list(&self) -> &[RunSummary] {

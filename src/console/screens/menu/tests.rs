@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::test_kit::painted;
+use crate::test_kit::{asked, painted};
 use novamind_session::{Access, Ended, Goal, Mode};
 use novamind_worker::request::{Recorded, Request};
 
@@ -60,7 +60,7 @@ fn three() -> Menu {
         RunSummary { problem: Some("run.toml is missing".to_owned()), ..summary("cccc0003") },
     ]);
     for id in ["aaaa0001", "bbbb0002"] {
-        menu.learn(id.to_owned(), Ok(preview()));
+        menu.previews.insert(id.to_owned(), Some(Ok(preview())));
     }
     menu
 }
@@ -111,12 +111,10 @@ fn the_last_run_stands_beside_the_choices() {
 fn the_preview_of_a_run_is_asked_for_once() {
     let mut menu = Menu::new(&Configuration::shipped());
     let effects = menu.take(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
-    assert!(matches!(&effects[..], [Effect::Request(Request::PreviewRun(id))] if id == "aaaa0001"));
+    assert_eq!(asked::<PreviewQuestion>(&effects).id, "aaaa0001");
     menu.page = MenuPage::Runs;
     assert!(menu.read_chosen().is_empty());
-    assert!(
-        matches!(&menu.act(Action::Down)[..], [Effect::Request(Request::PreviewRun(id))] if id == "bbbb0002")
-    );
+    assert_eq!(asked::<PreviewQuestion>(&menu.act(Action::Down)).id, "bbbb0002");
     assert!(menu.act(Action::Up).is_empty());
 }
 
@@ -134,11 +132,11 @@ fn a_key_that_comes_before_the_runs_are_known_means_what_is_shown_then() {
     };
     let (_, effects) = hurried(&[Action::Open], vec![summary("aaaa0001")]);
     assert!(
-        matches!(&effects[..], [Effect::Request(Request::PreviewRun(_)), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
+        matches!(&effects[..], [Effect::Ask(_), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
     );
     let (_, effects) = hurried(&[Action::ContinueRun], vec![summary("aaaa0001")]);
     assert!(
-        matches!(&effects[..], [Effect::Request(Request::PreviewRun(_)), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
+        matches!(&effects[..], [Effect::Ask(_), Effect::Request(Request::Open(id, Access::Write))] if id == "aaaa0001")
     );
     let (_, effects) = hurried(&[Action::Open], Vec::new());
     assert!(matches!(effects[..], [Effect::StartTour]));

@@ -2,9 +2,10 @@ use super::*;
 use crate::effect::Effect;
 use crate::context::ScreenId;
 use crate::screens::Screen;
-use crate::test_kit::{act, courted, drawn, on_screen, played, shown};
+use crate::test_kit::{act, asked, courted, drawn, on_screen, played, shown};
 use novamind_report::needs::{Place, Problem};
 use novamind_session::{Cell as Value, Session};
+use novamind_worker::questions::CallCheck;
 use news::NewsKind;
 
 fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
@@ -140,9 +141,9 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
     let Effect::Prefill { tool, arguments } = needs::way_of(need) else { panic!("{need:?}") };
     let mut tools = crate::screens::tools::Tools::default();
     let effects = tools.prefill(tool, &arguments, &company);
-    let [Effect::Check { tool, arguments: checked }] = &effects[..] else { panic!("{effects:?}") };
-    assert_eq!(*checked, arguments);
-    session.call(tool, checked, novamind_session::Via::Form).expect("the proposal is accepted");
+    let checked = asked::<CallCheck>(&effects);
+    assert_eq!((checked.tool, &checked.arguments), (tool, &arguments));
+    session.call(tool, &arguments, novamind_session::Via::Form).expect("the proposal is accepted");
 }
 
 #[test]

@@ -27,9 +27,11 @@ use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, fit};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
 use novamind_worker::message::News;
 use novamind_worker::posts::Posts;
+use novamind_worker::questions::CallCheck;
 use novamind_worker::readings::Reading;
 
 /// Its panes, in the order of the tab key.
@@ -65,7 +67,7 @@ pub struct Social {
     /// Post that the draft answers.
     answers: Option<u32>,
     /// Arguments of the call that is being looked at before the question.
-    sending: Option<Value>,
+    sending: Pending<CallCheck>,
     /// Newest post that was looked at; none before the screen was shown.
     seen: Option<u32>,
     /// Last day on which they were looked at before the run was opened.
@@ -196,8 +198,7 @@ impl Social {
         if let Some(number) = self.answers {
             arguments["reply_to_post_id"] = number.into();
         }
-        self.sending = Some(arguments.clone());
-        vec![Effect::Check { tool: POST, arguments }]
+        vec![Effect::Ask(self.sending.ask(CallCheck { tool: POST, arguments }))]
     }
 
     fn ask(&self, arguments: Value, effect_day: Option<u32>) -> Effect {
@@ -273,20 +274,20 @@ impl ScreenState for Social {
         }
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        match news {
-            News::Checked(_, preview) => match (preview, self.sending.take()) {
-                (Ok(preview), Some(arguments)) => vec![self.ask(arguments, preview.effect_day)],
-                (Err(refusal), Some(_)) => vec![Effect::Complain(refusal.to_string())],
-                _ => Vec::new(),
-            },
-            News::Called(POST, Ok(_), _) => {
-                (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
-                self.focus = SocialPane::Feed;
-                Vec::new()
-            }
-            _ => Vec::new(),
+    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        match self.sending.try_take() {
+            Some((call, Ok(preview))) => vec![self.ask(call.arguments, preview.effect_day)],
+            Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
+            None => Vec::new(),
         }
+    }
+
+    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
+        if matches!(news, News::Called(POST, Ok(_), _)) {
+            (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
+            self.focus = SocialPane::Feed;
+        }
+        Vec::new()
     }
 
     fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {

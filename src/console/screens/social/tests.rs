@@ -7,7 +7,7 @@ use crate::action::Scope;
 use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, on_screen, played, shown, sweep};
+use crate::test_kit::{act, asked, drawn, on_screen, played, shown, sweep};
 use novamind_session::{Refusal, Session, Via};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -157,10 +157,10 @@ fn a_post_is_written_checked_asked_for_and_sent() {
     act(&mut screen, Action::LeaveEditor, &company);
     assert!(screen.holds_unsent_text(), "the draft stays");
     let effects = act(&mut screen, Action::SendPost, &company);
-    let [Effect::Check { tool, arguments }] = &effects[..] else { panic!("{effects:?}") };
+    let CallCheck { tool, arguments } = asked(&effects);
     assert_eq!(arguments["reply_to_post_id"], answered);
-    let checked = News::Checked(1, session.check(tool, arguments));
-    let effects = with_look(&company, |look| screen.hear(&checked, look));
+    screen.sending.put(session.check(*tool, arguments));
+    let effects = with_look(&company, |look| screen.take_answers(look));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     assert!(text.contains("cannot be undone") && text.contains("on day 15"), "{text}");
     let answer = session.call(tool, arguments, Via::Form);
@@ -179,14 +179,16 @@ fn a_refused_post_keeps_the_draft() {
     act(&mut screen, Action::Compose, &company);
     write(&mut screen, &company, "Again");
     act(&mut screen, Action::SendPost, &company);
-    let refused = News::Checked(1, Err(Refusal::new("already_posted", "you have already posted")));
-    let effects = with_look(&company, |look| screen.hear(&refused, look));
+    let refused = || Err(Refusal::new("already_posted", "you have already posted"));
+    screen.sending.put(refused());
+    let effects = with_look(&company, |look| screen.take_answers(look));
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.contains("already posted")),
         "{effects:?}"
     );
     assert_eq!(screen.draft.text(), "Again");
-    let effects = with_look(&company, |look| screen.hear(&refused, look));
+    screen.sending.put(refused());
+    let effects = with_look(&company, |look| screen.take_answers(look));
     assert!(effects.is_empty(), "an answer to nobody's question says nothing");
 }
 

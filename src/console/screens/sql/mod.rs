@@ -20,7 +20,7 @@ mod takeout;
 mod tests;
 pub mod values;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
@@ -36,9 +36,10 @@ use history::History;
 use hidden::names_hidden;
 use over::Over;
 use tabs::Tabs;
-use novamind_session::Library;
+use novamind_session::{Library, QuerySource};
 use novamind_tui::canvas::Canvas;
-use novamind_worker::message::News;
+use novamind_worker::asking::Pending;
+use novamind_worker::queries::{QueriedTables, Query};
 
 /// Its panes, in the order of the tab key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -60,6 +61,7 @@ struct Running {
     text: String,
     statement: Statement,
     since: Instant,
+    answer: Pending<Query>,
 }
 
 /// The screen.
@@ -129,11 +131,6 @@ impl Sql {
         self.edit_and_run(sql)
     }
 
-    /// Whether a statement was made of a result, as it stands.
-    pub fn is_derived(&self, sql: &str) -> bool {
-        self.derived == sql.trim()
-    }
-
     /// What stands in the editor.
     pub fn unsent(&self) -> String {
         self.editor.text()
@@ -153,17 +150,25 @@ impl Sql {
             return vec![Effect::Complain("no statement to run: type one first".to_owned())];
         };
         self.history.remember(&statement.sql);
-        let sql = statement.sql.clone();
-        self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now() });
-        match self.looks_inside(&sql) {
-            true => vec![Effect::AskInside(sql)],
-            false => vec![Effect::Ask(sql)],
-        }
+        let of = self.tables_of(&statement.sql);
+        let (answer, ask) = Pending::asking(Query { sql: statement.sql.clone(), of });
+        self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now(), answer });
+        vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
     /// Whether a statement asks the tables of the x-ray, and may.
     fn looks_inside(&self, sql: &str) -> bool {
         self.may_look_inside && names_hidden(sql)
+    }
+
+    fn tables_of(&self, sql: &str) -> QueriedTables {
+        let is = |other: &str| sql.trim() == other.trim();
+        QueriedTables::Visible(match self.library.queries().iter().any(|query| is(&query.sql)) {
+            _ if self.looks_inside(sql) => return QueriedTables::Hidden,
+            true => QuerySource::Library,
+            false if is(&self.derived) => QuerySource::Derived,
+            false => QuerySource::Typed,
+        })
     }
 
     fn leave_editor(&mut self) -> Vec<Effect> {
@@ -199,19 +204,20 @@ impl ScreenState for Sql {
         typing.then(|| ("sql".to_owned(), self.editor.text()))
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        let (News::Answered(_, answer, took), Some(running)) = (news, self.running.take()) else {
-            return Vec::new();
-        };
+    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        let answer = self.running.as_mut().and_then(|running| running.answer.try_take());
+        let Some((_, answer)) = answer else { return Vec::new() };
+        let Some(running) = self.running.take() else { return Vec::new() };
         // The place of an error is shown only in the text it belongs to.
-        if let Err(refusal) = answer
+        if let Err(refusal) = &answer
             && let Some(place) = results::place_of(refusal)
             && self.editor.text() == running.text
         {
             self.editor.mark(running.statement.from + place);
             self.focus = SqlPane::Editor;
         }
-        self.results.take(&running.statement.sql, answer.clone(), *took);
+        let took = answer.as_ref().map_or(Duration::ZERO, |(_, took)| *took);
+        self.results.take(&running.statement.sql, answer.map(|(rows, _)| rows), took);
         Vec::new()
     }
 }

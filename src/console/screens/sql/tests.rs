@@ -9,7 +9,7 @@ use crate::action::Scope;
 use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::test_kit::{company, picture, session, sweep};
+use crate::test_kit::{asked, company, picture, session, sweep};
 use novamind_session::{Cell, Refusal, Rows};
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
@@ -32,8 +32,14 @@ fn write(screen: &mut Sql, company: &Company, text: &str) {
 }
 
 fn hear(screen: &mut Sql, company: &Company, answer: Result<Rows, Refusal>) {
-    let news = News::Answered(1, answer, Duration::from_micros(12_400));
-    with_look(company, |look| screen.hear(&news, look));
+    let running = screen.running.as_ref().expect("a query");
+    running.answer.put(answer.map(|rows| (rows, Duration::from_micros(12_400))));
+    with_look(company, |look| screen.take_answers(look));
+}
+
+/// The statement that is asked, and nothing else.
+fn sql(effects: &[Effect]) -> &str {
+    &asked::<Query>(effects).sql
 }
 
 fn three_rows() -> Rows {
@@ -62,7 +68,7 @@ fn a_statement_is_asked_once_and_its_rows_are_shown() {
     assert!(matches!(&empty[..], [Effect::Complain(_)]));
     write(&mut screen, &company, "SELECT 1; \nSELECT 2");
     let asked = act(&mut screen, &company, Action::RunQuery);
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql == "SELECT 2"));
+    assert_eq!(sql(&asked), "SELECT 2");
     assert!(matches!(&act(&mut screen, &company, Action::RunQuery)[..], [Effect::Complain(_)]));
     assert!(holds(&picture(&screen, &company, 120, 37), "running … esc cancels"));
     assert!(matches!(&act(&mut screen, &company, Action::LeaveEditor)[..], [Effect::CancelQuery]));
@@ -185,7 +191,7 @@ fn a_named_query_is_put_in_and_run() {
     assert!(holds(&lines, "› revplan") && holds(&lines, "What each plan brings in a month"), "{lines:#?}");
     assert!(holds(&lines, "FROM subscriptions"), "the statement is shown: {lines:#?}");
     let asked = act(&mut screen, &company, Action::Commit);
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.starts_with("-- title: Revenue by plan")));
+    assert!(sql(&asked).starts_with("-- title: Revenue by plan"), "{asked:?}");
     assert!(holds(&picture(&screen, &company, 120, 37), "Query · Revenue by plan"));
 }
 
@@ -370,7 +376,7 @@ fn a_column_is_counted_by_a_query_that_can_be_edited() {
     let mut screen = with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
     act(&mut screen, &company, Action::Right);
     let asked = act(&mut screen, &company, Action::CountColumn);
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains("SELECT subs, count(*)")), "{asked:?}");
+    assert!(sql(&asked).contains("SELECT subs, count(*)"), "{asked:?}");
     assert!(screen.editor.text().starts_with("-- title: subs counted"));
     assert!(matches!(&act(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
     hear(&mut screen, &company, Ok(three_rows()));
@@ -410,12 +416,12 @@ fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
     let mut screen = filtered(&word);
     let asked = act(&mut screen, &company, Action::CountColumn);
     let clause = format!("'{word}') > 0");
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains(&clause)), "{asked:?}");
+    assert!(sql(&asked).contains(&clause), "{asked:?}");
     let mut screen = filtered(&word);
     act(&mut screen, &company, Action::Pivot);
     assert!(holds(&picture(&screen, &company, 60, 12), &format!("rows with \"{word}\"")));
     let asked = act(&mut screen, &company, Action::Open);
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains(&clause)), "{asked:?}");
+    assert!(sql(&asked).contains(&clause), "{asked:?}");
     // No row of SQL is NULL in letters.
     let mut rows = three_rows();
     rows.rows[1][0] = Cell::Null;
@@ -424,7 +430,8 @@ fn a_count_and_a_pivot_are_made_of_the_rows_that_the_filter_shows() {
     screen.results.shown_mut().table_mut().edit_filter(|field| field.insert("null"));
     screen.results.shown_mut().table_mut().act(Action::Commit, 5);
     let asked = act(&mut screen, &company, Action::CountColumn);
-    let [Effect::Ask(sql), Effect::Say(words)] = &asked[..] else { panic!("{asked:?}") };
+    let Some(Effect::Say(words)) = asked.last() else { panic!("{asked:?}") };
+    let sql = sql(&asked);
     assert!(sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"), "{asked:?}");
 }
 
@@ -442,7 +449,7 @@ fn a_pivot_takes_two_keys_and_is_drawn_at_every_size() {
     screen.focus_on(SqlPane::Results);
     act(&mut screen, &company, Action::Pivot);
     let asked = act(&mut screen, &company, Action::Open);
-    assert!(matches!(&asked[..], [Effect::Ask(sql)] if sql.contains("sum(subs)")), "{asked:?}");
+    assert!(sql(&asked).contains("sum(subs)"), "{asked:?}");
     hear(&mut screen, &company, Ok(three_rows()));
     sweep(&mut screen, &company);
     screen.focus_on(SqlPane::Results);

@@ -18,10 +18,11 @@ use novamind_tools::{ArgumentKind, Key, Kind, Spec};
 use novamind_tui::chord::Chord;
 use novamind_tui::widgets::field::ONLY_NUMBERS;
 use novamind_tui::widgets::{Editor, Field};
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
+use novamind_worker::questions::CallCheck;
 
 /// A form of one tool.
-#[derive(Debug, Clone)]
 pub struct Form {
     /// The tool.
     pub spec: &'static Spec,
@@ -43,6 +44,7 @@ pub struct Form {
     dropped: BTreeMap<String, String>,
     /// What the call would do, as far as is known.
     pub preview: Option<Result<Preview, Refusal>>,
+    checking: Pending<CallCheck>,
     /// The arguments that were sent last, of a tool that keeps its form.
     sent: Option<Value>,
     /// The last answer.
@@ -65,6 +67,7 @@ impl Form {
             adding: None,
             dropped: BTreeMap::new(),
             preview: None,
+            checking: Pending::default(),
             sent: None,
             answer: None,
             earlier: earlier::calls(spec.id, company, earlier::MOST),
@@ -102,6 +105,7 @@ impl Form {
         self.sheet = Sheet::of(self.spec, company);
         self.at = CellPlace::default();
         (self.typing, self.writing, self.left, self.adding, self.preview) = (None, None, None, None, None);
+        self.checking.cancel();
         self.dropped.clear();
         self.keep_inside();
     }
@@ -152,6 +156,7 @@ impl Form {
     /// Asks what the call would do.
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
+        self.checking.cancel();
         if self.spec.id.runs_code() {
             // What was said of the code as it was.
             self.answer = None;
@@ -162,8 +167,17 @@ impl Form {
             Kind::Read | Kind::Engine => true,
         };
         match self.sheet.arguments() {
-            Ok(arguments) if !quiet => vec![Effect::Check { tool: self.spec.id, arguments }],
+            Ok(arguments) if !quiet => {
+                vec![Effect::Ask(self.checking.ask(CallCheck { tool: self.spec.id, arguments }))]
+            }
             _ => Vec::new(),
+        }
+    }
+
+    /// Takes what the call would do.
+    pub fn take_preview(&mut self) {
+        if let Some((_, preview)) = self.checking.try_take() {
+            self.preview = Some(preview);
         }
     }
 

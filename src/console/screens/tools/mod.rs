@@ -213,15 +213,15 @@ impl ScreenState for Tools {
         self.form(look.company);
     }
 
+    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        self.forms.values_mut().for_each(Form::take_preview);
+        Vec::new()
+    }
+
     fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
         match news {
-            News::Checked(_, preview) => {
-                if let Some(form) = self.form(look.company) {
-                    form.preview = Some(preview.clone());
-                }
-            }
             // What a form said of its call holds no longer.
-            News::Undone(Ok(_), _) | News::Redone(Ok(_), _) => {
+            News::Restored(_, Ok(_), _) => {
                 self.forms.values_mut().for_each(|form| form.answer = None);
             }
             News::Called(tool, answer, _) => {

@@ -141,7 +141,7 @@ fn after_a_call_the_keys_are_those_of_the_list_again() {
     tools.hear(&News::Called(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.seen_form().expect("a form").answer.is_some());
-    tools.hear(&News::Undone(Ok(Vec::new()), company.clone().into()), &look);
+    tools.hear(&News::Restored("undone", Ok(Vec::new()), company.clone().into()), &look);
     assert!(tools.seen_form().expect("a form").answer.is_none(), "what was answered holds no longer");
 }
 

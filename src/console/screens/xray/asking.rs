@@ -7,13 +7,12 @@ use novamind_session::Refusal;
 
 impl Xray {
     pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {
-        self.asked = Some(question.clone());
-        vec![Effect::LookInside(question)]
+        vec![Effect::Ask(self.asked.ask(question))]
     }
 
     /// Asks at once, or after the question that is being answered. Of words that only ask, the newest replaces those before.
     pub(super) fn send_in_turn(&mut self, question: LookQuestion) -> Vec<Effect> {
-        if self.asked.is_none() {
+        if !self.asked.is_waiting() {
             return self.send(question);
         }
         self.waiting.retain(|own| !only_asks(own));
@@ -28,14 +27,13 @@ impl Xray {
 
     /// Words that were asked and are not answered yet.
     pub(super) fn words_asked(&self) -> Option<&str> {
-        self.waiting.iter().rev().chain(&self.asked).find_map(|question| match question {
+        self.waiting.iter().rev().chain(self.asked.question()).find_map(|question| match question {
             LookQuestion::Words(words, _) => Some(words.as_str()),
             _ => None,
         })
     }
 
-    pub(super) fn take(&mut self, found: &Result<LookFound, Refusal>) -> Vec<Effect> {
-        let Some(question) = self.asked.take() else { return Vec::new() };
+    pub(super) fn take(&mut self, question: LookQuestion, found: Result<LookFound, Refusal>) -> Vec<Effect> {
         let shown = self.keep(question, found);
         match self.waiting.pop_front() {
             Some(next) => self.send(next),
@@ -45,26 +43,26 @@ impl Xray {
     }
 
     /// Keeps what was answered; true if it is what the view shows.
-    fn keep(&mut self, mut question: LookQuestion, found: &Result<LookFound, Refusal>) -> bool {
-        let shown = || found.clone().map_err(|refusal| refusal.message);
+    fn keep(&mut self, mut question: LookQuestion, found: Result<LookFound, Refusal>) -> bool {
+        let found = found.map_err(|refusal| refusal.message);
         if let LookQuestion::Words(_, asked) = &question {
             if asked.changes_run() {
                 self.seen = None;
             }
-            self.said = Some(Seen { found: shown(), question });
+            self.said = Some(Seen { question, found });
             return false;
         }
         if let LookQuestion::Breakpoints(work) = &mut question {
             // What was done is shown like the list, and not done again.
             *work = BreakpointWork::List;
-            if let Ok(found) = found {
+            if let Ok(found) = &found {
                 self.breakpoints = found.breakpoints.clone();
                 self.list_breakpoints();
             }
         }
         let is_wanted = self.wanted().as_ref() == Some(&question);
         if is_wanted {
-            self.seen = Some(Seen { question, found: shown() });
+            self.seen = Some(Seen { question, found });
         }
         is_wanted
     }

@@ -31,9 +31,10 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::scroll::Scroll;
 use novamind_tui::widgets::{Cell, Column, Field, Table};
+use novamind_worker::asking::Pending;
 use novamind_worker::company::Company;
-use novamind_worker::look_inside::{BreakpointWork, DaysRan, LookFound, LookQuestion};
-use novamind_worker::message::News;
+use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
+use novamind_worker::message::DaysRan;
 use novamind_worker::request::Request;
 
 /// Its panes, in the order of the tab key.
@@ -85,7 +86,7 @@ pub struct Xray {
     /// What is wrong with what was typed.
     problem: Option<String>,
     /// The question that is being answered.
-    asked: Option<LookQuestion>,
+    asked: Pending<LookQuestion>,
     /// What was typed or done meanwhile, in the order in which it is asked next.
     waiting: VecDeque<LookQuestion>,
     seen: Option<Seen>,
@@ -162,7 +163,7 @@ impl Xray {
     fn ask(&mut self) -> Vec<Effect> {
         let wanted = self.wanted();
         let is_known = wanted.as_ref() == self.seen.as_ref().map(|seen| &seen.question);
-        match wanted.filter(|_| !is_known && self.asked.is_none()) {
+        match wanted.filter(|_| !is_known && !self.asked.is_waiting()) {
             Some(question) => self.send(question),
             None => Vec::new(),
         }
@@ -356,11 +357,8 @@ impl ScreenState for Xray {
         self.ask()
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        match news {
-            News::LookedInside(_, found, _) => self.take(found),
-            _ => Vec::new(),
-        }
+    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+        self.asked.try_take().map_or_else(Vec::new, |(question, found)| self.take(question, found))
     }
 
     fn opened(&self) -> usize {

@@ -247,10 +247,10 @@ impl Pane<Xray> for SeenPane {
             (_, Choices::Parts) => xray.part().map_or(String::new(), |own| format!(" of {}", own.id())),
             _ => String::new(),
         };
-        let note = match (&xray.asked, view.has_day()) {
-            (Some(_), _) => "simulating days again …".to_owned(),
-            (None, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
-            (None, false) => format!("after day {}", xray.last_day),
+        let note = match (xray.asked.is_waiting(), view.has_day()) {
+            (true, _) => "simulating days again …".to_owned(),
+            (false, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
+            (false, false) => format!("after day {}", xray.last_day),
         };
         let label = |action| look.keys.label(action).unwrap_or_default();
         let days = format!(

@@ -1,12 +1,10 @@
 use super::*;
-use crate::app::Settings;
 use crate::headless::Headless;
 use crate::keys::Keys;
 use crate::screens::Screen;
-use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
+use crate::test_kit::{act, asked, company, drawn, on_screen, played, settings, shown, sweep};
 use novamind_session::{Configuration, Mode, NewRun, Refusal, Session, Storage, Via};
-use novamind_tui::glyphs::Glyphs;
-use novamind_tui::theme::Theme;
+use novamind_worker::queries::{QueriedTables, Query};
 
 fn open(company: Company) -> Company {
     Company { may_look_inside: true, ..company }
@@ -15,7 +13,8 @@ fn open(company: Company) -> Company {
 fn hear(screen: &mut Xray, company: &Company, found: Result<LookFound, Refusal>) -> Vec<Effect> {
     let keys = Keys::shipped();
     let look = Look { company, keys: &keys, page: 5 };
-    screen.hear(&News::LookedInside(1, Box::new(found), None), &look)
+    screen.asked.put(found);
+    screen.take_answers(&look)
 }
 
 fn found(line: &str) -> Result<LookFound, Refusal> {
@@ -24,8 +23,11 @@ fn found(line: &str) -> Result<LookFound, Refusal> {
 
 fn day_asked(effects: &[Effect]) -> Option<u32> {
     match effects {
-        [Effect::LookInside(LookQuestion::Leads(_, day, _))] => Some(*day),
-        _ => None,
+        [] => None,
+        effects => match asked(effects) {
+            LookQuestion::Leads(_, day, _) => Some(*day),
+            _ => None,
+        },
     }
 }
 
@@ -75,9 +77,9 @@ fn words_that_are_typed_meanwhile_are_asked_next_and_what_was_confirmed_is_not_d
     let company = open(Company::of(&session));
     let mut screen: Xray = shown(&mut session, &company);
     assert_eq!(day_asked(&screen.ask()), Some(14));
-    let asked = |effects: &[Effect]| match effects {
-        [Effect::LookInside(LookQuestion::Words(words, _))] => words.clone(),
-        other => panic!("{} effects", other.len()),
+    let asked = |effects: &[Effect]| match asked(effects) {
+        LookQuestion::Words(words, _) => words.clone(),
+        other => panic!("{other:?}"),
     };
     let read = |words: &str| (words.to_owned(), AskedWords::read(words).expect(words));
     act(&mut screen, Action::AskWords, &company);
@@ -102,7 +104,7 @@ fn a_day_is_typed_with_a_group_or_a_customer_or_alone_and_has_to_be_there() {
     let company = open(Company::of(&session));
     let mut screen: Xray = shown(&mut session, &company);
     let mut typed = |view: View, action: Action, text: &str| {
-        screen.asked = None;
+        screen.asked.cancel();
         screen.show(view);
         act(&mut screen, action, &company);
         if let Some(typing) = &mut screen.typing {
@@ -110,20 +112,20 @@ fn a_day_is_typed_with_a_group_or_a_customer_or_alone_and_has_to_be_there() {
         }
         let effects = screen.commit();
         let problem = screen.problem.take();
-        (effects.into_iter().next(), problem, screen.day())
+        (effects.first().map(|_| asked::<LookQuestion>(&effects).clone()), problem, screen.day())
     };
     let (asked, _, day) = typed(View::Leads, Action::TypeChoice, "s2 9");
-    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Leads(group, 9, _))) if group.id() == "S2"));
+    assert!(matches!(asked, Some(LookQuestion::Leads(group, 9, _)) if group.id() == "S2"));
     assert_eq!(day, 9);
     let (asked, ..) = typed(View::Customer, Action::TypeChoice, "7 12");
-    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Customer(7, 12)))));
+    assert!(matches!(asked, Some(LookQuestion::Customer(7, 12))));
     // Without a day it is asked as plain mode asks: about the last one.
     let (asked, ..) = typed(View::Customer, Action::TypeChoice, "8");
-    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Customer(8, 14)))));
+    assert!(matches!(asked, Some(LookQuestion::Customer(8, 14))));
     let (asked, ..) = typed(View::Drift, Action::TypeChoice, "3");
-    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Drift(3)))));
+    assert!(matches!(asked, Some(LookQuestion::Drift(3))));
     let (asked, ..) = typed(View::Quality, Action::SeekDay, "5");
-    assert!(matches!(asked, Some(Effect::LookInside(LookQuestion::Quality(_, 5)))));
+    assert!(matches!(asked, Some(LookQuestion::Quality(_, 5))));
     for (view, text, said) in [
         (View::Leads, "S2 15", "there is no day 15; choose a day from 1 to 14"),
         (View::Customer, "7 0", "there is no day 0"),
@@ -216,17 +218,18 @@ fn requests_that_go_around_the_screen_are_refused() {
         let group = Group::all().next().expect("a group");
         let words = |text: &str| {
             let asked = AskedWords::read(text).expect(text);
-            Effect::LookInside(LookQuestion::Words(text.to_owned(), asked))
+            Effect::Ask(Pending::default().ask(LookQuestion::Words(text.to_owned(), asked)))
         };
+        let query = Query { sql: "SELECT * FROM hidden.groups".to_owned(), of: QueriedTables::Hidden };
         for effect in [
-            Effect::LookInside(LookQuestion::Leads(group, 7, Vec::new())),
-            Effect::LookInside(LookQuestion::Spillover(7)),
+            Effect::Ask(Pending::default().ask(LookQuestion::Leads(group, 7, Vec::new()))),
+            Effect::Ask(Pending::default().ask(LookQuestion::Spillover(7))),
             words("find leads >= 0"),
             words("who cash"),
             words("diff 6 7"),
             words("set group.S1.c_max_mean 300"),
             Effect::SendWords("set group.S1.c_max_mean 300".to_owned()),
-            Effect::AskInside("SELECT * FROM hidden.groups".to_owned()),
+            Effect::Ask(Pending::default().ask(query)),
         ] {
             console.app.start_with(effect);
             console.settle().expect("an answer");
@@ -234,18 +237,5 @@ fn requests_that_go_around_the_screen_are_refused() {
         console.finish();
         let lines = std::fs::read_to_string(&file).expect("lines");
         assert!(!lines.contains("\"xray\"") && !lines.contains("\"override\""), "{mode:?}: {lines}");
-    }
-}
-
-fn settings(runs: &std::path::Path) -> Settings {
-    Settings {
-        theme: Theme::bundled("dark").expect("a theme"),
-        keys: Keys::shipped(),
-        glyphs: Glyphs::Braille,
-        configuration: Configuration::shipped(),
-        runs: runs.to_owned(),
-        again: "novamind --run latest".to_owned(),
-        lists_everybody: false,
-        opponents: |_, _, _| Ok(None),
     }
 }

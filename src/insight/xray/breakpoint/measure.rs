@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::series::MeasuredDay;
-use novamind_session::engine::{MeasuredGroup, churn};
+use novamind_record::figures::MeasuredGroup;
+use novamind_record::figures::churn;
 use novamind_world::identifiers::Group;
 
 /// How a figure goes with time.

@@ -2,12 +2,13 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use novamind_record::figures::MeasuredGroup;
 use novamind_session::GroupWeek;
-use novamind_session::engine::{MeasuredGroup, count_groups};
+use novamind_session::engine::{count_groups, measured_group};
+use novamind_world::customers::drift::is_drift_day;
 use novamind_world::day::watch::DayWatch;
 use novamind_world::events::{DayFigures, Facts};
 use novamind_world::identifiers::{ByGroup, Group};
-use novamind_world::market::drift::is_drift_day;
 use novamind_world::market::surges::surge_factor;
 use novamind_world::params::Params;
 use novamind_world::state::World;
@@ -34,7 +35,7 @@ impl MeasuredDay {
         let surge = surge_factor(world.day, &world.market.surges, params.fidelity.surge_start);
         MeasuredDay {
             figures: *figures,
-            groups: ByGroup::from_fn(|group| MeasuredGroup::of(group, &counted[group], world)),
+            groups: ByGroup::from_fn(|group| measured_group(group, &counted[group], world)),
             rival: world.market.competitors.last().is_some_and(|event| event.day == world.day),
             drift: is_drift_day(world.day, &params.drift),
             surge: surge > 1.0,

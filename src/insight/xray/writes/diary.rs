@@ -9,8 +9,8 @@ use novamind_world::events::{
     Category, DayFigures, Facts, LedgerEntry, Source, SubscriptionEnded, SubscriptionStatus,
 };
 use novamind_world::identifiers::Group;
-use novamind_world::market::reputation::ReputationWrite;
 use novamind_world::params::Params;
+use novamind_world::reputation::ReputationWrite;
 use novamind_world::state::World;
 
 /// Keeps what is written to a figure on one day.

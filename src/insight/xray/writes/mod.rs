@@ -12,7 +12,7 @@ use crate::xray::inspector::Inspector;
 use novamind_session::Look;
 use novamind_tools::Refusal;
 use novamind_world::events::{Category, EndCause, Source};
-use novamind_world::market::reputation::ReputationCause;
+use novamind_world::reputation::ReputationCause;
 
 /// What wrote.
 #[derive(Debug, Clone, Copy, PartialEq)]

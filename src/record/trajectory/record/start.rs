@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::shortest;
-use crate::folder::consent::Consent;
-use crate::folder::mode::Mode;
+use crate::consent::Consent;
+use crate::mode::Mode;
 use crate::rules::SessionRules;
 use crate::stamp::HandoutStamp;
 use crate::stamp::LessonStamp;

@@ -7,35 +7,17 @@
 use super::Social;
 use super::engagement::draw_engagement;
 use super::opinions::Scene;
-use super::sentiment::{Sentiment, sentiment};
+use super::sentiment::sentiment;
 use super::weights::{cancelled_weight, lost_company_weight, post_weight};
 use crate::customers::Customers;
 use crate::customers::columns::Block;
 use crate::customers::traits::draw_traits;
 use crate::enterprise::churn::{Blame, CompanyLost};
-use crate::events::{Cause, Facts, Matter, Opinion, PostAuthor, Theme, Troubles};
-use crate::identifiers::{Group, Plan};
+use crate::events::{Cause, Facts, Matter, Opinion, PostAuthor, Sentiment, Theme, Troubles};
+use crate::identifiers::Group;
 use crate::params::{CustomerPosts, Params};
 use crate::random::{Part, Stream, Streams};
-
-/// An individual who gave up today because no plan was acceptable.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GaveUp {
-    /// Customer number.
-    pub customer: u32,
-    /// Group.
-    pub group: Group,
-    /// Running number within the group.
-    pub n: u32,
-    /// Satisfaction after today's update.
-    pub satisfaction: f64,
-    /// Days subscribed.
-    pub days_subscribed: u32,
-    /// Plan it leaves.
-    pub plan: Plan,
-    /// Price it paid, dollars a month.
-    pub price: f64,
-}
+use crate::retention::renewal::GaveUp;
 
 /// Whether customers are heard on a day.
 pub fn is_posting_day(day: u32, params: &Params) -> bool {
@@ -229,6 +211,7 @@ mod tests {
     use crate::context::tests::on_day;
     use crate::customers::columns::Subscriber;
     use crate::events::{Post, ServiceDay, ThreadKind};
+    use crate::identifiers::Plan;
     use crate::morning::tests::morning;
     use crate::settings::Settings;
     use crate::test_kit::subscriber;

@@ -1,22 +1,8 @@
 //! How far a customer's post carries (docs/mechanics/market/social/engagement.md).
 
-use super::sentiment::Sentiment;
-use crate::canonical::canonical;
+use crate::events::{Engagement, Sentiment};
 use crate::params::{Params, SocialParams};
 use crate::random::Stream;
-
-canonical! { Engagement { likes, shares, virality } }
-
-/// How far a post carries; hidden, and without effect on the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Engagement {
-    /// Likes.
-    pub likes: u32,
-    /// Shares.
-    pub shares: u32,
-    /// 0..=1.
-    pub virality: f64,
-}
 
 /// Draws behind a post's engagement: base likes and shares, then uniform numbers in order.
 #[derive(Debug, Clone, Copy)]

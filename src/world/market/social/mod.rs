@@ -15,12 +15,10 @@ pub mod sentiment;
 pub mod weights;
 
 use crate::canonical::canonical;
-use crate::events::{Facts, Matter, Post, PostAuthor};
+use crate::events::{Engagement, Facts, Matter, Post, PostAuthor, Sentiment};
 use crate::settings::Settings;
 use chronicle::Chronicle;
-use engagement::Engagement;
 use own::OwnPost;
-use sentiment::Sentiment;
 
 /// What social media remembers.
 #[derive(Debug, Clone, PartialEq)]

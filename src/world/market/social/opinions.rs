@@ -8,9 +8,7 @@ use crate::customers::columns::Block;
 use crate::events::{Cause, Opinion, Theme, Troubles};
 use crate::identifiers::Group;
 use crate::params::SocialParams;
-use crate::product::quality::{
-    quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty,
-};
+use crate::quality::{quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty};
 
 /// What everybody who may post has in common today.
 #[derive(Clone, Copy)]

@@ -1,9 +1,7 @@
 //! What the press writes about rivals and the economy (docs/mechanics/market/social/press.md).
 
 use super::Social;
-use super::engagement::Engagement;
-use super::sentiment::Sentiment;
-use crate::events::{Facts, Matter, Reading, Severity, Trend};
+use crate::events::{Engagement, Facts, Matter, Reading, Sentiment, Severity, Trend};
 use crate::market::competitors::{Event, severity};
 use crate::market::economy::Economy;
 use crate::params::{Competitor, MacroEconomy, Params};

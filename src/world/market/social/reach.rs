@@ -1,15 +1,13 @@
 //! How far the player's posts reach: views, comments, and what the inbox says
 //! (docs/mechanics/market/social/reach.md).
 
+use super::Social;
 use super::crowd::author_of;
-use super::engagement::Engagement;
-use super::sentiment::Sentiment;
 use crate::customers::Customers;
-use crate::events::{Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction};
+use crate::events::{Engagement, Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction, Sentiment};
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{CeoPosts, Params};
 use crate::random::{Part, Stream, Streams};
-use crate::state::World;
 
 /// How the groups take a post of the player.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,23 +34,31 @@ pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
 
 /// The judged posts get their effects, views and comments; the inbox says so.
 pub fn receive(
-    world: &mut World,
+    social: &mut Social,
+    customers: &Customers,
     verdicts: &[Verdict],
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) {
     for verdict in verdicts {
-        let known = |post: u32| post >= 1 && post as usize <= world.market.social.own.len();
+        let known = |post: u32| post >= 1 && post as usize <= social.own.len();
         if known(verdict.post) {
-            receive_one(world, verdict, params, streams, facts);
+            receive_one(social, customers, verdict, params, streams, facts);
         }
     }
 }
 
-fn receive_one(world: &mut World, verdict: &Verdict, params: &Params, streams: &Streams, facts: &mut Facts) {
+fn receive_one(
+    social: &mut Social,
+    customers: &Customers,
+    verdict: &Verdict,
+    params: &Params,
+    streams: &Streams,
+    facts: &mut Facts,
+) {
     let law = &params.ceo_posts;
-    let subscribers = world.customers.active();
+    let subscribers = customers.active();
     let (mut views, mut comments) = (0, Vec::new());
     let mut effects = ByGroup::from_fn(|_| 0.0);
     for &(group, effect) in &verdict.effects {
@@ -64,7 +70,7 @@ fn receive_one(world: &mut World, verdict: &Verdict, params: &Params, streams: &
         views += (expected_views(effect, subscribers[group], law) * luck) as u64;
         if effect.abs() >= law.viral_threshold {
             let mut stream = streams.open(Part::CeoReply, keys);
-            let author = pick_author(group, &world.customers, params, streams, &mut stream);
+            let author = pick_author(group, customers, params, streams, &mut stream);
             let sentiment = if effect > 0.0 { Sentiment::Positive } else { Sentiment::Negative };
             let engagement = Engagement {
                 likes: stream.integer(law.reply_likes_low, law.reply_likes_high_exclusive - 1),
@@ -72,12 +78,12 @@ fn receive_one(world: &mut World, verdict: &Verdict, params: &Params, streams: &
                 virality: effect.abs(),
             };
             let matter = Matter::Comment { own_post: verdict.post, group, effect };
-            comments.push(world.market.social.publish(author, sentiment, engagement, matter, facts));
+            comments.push(social.publish(author, sentiment, engagement, matter, facts));
         }
     }
     facts.notices.push(Notice::OwnPostSeen(reaction(verdict, views, law)));
     facts.own_posts_seen.push(OwnPostSeen { post: verdict.post, views, comments: comments.clone() });
-    let own = &mut world.market.social.own[verdict.post as usize - 1];
+    let own = &mut social.own[verdict.post as usize - 1];
     (own.effects, own.views, own.comments) = (Some(effects), views, comments);
 }
 
@@ -119,6 +125,7 @@ fn reaction(verdict: &Verdict, views: u64, law: &CeoPosts) -> Reaction {
 mod tests {
     use super::*;
     use crate::market::social::own::OwnPost;
+    use crate::state::World;
 
     fn group(id: &str) -> Group {
         Group::parse(id).expect("a group")
@@ -151,7 +158,14 @@ mod tests {
             (group("E2"), -0.2),
         ];
         let verdict = Verdict { post: 1, effects };
-        receive(&mut world, std::slice::from_ref(&verdict), &params, &streams, &mut facts);
+        receive(
+            &mut world.market.social,
+            &world.customers,
+            std::slice::from_ref(&verdict),
+            &params,
+            &streams,
+            &mut facts,
+        );
         let tones: Vec<Sentiment> = facts.posts.iter().map(|post| post.sentiment).collect();
         assert_eq!(tones, [Sentiment::Negative, Sentiment::Positive]);
         assert!(facts.posts.iter().all(|post| post.author.is_none()), "nobody has subscribed yet");
@@ -168,7 +182,8 @@ mod tests {
         again.market.social.next_post = 1;
         let mut other = Facts::default();
         receive(
-            &mut again,
+            &mut again.market.social,
+            &again.customers,
             &[verdict, Verdict { post: 9, effects: Vec::new() }],
             &params,
             &streams,

@@ -1,21 +1,7 @@
 //! The tone of a customer's post (docs/mechanics/market/social/sentiment.md).
 
-use crate::canonical::canonical_codes;
+use crate::events::Sentiment;
 use crate::params::{SentimentChances, SocialParams};
-
-canonical_codes! { Sentiment { Positive, Neutral, Negative } }
-
-/// Tone of a post.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Sentiment {
-    /// Praise.
-    Positive,
-    /// Neither.
-    Neutral,
-    /// Complaint.
-    Negative,
-}
 
 /// Chances of a sentiment at a satisfaction.
 pub fn sentiment_chances(satisfaction: f64, law: &SocialParams) -> &SentimentChances {

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use super::*;
 use crate::test_kit::painted;
-use novamind_course::{Class, ClassCollection, ClassRun, Evidence, RunVerdict, StepEvidence, ToHandOut};
-use novamind_session::Lesson;
+use novamind_course::{
+    Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
+};
 
 /// A class of a lesson whose students have set prices from 10 up; the last one has not finished.
 fn collected(students: u32) -> CollectedClass {
@@ -47,7 +48,7 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
     let worth = 1e6 - 3e4 * at as f64;
     let goal =
         || serde_json::from_value(serde_json::json!({ "value": worth, "met": at < 3 })).expect("a goal");
-    let step = |own: &novamind_session::LessonStep| StepEvidence {
+    let step = |own: &novamind_course::LessonStep| StepEvidence {
         guess: own.guess.as_ref().map(|_| 1.0 + (at % 2) as f64),
         outcome: own.guess.as_ref().map(|_| 1.0),
         goals: own.goals.iter().map(|_| goal()).collect(),

@@ -1,0 +1,213 @@
+//! Pages over the screen that ask the worker when they are opened.
+
+use super::App;
+use crate::action::Action;
+use crate::context::Figure;
+use crate::dialogs::Dialog;
+use crate::dialogs::branches::BranchesPage;
+use crate::dialogs::curve::CurvePage;
+use crate::dialogs::opponents::OpponentsPage;
+use crate::dialogs::rows::RowsBehind;
+use crate::dialogs::why::WhyBox;
+use crate::effect::Effect;
+use novamind_session::identifiers::Group;
+use novamind_session::week_of;
+use novamind_worker::asking::Ask;
+
+/// Weeks before the end of a run that is over at which a what-if begins.
+const WEEKS_BEFORE_END: u32 = 12;
+
+impl App {
+    fn open_asking(&mut self, (page, ask): (impl Dialog + 'static, Ask)) {
+        self.open(page);
+        self.follow(vec![Effect::Ask(ask)]);
+    }
+
+    /// The curve of a group beside the plans; of the first known one if none is named.
+    pub(super) fn show_curve(&mut self, group: Option<Group>) {
+        let known = self.run().and_then(|run| run.company.seen.known_groups.first().copied());
+        if let Some(group) = group.or(known) {
+            self.open_asking(CurvePage::new(group));
+        }
+    }
+
+    /// The strong policies beside the run that is over.
+    pub(super) fn show_opponents(&mut self) {
+        self.open_asking(OpponentsPage::new(self.opponents));
+    }
+
+    /// The page of decisions, from the week that is shown on; in a run that is played, from the last one that ran on, and where
+    /// the run is over from so far before its end that figures of twelve weeks follow.
+    pub(super) fn show_branches(&mut self) {
+        let Some(run) = self.run() else { return };
+        let seen = &run.company.seen;
+        let last_week = week_of(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
+        let back = match (run.company.is_running(), self.is_replay()) {
+            (false, _) => WEEKS_BEFORE_END,
+            (true, true) => 0,
+            (true, false) => 1,
+        };
+        let week = last_week.saturating_sub(back).max(1);
+        self.open_asking(BranchesPage::new(week, last_week));
+    }
+
+    /// The rows that make up a figure.
+    pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
+        let Some(sql) = sql else {
+            let explain = self.keys.label(Action::Explain).unwrap_or_default();
+            return self.complain(format!("{title} has no source rows; {explain} explains it"));
+        };
+        let here = self.run().map_or("", |run| run.here.action().entry().title);
+        self.note_opened("figure", title.clone());
+        self.open_asking(RowsBehind::new(format!("{here} › {title}"), sql));
+    }
+
+    /// Why a figure of a week changed.
+    pub(super) fn ask_why(&mut self, figure: Figure) {
+        let Some((quantity, week)) = figure.why else {
+            let key = self.keys.label(Action::Why).unwrap_or_default();
+            return self.complain(format!(
+                "{key} explains a week's cash, leads, sales, churn, service: Overview, Cash, Customers"
+            ));
+        };
+        self.note_opened("figure", figure.title.clone());
+        self.open_asking(WhyBox::new(figure, quantity, week));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use ratatui::buffer::Buffer;
+    use ratatui::layout::Rect;
+
+    use super::*;
+    use crate::app::Order;
+    use crate::context::ScreenId;
+    use crate::frame;
+    use crate::headless::event;
+    use crate::test_kit::{company, settings};
+    use novamind_session::{Refusal, Rows};
+    use novamind_worker::asking::Question;
+    use novamind_worker::message::{Message, News};
+    use novamind_worker::queries::Query;
+    use novamind_worker::questions::CurveQuestion;
+    use novamind_worker::readings::Reading;
+
+    /// The console in a run, and no worker: the test answers in its place.
+    fn console() -> App {
+        let mut app = App::new(settings("nowhere".as_ref()));
+        app.window = (120, 40);
+        app.update(Message::News(News::Opened(company().into())));
+        app.take_orders();
+        app
+    }
+
+    fn key(app: &mut App, key: &str) {
+        app.update(Message::Input(event(key).expect("a key")));
+    }
+
+    /// The questions of a type that were asked since the last time.
+    fn asks<Q: Question>(app: &mut App) -> Vec<Ask> {
+        let ask = |order| match order {
+            Order::Ask(ask, _) => ask.question::<Q>().is_some().then_some(ask),
+            _ => None,
+        };
+        app.take_orders().into_iter().filter_map(ask).collect()
+    }
+
+    /// Answers a question, or forgets it, as a thread does that panics.
+    fn answer<Q: Question>(app: &mut App, ask: &Ask, answer: Option<Result<Q::Answer, Refusal>>) {
+        let (sender, messages) = channel();
+        let reply = ask.reply::<Q>(sender).expect("of this type");
+        match answer {
+            Some(answer) => reply.answer(answer),
+            None => drop(reply),
+        }
+        messages.into_iter().for_each(|message| app.update(message));
+    }
+
+    fn refused<T>(words: &str) -> Option<Result<T, Refusal>> {
+        Some(Err(Refusal::new("not_possible", words)))
+    }
+
+    fn screen(app: &App) -> String {
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 120, 40));
+        frame::draw(app, &mut buffer);
+        buffer.content().iter().map(|cell| cell.symbol()).collect()
+    }
+
+    #[test]
+    fn a_late_answer_to_an_earlier_question_is_not_shown_as_that_of_the_later_one() {
+        let mut app = console();
+        app.start_with(Effect::ShowCurve(None));
+        let first = asks::<CurveQuestion>(&mut app);
+        key(&mut app, ".");
+        let second = asks::<CurveQuestion>(&mut app);
+        answer::<CurveQuestion>(&mut app, &first[0], refused("of the first group"));
+        assert!(screen(&app).contains("asking 2000 leads") && !screen(&app).contains("of the first group"));
+        answer::<CurveQuestion>(&mut app, &second[0], refused("of the second group"));
+        assert!(screen(&app).contains("of the second group"));
+    }
+
+    #[test]
+    fn an_answer_for_a_page_that_is_gone_is_dropped() {
+        let mut app = console();
+        app.start_with(Effect::ShowCurve(None));
+        let ask = asks::<CurveQuestion>(&mut app);
+        key(&mut app, "esc");
+        app.start_with(Effect::ShowCurve(None));
+        answer::<CurveQuestion>(&mut app, &ask[0], refused("for the page before"));
+        assert!(screen(&app).contains("asking 2000 leads"));
+        key(&mut app, "esc");
+        let without = screen(&app);
+        answer::<CurveQuestion>(&mut app, &ask[0], refused("once more"));
+        assert_eq!(screen(&app), without);
+    }
+
+    #[test]
+    fn rows_of_the_run_as_it_was_before_are_dropped() {
+        let mut app = console();
+        app.start_with(Effect::Show(ScreenId::Customers));
+        let before = asks::<Reading>(&mut app);
+        app.update(Message::News(News::Changed(company().into())));
+        let after = asks::<Reading>(&mut app);
+        let question = |ask: &Ask| ask.question::<Reading>().copied();
+        let again = after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
+        answer::<Reading>(&mut app, &before[0], refused("of before"));
+        assert!(!screen(&app).contains("of before"));
+        answer::<Reading>(&mut app, again, refused("of now"));
+        assert!(screen(&app).contains("of now"));
+    }
+
+    #[test]
+    fn a_page_whose_question_crashed_waits_no_longer() {
+        let mut app = console();
+        app.start_with(Effect::ShowCurve(None));
+        let ask = asks::<CurveQuestion>(&mut app);
+        answer::<CurveQuestion>(&mut app, &ask[0], None);
+        assert!(screen(&app).contains("not answered") && !screen(&app).contains("asking 2000 leads"));
+        key(&mut app, "esc");
+        app.start_with(Effect::RunSql("SELECT 1".to_owned()));
+        let ask = asks::<Query>(&mut app);
+        assert!(app.is_waiting());
+        answer::<Query>(&mut app, &ask[0], None);
+        assert!(!app.is_waiting() && screen(&app).contains("not answered"));
+        app.start_with(Effect::RunSql("SELECT 2".to_owned()));
+        let ask = asks::<Query>(&mut app);
+        answer::<Query>(&mut app, &ask[0], Some(Ok((Rows::default(), std::time::Duration::ZERO))));
+        assert!(!app.is_waiting());
+    }
+
+    #[test]
+    fn an_answer_is_kept_for_a_page_that_another_one_covers() {
+        let mut app = console();
+        app.start_with(Effect::ShowCurve(None));
+        let ask = asks::<CurveQuestion>(&mut app);
+        app.start_with(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
+        answer::<CurveQuestion>(&mut app, &ask[0], refused("it came meanwhile"));
+        key(&mut app, "esc");
+        assert!(screen(&app).contains("it came meanwhile"));
+    }
+}

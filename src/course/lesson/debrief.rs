@@ -1,0 +1,407 @@
+//! The debrief of a part of a lesson: what was played beside the reference plays, and the decision that parted them.
+//!
+//! All plays begin as the part does and go through the same doors, in memory. What was played is played once more, too: a
+//! difference is told only where that comes to the recorded cash of every day.
+
+use serde::{Serialize, Serializer};
+
+use std::thread;
+
+use super::answers::lesson_step;
+use super::decisions::{PartedDecision, WeekDecisions, parted};
+use super::page::{GoalPage, LessonQuestion, pitfalls, question};
+
+use novamind_record::lesson::{
+    LessonCall, LessonGoal, LessonStanding, NumberSource, Over, ReferencePlay, ScheduledCalls,
+};
+use novamind_record::trajectory::record::Ended;
+use novamind_session::{
+    AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Refusal, Session, ToolId, WeekFigure,
+    WeekFigures, play_part_watched,
+};
+use novamind_tools::highest_named;
+use novamind_world::params::Params;
+
+/// A part of a lesson that was played: what its debrief is found from.
+#[derive(Debug, Clone)]
+pub struct PlayedPart {
+    standing: LessonStanding,
+    run: String,
+    participant: Option<String>,
+    seed: u64,
+    cash_by_day: Vec<f64>,
+    weeks: Vec<WeekFigures>,
+    days_per_week: u32,
+    ended: Option<Ended>,
+    own: Vec<ScheduledCalls>,
+}
+
+/// What a part came to, beside the reference plays on the same seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Debrief {
+    /// Title of the lesson.
+    pub title: String,
+    /// What the student can do, or knows, now.
+    pub learning_goal: String,
+    /// Title of the part, where there are several.
+    pub part: Option<String>,
+    /// The run.
+    pub run: String,
+    /// Who played, where that is known.
+    pub participant: Option<String>,
+    /// Seed of the run.
+    pub seed: u64,
+    /// How the run ended.
+    pub ended: Option<Ended>,
+    /// First day of which the student decided.
+    pub first_day: u32,
+    /// Cash at the end of each day, day 0 first, dollars.
+    pub own: Vec<f64>,
+    /// The same of the good play; none where it cannot be played.
+    pub good: Option<ReferenceCurve>,
+    /// The same of the bad play.
+    pub bad: Option<ReferenceCurve>,
+    /// The figure that the part is judged by, where that is not cash.
+    pub judged_by: Option<JudgedFigure>,
+    /// Where the own decisions parted from those of the good play.
+    pub comparison: DecisionComparison,
+    /// What was asked and what was to be reached, by step.
+    pub steps: Vec<DebriefStep>,
+    /// What was said of the pitfalls that were met, with the day.
+    pub pitfalls: Vec<(u32, String)>,
+    /// The mechanism, in the words of the lesson, in Markdown; none while a part of the lesson is to come.
+    pub text: Option<String>,
+}
+
+impl Debrief {
+    /// The names of its companies: no lesson gives them others than those of its seed.
+    pub fn company_names(&self) -> CompanyNames {
+        CompanyNames::new(self.seed, &Params::shipped().personas.email)
+    }
+}
+
+/// A reference play.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceCurve {
+    /// What it does, in words; none while a part of the lesson is to come, which they would give away.
+    pub text: Option<String>,
+    /// Cash at the end of each day, day 0 first, dollars.
+    pub cash_by_day: Vec<f64>,
+}
+
+/// A figure of weeks that a part is judged by, as the first goal of its last step says; by day, at the end of each week.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedFigure {
+    /// The figure.
+    pub figure: WeekFigure,
+    /// What was played.
+    pub own: Vec<(u32, f64)>,
+    /// The good play; none where it cannot be played.
+    pub good: Option<Vec<(u32, f64)>>,
+    /// The bad play.
+    pub bad: Option<Vec<(u32, f64)>>,
+}
+
+/// The own decisions beside those of the good play.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DecisionComparison {
+    /// They part.
+    Parted(FirstDifference),
+    /// They are the same all the way.
+    Same,
+    /// There is nothing to be decided in this part.
+    Nothing,
+    /// That cannot be told: one of the two cannot be played again, or comes to something else then.
+    Unknown,
+}
+
+/// The first week in which other decisions held than in the good play.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FirstDifference {
+    /// The week of the company, counted from 1.
+    pub week: u32,
+    /// The day on which it begins.
+    pub day: u32,
+    /// What was decided otherwise.
+    pub decisions: Vec<PartedDecision>,
+    /// What these decisions of the good play would have come to.
+    pub effect: DecisionEffect,
+}
+
+/// What became of the decisions of the good play in the own company.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DecisionEffect {
+    /// They were simulated.
+    Simulated(PartingEffect),
+    /// They are refused there.
+    Refused,
+    /// Later calls name customers, who would have other numbers.
+    OtherCustomers,
+}
+
+impl DecisionEffect {
+    /// What they came to, where they were simulated.
+    pub fn simulated(self) -> Option<PartingEffect> {
+        match self {
+            DecisionEffect::Simulated(effect) => Some(effect),
+            DecisionEffect::Refused | DecisionEffect::OtherCustomers => None,
+        }
+    }
+}
+
+/// What the run would have come to with the decisions of the good play in one week, and all others as they were.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PartingEffect {
+    /// The last day of both.
+    pub day: u32,
+    /// Cash as it was, dollars.
+    pub own: f64,
+    /// Cash with the decisions of the good play, dollars.
+    pub with: f64,
+    /// The same two of the figure that the part is judged by, where that is not cash.
+    #[serde(skip)]
+    pub judged: Option<(f64, f64)>,
+}
+
+/// What was asked in a step, and what came of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DebriefStep {
+    /// Its title.
+    pub title: String,
+    /// How often it was tried.
+    pub tries: u32,
+    /// Hints that were taken, and how many there are.
+    #[serde(serialize_with = "used_of")]
+    pub hints: (usize, usize),
+    /// The question, what was guessed and what came of it.
+    pub question: Option<LessonQuestion>,
+    /// What was to be reached.
+    pub goals: Vec<GoalPage>,
+}
+
+fn used_of<S: Serializer>((used, of): &(usize, usize), serializer: S) -> Result<S::Ok, S::Error> {
+    serde_json::json!({ "used": used, "of": of }).serialize(serializer)
+}
+
+/// What the student called, by week: every call but those of the start and of the lesson itself.
+fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls> {
+    let part = standing.own_part();
+    let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
+    let starts = part.start.iter().flat_map(|own| &own.calls);
+    let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
+    let days = session.params().run.days_per_week;
+    let calls = session.journal().iter().filter_map(|entry| match entry {
+        JournalEntry::Call { day, tool, args, .. } if !of_lesson(*tool) => Some((*day, *tool, args.clone())),
+        _ => None,
+    });
+    let scheduled = |(day, tool, args)| ScheduledCalls {
+        part: standing.part,
+        week: day / days,
+        every: None,
+        until: None,
+        calls: vec![LessonCall::Tool(tool, args)],
+    };
+    calls.skip(starts).map(scheduled).collect()
+}
+
+/// A figure at the end of each week that has it.
+fn by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
+    weeks.iter().filter_map(|week| Some((week.day, figure.of_week(week)?))).collect()
+}
+
+/// A play of the part: cash by day, figures of its weeks, and what was decided in each.
+struct Played {
+    cash_by_day: Vec<f64>,
+    figures: Vec<WeekFigures>,
+    weeks: Vec<WeekDecisions>,
+}
+
+impl PlayedPart {
+    /// The part that a run is, once it is over.
+    ///
+    /// # Errors
+    /// `not_in_a_lesson`, `lesson_not_over`.
+    pub fn of(session: &Session) -> Result<PlayedPart, Refusal> {
+        let Some(standing) = session.lesson() else {
+            let message = "this run belongs to no lesson; novamind lesson list names them";
+            return Err(Refusal::new("not_in_a_lesson", message));
+        };
+        if lesson_step(session).is_some() {
+            let message = "the debrief comes once this part of the lesson is over; lesson shows the task";
+            return Err(Refusal::new("lesson_not_over", message));
+        }
+        let manifest = session.manifest();
+        Ok(PlayedPart {
+            standing: standing.clone(),
+            run: manifest.id.clone(),
+            participant: manifest.participant.clone(),
+            seed: manifest.seed,
+            cash_by_day: session.cash_by_day().to_vec(),
+            weeks: session.weeks().to_vec(),
+            days_per_week: session.params().run.days_per_week,
+            ended: session.ended(),
+            own: own_calls(session, standing),
+        })
+    }
+
+    /// The debrief. The part is played again four times, in memory; companies are answered by rules where a reference play
+    /// says so.
+    pub fn debrief(&self, answers: AnswersCompanies) -> Debrief {
+        let plan = &self.standing.lesson.plan;
+        let [good, bad, own] = thread::scope(|scope| {
+            let plays = [&plan.good.plays, &plan.bad.plays, &self.own];
+            let begun = plays.map(|calls| scope.spawn(move || self.play(calls, answers)));
+            begun.map(|play| play.join().ok().flatten())
+        });
+        let (part, decides) = (self.standing.part, plan.good.plays_in(self.standing.part));
+        let both = good.as_ref().zip(own.as_ref());
+        let comparison = match both {
+            _ if !decides => DecisionComparison::Nothing,
+            Some((good, own)) => self.compared(good, own, answers),
+            None => DecisionComparison::Unknown,
+        };
+        let judged_by = self.judged_by().map(|figure| {
+            let of = |played: &Option<Played>| {
+                played.as_ref().filter(|_| decides).map(|own| by_day(figure, &own.figures))
+            };
+            JudgedFigure { figure, own: by_day(figure, &self.weeks), good: of(&good), bad: of(&bad) }
+        });
+        let is_last = self.standing.part + 1 == plan.parts.len();
+        let curve = |played: Option<Played>, play: &ReferencePlay| {
+            let text = is_last.then(|| play.text_of(part).to_owned());
+            let played = played.filter(|_| decides);
+            played.map(|own| ReferenceCurve { text, cash_by_day: own.cash_by_day })
+        };
+        let part = self.standing.own_part();
+        Debrief {
+            title: plan.title.clone(),
+            learning_goal: plan.learning_goal.clone(),
+            part: (plan.parts.len() > 1).then(|| part.title.clone()),
+            run: self.run.clone(),
+            participant: self.participant.clone(),
+            seed: self.seed,
+            ended: self.ended,
+            first_day: part.start_weeks * self.days_per_week,
+            own: self.cash_by_day.clone(),
+            good: curve(good, &plan.good),
+            bad: curve(bad, &plan.bad),
+            judged_by,
+            comparison,
+            steps: self.steps(),
+            pitfalls: pitfalls(&self.standing),
+            text: is_last.then(|| self.standing.lesson.filled(&self.standing.lesson.debrief)),
+        }
+    }
+
+    /// The figure at the end of the last week that the first goal of the last step with goals asks for, unless it is cash.
+    fn judged_by(&self) -> Option<WeekFigure> {
+        let steps = &self.standing.own_part().steps;
+        let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
+        match (&goal.measurement.source, goal.measurement.over) {
+            (NumberSource::Figure(figure), Over::End) => Some(*figure),
+            _ => None,
+        }
+    }
+
+    fn play(&self, calls: &[ScheduledCalls], answers: AnswersCompanies) -> Option<Played> {
+        let play = PartPlay {
+            lesson: &self.standing.lesson,
+            part: self.standing.part,
+            seed: Some(self.seed),
+            plays: calls,
+            weeks: Some((self.cash_by_day.len() as u32).saturating_sub(1).div_ceil(self.days_per_week)),
+            is_judged: false,
+            asks_database: false,
+        };
+        let mut weeks = Vec::new();
+        let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
+        let played = play_part_watched(&play, answers, &mut watch, &mut |_, _| Ok(())).ok()?;
+        let (cash_by_day, figures) = (played.cash_by_day().to_vec(), played.weeks().to_vec());
+        Some(Played { cash_by_day, figures, weeks })
+    }
+
+    /// The own decisions beside those of the good play.
+    fn compared(&self, good: &Played, own: &Played, answers: AnswersCompanies) -> DecisionComparison {
+        if own.cash_by_day != self.cash_by_day {
+            return DecisionComparison::Unknown;
+        }
+        let both = own.weeks.iter().zip(&good.weeks);
+        let mut parts = both.map(|(own, good)| parted(own, good)).enumerate();
+        let Some((at, decisions)) = parts.find(|(_, parted)| !parted.is_empty()) else {
+            return DecisionComparison::Same;
+        };
+        let before = self.standing.own_part().start_weeks + at as u32;
+        let with = self.with_decisions(before, &decisions, &good.weeks[at]);
+        let effect = match self.names_customers_after(before) {
+            true => DecisionEffect::OtherCustomers,
+            false => self
+                .play(&with, answers)
+                .and_then(|played| self.effect_of(&played))
+                .map_or(DecisionEffect::Refused, DecisionEffect::Simulated),
+        };
+        let day = before * self.days_per_week;
+        DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })
+    }
+
+    /// Whether calls of later weeks name customers: after other decisions others come, under other numbers.
+    fn names_customers_after(&self, week: u32) -> bool {
+        let later = self.own.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
+        later.into_iter().any(|call| match call {
+            LessonCall::Tool(tool, args) => highest_named(*tool, args).is_some(),
+            _ => false,
+        })
+    }
+
+    fn effect_of(&self, played: &Played) -> Option<PartingEffect> {
+        let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
+        let judged = self.judged_by().and_then(|figure| {
+            let last = |weeks: &[WeekFigures]| figure.of_week(weeks.last()?);
+            last(&self.weeks).zip(last(&played.figures))
+        });
+        Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
+    }
+
+    /// The own calls, with those of the good play in one week where they differ.
+    fn with_decisions(
+        &self,
+        week: u32,
+        decisions: &[PartedDecision],
+        good: &WeekDecisions,
+    ) -> Vec<ScheduledCalls> {
+        let differs = |tool: &ToolId| decisions.iter().any(|decision| decision.tool == *tool);
+        let is_other = |own: &&ScheduledCalls| {
+            let call = own.calls.first();
+            own.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
+        };
+        let mut calls: Vec<ScheduledCalls> = self.own.iter().filter(|own| !is_other(own)).cloned().collect();
+        let made = good.calls_of(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
+        calls.push(ScheduledCalls {
+            part: self.standing.part,
+            week,
+            every: None,
+            until: None,
+            calls: made.collect(),
+        });
+        calls
+    }
+
+    fn steps(&self) -> Vec<DebriefStep> {
+        let standing = &self.standing;
+        let begun = (0..standing.own_part().steps.len()).filter(|step| standing.has_begun(*step));
+        begun.filter_map(|step| result_of_step(standing, step)).collect()
+    }
+}
+
+/// What was asked in a step, and its result; `None` if there is no such step.
+pub(super) fn result_of_step(standing: &LessonStanding, step: usize) -> Option<DebriefStep> {
+    let own = standing.step(step)?;
+    let judged = standing.goals(step);
+    let page = |(at, goal): (usize, &LessonGoal)| GoalPage::of(standing, goal, judged.get(at).copied());
+    Some(DebriefStep {
+        title: own.title.clone(),
+        tries: standing.tries(step),
+        hints: (standing.hints(step), own.hints.len()),
+        question: question(standing, step),
+        goals: own.goals.iter().enumerate().map(page).collect(),
+    })
+}

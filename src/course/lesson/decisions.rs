@@ -1,0 +1,179 @@
+//! What was decided in a week of a lesson, and how two plays differ in it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use novamind_session::{JournalEntry, Session, ToolId};
+use novamind_tools::Kind;
+
+/// What holds in a week, and what was done at its start.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct WeekDecisions {
+    /// Settings in force, by the tool that sets them.
+    settings: BTreeMap<ToolId, Map<String, Value>>,
+    /// What was done once: tool and arguments, in their order.
+    deeds: Vec<(ToolId, Value)>,
+}
+
+/// A tool with which something else was decided than in the good play.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PartedDecision {
+    /// The tool.
+    pub tool: ToolId,
+    /// How.
+    #[serde(flatten)]
+    pub difference: DecisionContrast,
+}
+
+/// How two plays differ in what one tool did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum DecisionContrast {
+    /// Other settings hold.
+    Settings {
+        /// Those that differ.
+        settings: Vec<SettingContrast>,
+    },
+    /// Other calls were made.
+    Calls {
+        /// Arguments of the own calls.
+        own: Vec<Value>,
+        /// Arguments of the calls of the good play.
+        good: Vec<Value>,
+    },
+}
+
+/// A setting that differs between two plays.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SettingContrast {
+    /// Its name.
+    pub name: String,
+    /// Its value in the own play; null if it has none.
+    pub own: Value,
+    /// Its value in the good play; null if it has none.
+    pub good: Value,
+}
+
+impl WeekDecisions {
+    /// What holds when the week begins.
+    pub(super) fn of(session: &Session) -> WeekDecisions {
+        let setting = |tool: ToolId| {
+            let current = tool.tool().current(session.settings());
+            (tool.spec().kind == Kind::Setting && !current.is_empty()).then_some((tool, current))
+        };
+        let settings: BTreeMap<ToolId, Map<String, Value>> = ToolId::all().filter_map(setting).collect();
+        let today = session.day();
+        let deeds = session.journal().iter().filter_map(|entry| match entry {
+            JournalEntry::Call { day, tool, args, .. }
+                if *day == today && tool.spec().kind.acts() && !settings.contains_key(tool) =>
+            {
+                Some((*tool, args.clone()))
+            }
+            _ => None,
+        });
+        let deeds = deeds.collect();
+        WeekDecisions { settings, deeds }
+    }
+
+    fn deeds_of(&self, tool: ToolId) -> Vec<Value> {
+        self.deeds.iter().filter(|(own, _)| *own == tool).map(|(_, args)| args.clone()).collect()
+    }
+
+    /// Calls that lead to what was decided with some tools.
+    pub(super) fn calls_of(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
+        let settings = self.settings.iter().map(|(tool, args)| (*tool, Value::Object(args.clone())));
+        settings.chain(self.deeds.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
+    }
+}
+
+/// With which tools something else was decided than in the good play.
+pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDecision> {
+    let settings = own.settings.iter().filter_map(|(tool, settings)| {
+        let other = good.settings.get(tool)?;
+        let (own, good) = (leaves(settings), leaves(other));
+        let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
+        let value =
+            |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
+        let settings: Vec<SettingContrast> = names
+            .into_iter()
+            .map(|name| SettingContrast {
+                name: name.clone(),
+                own: value(&own, name),
+                good: value(&good, name),
+            })
+            .filter(|setting| !is_same(&setting.own, &setting.good))
+            .collect();
+        (!settings.is_empty())
+            .then_some(PartedDecision { tool: *tool, difference: DecisionContrast::Settings { settings } })
+    });
+    let done: BTreeSet<ToolId> = own.deeds.iter().chain(&good.deeds).map(|(tool, _)| *tool).collect();
+    let deeds = done.into_iter().filter_map(|tool| {
+        let (own, good) = (own.deeds_of(tool), good.deeds_of(tool));
+        (own != good).then_some(PartedDecision { tool, difference: DecisionContrast::Calls { own, good } })
+    });
+    settings.chain(deeds).collect()
+}
+
+/// Whether two values say the same: 12 and 12.0 do, and nothing is as good as zero.
+fn is_same(one: &Value, other: &Value) -> bool {
+    let number = |value: &Value| if value.is_null() { Some(0.0) } else { value.as_f64() };
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => one.total_cmp(&other).is_eq(),
+        _ => one == other,
+    }
+}
+
+/// The values of nested arguments, by the names that lead to them: `content_marketing S1`.
+fn leaves(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
+    let mut found = BTreeMap::new();
+    for (name, value) in arguments {
+        match value {
+            Value::Object(inner) => found.extend(leaves(inner).into_iter().map(|(deeper, value)| {
+                // The argument that holds all of them names nothing.
+                let path = if arguments.len() == 1 { deeper } else { format!("{name} {deeper}") };
+                (path, value)
+            })),
+            value => {
+                found.insert(name.clone(), value.clone());
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn decided(prices: &Value, deeds: &[(ToolId, Value)]) -> WeekDecisions {
+        let settings = prices.as_object().cloned().unwrap_or_default();
+        WeekDecisions { settings: [(ToolId::SetPrices, settings)].into(), deeds: deeds.to_vec() }
+    }
+
+    #[test]
+    fn plays_part_where_other_settings_hold_or_other_things_are_done() {
+        let own = decided(&json!({"A": 12, "B": 20}), &[]);
+        assert!(parted(&own, &decided(&json!({"A": 12.0, "B": 20}), &[])).is_empty());
+        let other =
+            decided(&json!({"A": 12, "B": 30}), &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))]);
+        let found = parted(&own, &other);
+        let b = SettingContrast { name: "B".to_owned(), own: json!(20), good: json!(30) };
+        assert_eq!(found[0].difference, DecisionContrast::Settings { settings: vec![b] });
+        let calls = DecisionContrast::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };
+        assert_eq!(found[1].difference, calls);
+        let made = other.calls_of(&|tool| *tool == ToolId::SetPrices);
+        assert_eq!(made, [(ToolId::SetPrices, json!({"A": 12, "B": 30}))]);
+    }
+
+    #[test]
+    fn nested_arguments_have_the_names_that_lead_to_them() {
+        let spend = json!({"targeted_spend": {"linkedin": {"S1": 5.0}, "search": {"S2": 1.0}}});
+        let found = leaves(spend.as_object().expect("an object"));
+        let names: Vec<&str> = found.keys().map(String::as_str).collect();
+        assert_eq!(names, ["linkedin S1", "search S2"]);
+    }
+}

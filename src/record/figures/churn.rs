@@ -1,0 +1,25 @@
+//! How many of the subscribers leave.
+
+use super::week::WeekFigures;
+
+/// Churn of some days: their cancellations, as a share of the subscribers before the first of them. None without subscribers.
+pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
+    (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
+}
+
+/// Cancellations of individuals in the last week as a share of those who subscribed before it; none without any.
+pub fn churn_of_last_week(weeks: &[WeekFigures]) -> Option<f64> {
+    let [.., before, last] = weeks else { return None };
+    churn(last.cancellations.into(), before.individual_subscribers.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn churn_is_a_share_of_those_who_were_there_before() {
+        assert_eq!(churn(5.0, 200.0), Some(0.025));
+        assert_eq!((churn(0.0, 3.0), churn(0.0, 0.0)), (Some(0.0), None));
+    }
+}

@@ -1,0 +1,202 @@
+//! Figures of a week that a player sees.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+use super::booked::Booked;
+use novamind_base::notation::json_number;
+use novamind_world::events::{
+    Category, DayFigures, Facts, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
+};
+use novamind_world::params::Params;
+
+/// Figures of a week, or of the part of it that ran.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct WeekFigures {
+    /// Last day.
+    pub day: u32,
+    /// Days that ran.
+    pub days_run: u32,
+    /// Cash at the end, dollars.
+    pub cash: f64,
+    /// Its change over the days that ran, dollars.
+    pub cash_change: f64,
+    /// Active subscriptions of individuals.
+    pub individual_subscribers: u32,
+    /// Seats of active companies.
+    pub enterprise_seats: u32,
+    /// Active subscribers with an open issue.
+    pub open_issues: u32,
+    /// Issues that were opened.
+    pub issues_opened: u32,
+    /// Units used.
+    pub usage: u64,
+    /// Leads of individuals.
+    pub new_individual_leads: u32,
+    /// Leads of companies that opened a thread.
+    pub new_enterprise_leads: u32,
+    /// Individuals who signed up.
+    pub new_individual_subscribers: u32,
+    /// Seats of companies that signed.
+    pub new_enterprise_seats: u32,
+    /// Cancellations of individuals.
+    pub cancellations: u32,
+    /// Switches to dearer plans.
+    pub upgrades: u32,
+    /// Switches to cheaper plans.
+    pub downgrades: u32,
+    /// Companies that left.
+    pub companies_lost: u32,
+    /// Their seats.
+    pub seats_lost: u32,
+    /// Units used on the busiest day.
+    pub busiest_day: u64,
+    /// Largest overload.
+    pub overload_peak: f64,
+    /// Minutes of outages.
+    pub downtime_minutes: u32,
+    /// Whether there was an outage.
+    pub outage: bool,
+    /// Highest latency, milliseconds.
+    pub p95_ms_peak: f64,
+    /// Highest error rate.
+    pub error_rate_peak: f64,
+    /// What was booked by category since the end of the week before.
+    pub booked: Booked,
+    /// Payments of subscribers, dollars.
+    pub payments: f64,
+    /// Running costs, dollars.
+    pub costs: f64,
+    /// Monthly recurring revenue at the end, dollars.
+    pub recurring_revenue: f64,
+    /// Threads that were opened, and the seats behind them.
+    pub threads_opened: u32,
+    /// Seats of the companies that opened threads.
+    pub thread_seats: u32,
+    /// Messages of companies in their threads.
+    #[serde(default)]
+    pub replies: u32,
+    /// R&D projects and studies of groups that were finished.
+    #[serde(default)]
+    pub research_finished: u32,
+}
+
+impl WeekFigures {
+    /// Share of the week's individual leads who signed up, from 0 to 1; not a number without leads.
+    pub fn conversion(&self) -> f64 {
+        match self.new_individual_leads {
+            0 => f64::NAN,
+            leads => f64::from(self.new_individual_subscribers) / f64::from(leads),
+        }
+    }
+
+    /// Counts a day that was simulated: its figures, what happened on it, and the money that calls moved before it.
+    pub fn count(&mut self, figures: &DayFigures, facts: &Facts, called: &[LedgerEntry], params: &Params) {
+        self.add(figures);
+        let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
+        self.booked.add(Category::LeadAcquisitionCost, -leads);
+        self.booked.add(Category::SubscriptionPayment, figures.payments_received);
+        for entry in called.iter().chain(&facts.ledger) {
+            self.booked.add(entry.category, entry.amount);
+        }
+        for turn in facts.turns.iter().filter(|turn| turn.number == 0) {
+            self.threads_opened += 1;
+            self.thread_seats += turn.seats;
+        }
+        self.issues_opened += facts.issues_opened.len() as u32;
+        let replies = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
+        self.replies += replies.filter(|turn| turn.number > 0).count() as u32;
+        let finished = |notice: &&Notice| {
+            matches!(notice, Notice::ResearchComplete { .. } | Notice::StudyComplete { .. })
+        };
+        self.research_finished += facts.notices.iter().filter(finished).count() as u32;
+        let left = |ending: &&SubscriptionEnded| {
+            ending.group.is_enterprise() && ending.status == SubscriptionStatus::Cancelled
+        };
+        for ending in facts.endings.iter().filter(left) {
+            self.companies_lost += 1;
+            self.seats_lost += ending.seats;
+        }
+    }
+
+    /// Adds a day. Sums add up, peaks rise, stocks are those of the last day.
+    pub fn add(&mut self, day: &DayFigures) {
+        self.day = day.day;
+        self.days_run += 1;
+        self.cash = day.cash;
+        self.individual_subscribers = day.individual_subscribers;
+        self.enterprise_seats = day.enterprise_seats;
+        self.recurring_revenue = day.mrr;
+        self.usage += day.total_usage;
+        self.busiest_day = self.busiest_day.max(day.total_usage);
+        self.new_individual_leads += day.new_individual_leads;
+        self.new_enterprise_leads += day.new_enterprise_leads;
+        self.new_individual_subscribers += day.new_individual_subscribers;
+        self.new_enterprise_seats += day.new_enterprise_seats;
+        self.cancellations += day.cancellations;
+        self.upgrades += day.upgrades;
+        self.downgrades += day.downgrades;
+        self.payments += day.payments_received;
+        self.costs += day.total_costs;
+        self.downtime_minutes += day.downtime_minutes;
+        self.outage |= day.outage;
+        self.overload_peak = self.overload_peak.max(day.overload);
+        self.p95_ms_peak = self.p95_ms_peak.max(day.p95_ms);
+        self.error_rate_peak = self.error_rate_peak.max(day.error_rate);
+    }
+
+    /// The figures that a `week` line and programs carry, by their names there.
+    pub fn as_json(&self) -> Map<String, Value> {
+        let figures = json!({
+            "cash": json_number(self.cash),
+            "individual_subscribers": self.individual_subscribers,
+            "enterprise_seats": self.enterprise_seats,
+            "open_issues": self.open_issues,
+            "usage": self.usage,
+            "new_individual_leads": self.new_individual_leads,
+            "new_enterprise_leads": self.new_enterprise_leads,
+            "new_individual_subscribers": self.new_individual_subscribers,
+            "new_enterprise_seats": self.new_enterprise_seats,
+            "cancellations": self.cancellations,
+            "upgrades": self.upgrades,
+            "downgrades": self.downgrades,
+            "overload_peak": json_number(self.overload_peak),
+            "downtime_minutes": self.downtime_minutes,
+            "p95_ms_peak": json_number(self.p95_ms_peak),
+            "error_rate_peak": json_number(self.error_rate_peak),
+            "payments": json_number(self.payments),
+            "costs": json_number(self.costs),
+            "recurring_revenue": json_number(self.recurring_revenue),
+        });
+        match figures {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_week_sums_usage_and_keeps_peaks() {
+        let mut week = WeekFigures::default();
+        for day in 1..=7u32 {
+            let outage = day == 3;
+            week.add(&DayFigures {
+                day,
+                total_usage: u64::from(day) * 10,
+                outage,
+                downtime_minutes: if outage { 30 } else { 0 },
+                overload: if day == 5 { 0.4 } else { 0.1 },
+                ..DayFigures::default()
+            });
+        }
+        assert_eq!(
+            (week.usage, week.outage, week.downtime_minutes, week.overload_peak),
+            (280, true, 30, 0.4)
+        );
+        assert_eq!((week.day, week.days_run), (7, 7));
+    }
+}

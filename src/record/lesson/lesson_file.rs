@@ -1,0 +1,243 @@
+//! A lesson as it was read: its plan and its texts.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::definition::{GuessForm, LessonPlan, MeasuredFigure};
+use super::measurement::NumberSource;
+use super::soundness::unsound;
+use crate::error::RunError;
+use crate::figures::FigureUnit;
+use crate::files::write_whole;
+use crate::folder::configuration::Configuration;
+use novamind_base::notation::{cents, grouped, percent, short_dollars};
+use novamind_world::params::{ParameterError, ParameterSource};
+
+/// Name of the plan in the folder of a run.
+pub const PLAN_FILE: &str = "lesson.toml";
+/// Name of the texts in the folder of a run.
+pub const TEXTS_FILE: &str = "lesson.md";
+
+/// A lesson.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lesson {
+    /// Name of its files.
+    pub name: String,
+    /// What its file says.
+    pub plan: LessonPlan,
+    /// What a student reads at the end, in Markdown; figures stand in as `{name}`.
+    pub debrief: String,
+    /// What is for instructors, in Markdown.
+    pub for_teachers: String,
+    /// blake3 digest of plan and texts, in hexadecimal digits.
+    pub digest: String,
+    /// Whether it came with the program.
+    pub shipped: bool,
+    plan_text: String,
+    texts: String,
+}
+
+impl Lesson {
+    /// Reads a lesson by name; the file in the configuration folder takes precedence over the bundled one.
+    ///
+    /// # Errors
+    /// There is none of this name, or one of its files is wrong.
+    pub fn named(name: &str, configuration: &Configuration) -> Result<Lesson, RunError> {
+        if let Some(plan) = configuration.file(format!("lessons/{name}.toml"))? {
+            let texts =
+                configuration.file(format!("lessons/{name}.md"))?.map(|texts| texts.text).unwrap_or_default();
+            return Ok(Lesson::read(name, plan, texts, false)?);
+        }
+        let found = novamind_assets::lessons().into_iter().find(|(shipped, _)| *shipped == name);
+        let Some((_, plan)) = found else {
+            return Err(RunError::NoLesson {
+                name: name.to_owned(),
+                known: configuration.lessons().join(", "),
+            });
+        };
+        let plan = ParameterSource { name: format!("configs/lessons/{name}.toml"), text: plan.to_owned() };
+        let texts = novamind_assets::lesson_texts(name).unwrap_or_default().to_owned();
+        Ok(Lesson::read(name, plan, texts, true)?)
+    }
+
+    /// Reads a lesson from the text of its plan, and its texts.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with file, line and key.
+    pub(super) fn read(
+        name: &str,
+        plan: ParameterSource,
+        texts: String,
+        shipped: bool,
+    ) -> Result<Lesson, ParameterError> {
+        let read: LessonPlan = toml::from_str(&plan.text)
+            .map_err(|error| ParameterError::of_toml(&plan.name, &plan.text, &error))?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(plan.text.as_bytes()).update(b"\0").update(texts.as_bytes());
+        let lesson = Lesson {
+            name: name.to_owned(),
+            debrief: section(&texts, "Debrief"),
+            for_teachers: section(&texts, "For the teacher"),
+            digest: hasher.finalize().to_hex().to_string(),
+            shipped,
+            plan: read,
+            plan_text: plan.text,
+            texts,
+        };
+        match unsound(&lesson) {
+            None => Ok(lesson),
+            Some(found) => Err(ParameterError {
+                source: plan.name,
+                line: lesson.plan_text.lines().position(|line| line.contains(&found.place)).map(|at| at + 1),
+                key: found.key.to_owned(),
+                problem: found.problem,
+            }),
+        }
+    }
+
+    /// Reads a lesson from its file; its texts lie beside it.
+    ///
+    /// # Errors
+    /// A file cannot be read, or is wrong.
+    pub fn of_file(path: &Path) -> Result<Lesson, RunError> {
+        let text = std::fs::read_to_string(path).map_err(RunError::io(path))?;
+        let texts = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Lesson::read(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
+    }
+
+    /// Reads the lesson that is kept with a run.
+    ///
+    /// # Errors
+    /// A file is missing or wrong.
+    pub fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+        let text = |file| {
+            let path = folder.join(file);
+            std::fs::read_to_string(&path).map_err(RunError::io(&path))
+        };
+        let source =
+            ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
+        Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
+    }
+
+    /// The lesson as its plan and its texts say, handed over without files.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with line and key.
+    pub fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
+        Ok(Lesson::read(name, plan, texts, false)?)
+    }
+
+    /// Its plan and its texts, as they were written.
+    pub fn sources(&self) -> (&str, &str) {
+        (&self.plan_text, &self.texts)
+    }
+
+    /// Writes its two files, to be changed: the plan at a path, the texts beside it. Nothing is replaced.
+    ///
+    /// # Errors
+    /// One of them is there already, or cannot be written.
+    pub fn copy_to(&self, path: &Path) -> Result<(), RunError> {
+        use std::io::Write;
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+        }
+        let written = |path: &Path, text: &str| {
+            let opened = std::fs::File::create_new(path);
+            opened.and_then(|mut file| file.write_all(text.as_bytes())).map_err(RunError::io(path))
+        };
+        written(path, &self.plan_text)?;
+        written(&path.with_extension("md"), &self.texts)
+    }
+
+    /// Keeps it with a run, so that the run can be judged wherever it goes.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
+        write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
+        write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
+    }
+
+    /// The lesson in the world in which a figure is measured: its part with the figure's scenario and parameters.
+    pub fn in_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
+        if figure.scenario.is_none() && figure.parameters.is_empty() {
+            return self.clone();
+        }
+        let mut other = Lesson::clone(self);
+        if let Some(part) = other.plan.parts.get_mut(figure.part) {
+            if let Some(scenario) = &figure.scenario {
+                part.scenario.clone_from(scenario);
+            }
+            part.parameters.extend(figure.parameters.clone());
+        }
+        Arc::new(other)
+    }
+
+    /// Whether a goal, a guess or a pitfall is measured by a statement.
+    pub fn asks_database(&self) -> bool {
+        let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
+        let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
+        let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
+            GuessForm::Number { outcome, .. } => Some(outcome),
+            GuessForm::Choice { .. } => None,
+        });
+        let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
+        goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
+    }
+
+    /// A text with the measured figures that it names.
+    pub fn filled(&self, text: &str) -> String {
+        let written =
+            |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
+        self.plan.measured.iter().fold(text.to_owned(), written)
+    }
+}
+
+impl MeasuredFigure {
+    /// Its value as texts write it.
+    pub fn written(&self) -> String {
+        self.write(self.value)
+    }
+
+    /// A value of this figure as texts write it.
+    pub fn write(&self, value: f64) -> String {
+        match &self.measurement.source {
+            NumberSource::Cash => short_dollars(value),
+            NumberSource::Figure(figure) => match figure.unit() {
+                FigureUnit::Dollars => short_dollars(value),
+                FigureUnit::Share | FigureUnit::FineShare => percent(value, 0),
+                FigureUnit::Count | FigureUnit::Level => grouped(value, 0),
+            },
+            NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => cents(value),
+            NumberSource::Sql(_) if self.unit == "$" => short_dollars(value),
+            NumberSource::Sql(_) if self.unit == "%" => percent(value, 0),
+            NumberSource::Sql(_) if self.unit == "day" => grouped(value, 0),
+            NumberSource::Sql(_) => grouped(value, if value.fract() == 0.0 { 0 } else { 2 }),
+        }
+    }
+}
+
+/// The text below a heading of the second level.
+fn section(texts: &str, heading: &str) -> String {
+    let mut lines =
+        texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
+    let mut own = Vec::new();
+    while let Some(line) = lines.next_if(|line| !line.starts_with("## ")) {
+        own.push(line);
+    }
+    own.join("\n").trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_of_texts_are_found() {
+        let texts = "# A\n\n## Debrief\n\nOne.\n\nTwo.\n\n## For the teacher\nThree.\n";
+        assert_eq!(section(texts, "Debrief"), "One.\n\nTwo.");
+        assert_eq!(section(texts, "For the teacher"), "Three.");
+        assert_eq!(section(texts, "Nothing"), "");
+    }
+}

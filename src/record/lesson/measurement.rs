@@ -1,0 +1,150 @@
+//! What goals, guesses and pitfalls measure: a figure of weeks, or what a statement answers.
+
+use serde::Deserialize;
+
+use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
+
+/// What is measured over some weeks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Where a number comes from.
+    pub source: NumberSource,
+    /// What is made of the numbers of several weeks.
+    pub over: Over,
+}
+
+/// Where a number comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NumberSource {
+    /// Cash at the end of a week, dollars.
+    Cash,
+    /// A figure of a week.
+    Figure(WeekFigure),
+    /// A statement that answers with one number; `{from_day}` and `{to_day}` stand for the days of the weeks.
+    Sql(String),
+}
+
+/// What is made of the numbers of several weeks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Over {
+    /// The last counts.
+    #[default]
+    End,
+    /// They are added.
+    Sum,
+    /// Their mean counts.
+    Mean,
+}
+
+/// A measurement as files write it.
+#[derive(Debug, Deserialize)]
+pub(super) struct MeasurementFile {
+    pub figure: Option<String>,
+    pub sql: Option<String>,
+    pub over: Option<String>,
+}
+
+impl TryFrom<MeasurementFile> for Measurement {
+    type Error = String;
+
+    fn try_from(file: MeasurementFile) -> Result<Measurement, String> {
+        let source = match (file.figure.as_deref(), file.sql) {
+            (Some("cash"), None) => NumberSource::Cash,
+            (Some(name), None) => {
+                let figure =
+                    WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name} of a week"))?;
+                if figure.of_week(&WeekFigures::default()).is_none() {
+                    return Err(format!("{name} is not measured in lessons; use sql"));
+                }
+                NumberSource::Figure(figure)
+            }
+            (None, Some(sql)) => NumberSource::Sql(sql),
+            _ => return Err("what is measured is one of figure and sql".to_owned()),
+        };
+        let over = match file.over.as_deref() {
+            None | Some("end") => Over::End,
+            Some("sum") => Over::Sum,
+            Some("mean") => Over::Mean,
+            Some(other) => return Err(format!("over is end, sum or mean, not {other}")),
+        };
+        if over != Over::End && matches!(source, NumberSource::Sql(_)) {
+            return Err("a statement says itself over which days it counts: leave over out".to_owned());
+        }
+        Ok(Measurement { source, over })
+    }
+}
+
+impl Measurement {
+    /// Whether it is a figure that counts dollars.
+    pub fn counts_dollars(&self) -> bool {
+        match &self.source {
+            NumberSource::Cash => true,
+            NumberSource::Figure(figure) => figure.unit() == FigureUnit::Dollars,
+            NumberSource::Sql(_) => false,
+        }
+    }
+
+    /// The statement that measures the days from `from_day` to `to_day`; `None` if it is a figure.
+    pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
+        match &self.source {
+            NumberSource::Sql(sql) => Some(filled(sql, from_day, to_day)),
+            NumberSource::Cash | NumberSource::Figure(_) => None,
+        }
+    }
+
+    /// The value of a figure over some weeks; `None` if no week has it, and of a statement.
+    pub fn of_weeks<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
+        let value = |week: &WeekFigures| match &self.source {
+            NumberSource::Cash => Some(week.cash),
+            NumberSource::Figure(figure) => figure.of_week(week),
+            NumberSource::Sql(_) => None,
+        };
+        let values: Vec<f64> = weeks.filter_map(value).filter(|value| value.is_finite()).collect();
+        let sum: f64 = values.iter().sum();
+        match self.over {
+            Over::End => values.last().copied(),
+            Over::Sum => Some(sum),
+            Over::Mean => (!values.is_empty()).then(|| sum / values.len() as f64),
+        }
+    }
+
+    /// Whether it asks the database.
+    pub fn needs_database(&self) -> bool {
+        matches!(self.source, NumberSource::Sql(_))
+    }
+}
+
+fn filled(sql: &str, from_day: u32, to_day: u32) -> String {
+    sql.replace("{from_day}", &from_day.to_string()).replace("{to_day}", &to_day.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_stand_in_for_their_names() {
+        assert_eq!(filled("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
+    }
+
+    fn read(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
+        let own = |text: Option<&str>| text.map(str::to_owned);
+        Measurement::try_from(MeasurementFile { figure: own(figure), sql: own(sql), over: own(over) })
+    }
+
+    #[test]
+    fn a_measurement_is_a_figure_or_a_statement() {
+        assert_eq!(read(Some("cash"), None, None).expect("cash").source, NumberSource::Cash);
+        let sum = read(Some("payments"), None, Some("sum")).expect("payments");
+        assert_eq!((sum.source, sum.over), (NumberSource::Figure(WeekFigure::Payments), Over::Sum));
+        for (figure, sql, over) in [
+            (None, None, None),
+            (Some("cash"), Some("SELECT 1"), None),
+            (Some("luck"), None, None),
+            (Some("cash"), None, Some("top")),
+            (None, Some("SELECT 1"), Some("sum")),
+        ] {
+            assert!(read(figure, sql, over).is_err(), "{figure:?} {sql:?} {over:?}");
+        }
+    }
+}

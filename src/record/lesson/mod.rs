@@ -1,0 +1,23 @@
+//! Lessons: what an instructor defines, and where a student stands by the record (docs/lessons/authors-guide.md).
+//!
+//! A lesson has parts. Each part is a separate company that is recorded as a run. A part has steps of some weeks, with a
+//! question before they run, goals, and hints. What a student did is recorded in lines of kind `lesson`.
+
+mod definition;
+mod lesson_call;
+mod lesson_file;
+mod measurement;
+mod over;
+mod soundness;
+mod standing;
+
+pub use definition::{
+    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, GuessTold, LessonAccess, LessonGoal,
+    LessonPart, LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound,
+    RationaleAsked, ReferencePlay, ScheduledCalls,
+};
+pub use lesson_call::LessonCall;
+pub use lesson_file::{Lesson, PLAN_FILE, TEXTS_FILE};
+pub use measurement::{Measurement, NumberSource, Over};
+pub use over::is_lesson_over;
+pub use standing::LessonStanding;

@@ -1,0 +1,34 @@
+//! Whether a lesson is over: hidden state of its runs stays hidden until then, for the next part may have the same luck.
+
+use std::path::Path;
+
+use super::lesson_file::Lesson;
+use crate::folder::derived::Derived;
+use crate::folder::manifest::Manifest;
+use crate::folder::runs::last_lines;
+use crate::stamp::LessonStamp;
+use crate::trajectory::Record;
+
+/// Whether the last part of the lesson that a run belongs to is over: in this run, or in another one that the same person has
+/// in the folder of runs. True of runs that belong to no lesson; false where the lesson that is kept with the run is another.
+pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
+    let Some(stamp) = &manifest.lesson else { return true };
+    let Some(folder) = folder else { return false };
+    let lesson = Lesson::of_run(folder, &stamp.name).ok().filter(|lesson| lesson.digest == stamp.digest);
+    let Some(lesson) = lesson else { return false };
+    let last = LessonStamp { part: lesson.plan.parts.len() as u32, ..stamp.clone() };
+    let is_last =
+        |own: &Manifest| own.lesson.as_ref() == Some(&last) && own.participant == manifest.participant;
+    if is_last(manifest) && has_ended(folder) {
+        return true;
+    }
+    let beside = folder.parent().and_then(|runs| std::fs::read_dir(runs).ok());
+    let mut others = beside.into_iter().flatten().flatten().map(|entry| entry.path());
+    others.any(|own| Derived::of(&own).is_ok_and(|derived| is_last(&derived.manifest)) && has_ended(&own))
+}
+
+/// Whether the last lines of a run say that it is over.
+fn has_ended(folder: &Path) -> bool {
+    let lines = last_lines(&folder.join("trajectory.jsonl")).unwrap_or_default();
+    lines.iter().any(|line| matches!(line.record, Record::End(_)))
+}

@@ -1,0 +1,145 @@
+//! Whether a lesson contradicts itself.
+
+use std::collections::BTreeSet;
+
+use super::definition::{LessonPart, MeasuredFigure, ReferencePlay, ScheduledCalls};
+use super::lesson_file::Lesson;
+use crate::folder::configuration::Configuration;
+
+/// What is wrong with a lesson.
+pub(super) struct Unsound {
+    /// Something that stands in the line at fault.
+    pub place: String,
+    pub key: &'static str,
+    pub problem: String,
+}
+
+/// The first thing that is wrong with a lesson whose parts could be read.
+pub(super) fn unsound(lesson: &Lesson) -> Option<Unsound> {
+    let plan = &lesson.plan;
+    let wrong = |place: &str, key, problem: String| Unsound { place: place.to_owned(), key, problem };
+    if plan.parts.is_empty() || plan.parts.iter().any(|part| part.steps.is_empty()) {
+        return Some(wrong("[[part", "part", "a lesson has a part, and every part has a step".to_owned()));
+    }
+    plan.parts
+        .iter()
+        .find_map(unsound_part)
+        .or_else(|| {
+            let known: BTreeSet<&str> = plan.pitfalls.iter().map(|own| own.name.as_str()).collect();
+            let named = plan.bad.pitfall.as_deref();
+            match named.is_some_and(|name| known.contains(name)) {
+                true => None,
+                false => Some(wrong(
+                    "[bad]",
+                    "bad.pitfall",
+                    "the bad play names the pitfall that it meets".to_owned(),
+                )),
+            }
+        })
+        .or_else(|| {
+            let parts = plan.parts.len();
+            let far = plan.pitfalls.iter().find(|own| own.part >= parts)?;
+            Some(wrong(
+                &format!("name = \"{}\"", far.name),
+                "pitfall.part",
+                format!("there are {parts} parts"),
+            ))
+        })
+        .or_else(|| {
+            unsound_plays(lesson, "good", &plan.good).or_else(|| unsound_plays(lesson, "bad", &plan.bad))
+        })
+        .or_else(|| unsound_measured(lesson))
+        .or_else(|| unknown_name(lesson))
+}
+
+fn unsound_part(part: &LessonPart) -> Option<Unsound> {
+    let step_of = |title: &str, key, problem: &str| {
+        Some(Unsound { place: format!("title = \"{title}\""), key, problem: problem.to_owned() })
+    };
+    for step in &part.steps {
+        if step.weeks == 0 {
+            return step_of(&step.title, "step.weeks", "a step takes a week at least");
+        }
+        if !(1..=3).contains(&step.hints.len()) {
+            return step_of(&step.title, "step.hints", "a step has one to three hints");
+        }
+    }
+    let early = part.start.iter().find(|own| own.week > part.start_weeks)?;
+    Some(Unsound {
+        place: format!("week = {}", early.week),
+        key: "start.week",
+        problem: format!("the start has {} weeks; later calls are the student's", part.start_weeks),
+    })
+}
+
+fn unsound_plays(lesson: &Lesson, name: &'static str, play: &ReferencePlay) -> Option<Unsound> {
+    let fits = |calls: &&ScheduledCalls| {
+        lesson
+            .plan
+            .parts
+            .get(calls.part)
+            .is_some_and(|part| (part.start_weeks..part.weeks()).contains(&calls.week))
+    };
+    let wrong = play.plays.iter().find(|calls| !fits(calls))?;
+    Some(Unsound {
+        place: format!("[[{name}.play]]"),
+        key: "play.week",
+        problem: format!("part {} has no week {} in which a student decides", wrong.part + 1, wrong.week),
+    })
+}
+
+fn unsound_measured(lesson: &Lesson) -> Option<Unsound> {
+    let mut names = BTreeSet::new();
+    for own in &lesson.plan.measured {
+        let part = lesson.plan.parts.get(own.part);
+        let problem = match part {
+            _ if !names.insert(&own.name) => "the name stands for another figure already".to_owned(),
+            None => format!("there are {} parts", lesson.plan.parts.len()),
+            Some(part) if own.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
+                format!("the part has weeks 1 to {}", part.weeks())
+            }
+            Some(part) => match unsound_world(part, own) {
+                Some(problem) => problem,
+                None => continue,
+            },
+        };
+        return Some(Unsound { place: format!("name = \"{}\"", own.name), key: "measured", problem });
+    }
+    None
+}
+
+/// What is wrong with the world of its own in which a figure is measured.
+fn unsound_world(part: &LessonPart, own: &MeasuredFigure) -> Option<String> {
+    if own.scenario.is_none() && own.parameters.is_empty() {
+        return None;
+    }
+    let shipped = Configuration::shipped();
+    let all = part.parameters.iter().chain(&own.parameters);
+    let overrides: Vec<(String, String)> = all.map(|(key, value)| (key.clone(), value.to_string())).collect();
+    let scenario = shipped.scenario(own.scenario.as_ref().unwrap_or(&part.scenario));
+    scenario
+        .and_then(|scenario| shipped.parameters(&scenario, &overrides, false))
+        .err()
+        .map(|error| error.to_string())
+}
+
+/// Names in braces that stand for no measured figure.
+fn unknown_name(lesson: &Lesson) -> Option<Unsound> {
+    let steps = lesson.plan.parts.iter().flat_map(|part| &part.steps);
+    let texts = steps.flat_map(|step| step.hints.iter().chain([&step.text]));
+    let says = lesson.plan.pitfalls.iter().map(|own| &own.say);
+    for text in texts.chain(says).chain([&lesson.debrief, &lesson.for_teachers]) {
+        let filled = lesson.filled(text);
+        let name = filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name);
+        let is_name =
+            |name: &&str| name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if let Some(name) = name.into_iter().find(is_name) {
+            return Some(Unsound {
+                place: format!("{{{name}}}"),
+                key: "measured",
+                problem: format!("a text names {{{name}}}, which is no measured figure"),
+            });
+        }
+    }
+    None
+}

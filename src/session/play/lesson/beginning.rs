@@ -1,0 +1,168 @@
+//! How a lesson and its steps begin: what is played before the student sees the company, and what a program that ended on the
+//! way has left to do.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::company::reports::DayReport;
+use crate::create::lesson_entry::LessonEntry;
+use crate::play::Session;
+use novamind_record::error::RunError;
+use novamind_record::lesson::{Lesson, LessonCall, LessonStanding};
+use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
+use novamind_record::trajectory::{Line, Record, Trajectory};
+use novamind_tools::Refusal;
+
+impl Session {
+    /// Plays the start of a lesson, up to the moment at which the student sees the company; tells each day of it.
+    ///
+    /// # Errors
+    /// A call of the start is refused.
+    pub(crate) fn begin_lesson(
+        &mut self,
+        entry: &LessonEntry,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
+        let LessonEntry { lesson, part, is_judged } = entry;
+        self.lesson = Some(Box::new(LessonStanding {
+            lesson: lesson.clone(),
+            part: *part,
+            is_judged: *is_judged,
+            notes: Vec::new(),
+        }));
+        self.go_on_with_start(0, tell)
+    }
+
+    /// Plays the start of a lesson from the present week on, of which so many calls are made; then the first step begins.
+    fn go_on_with_start(
+        &mut self,
+        made: usize,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
+        let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
+        let (lesson, part) = (standing.lesson.clone(), standing.part);
+        let start = &lesson.plan.parts[part];
+        let first = self.weeks_passed();
+        for week in first..=start.start_weeks {
+            let due = start.start.iter().filter(|own| own.week == week).flat_map(|own| &own.calls);
+            for call in due.skip(if week == first { made } else { 0 }) {
+                self.call_of_start(call).map_err(|refusal| {
+                    RunError::NotPossible(format!(
+                        "the start of lesson {} is refused: {refusal}",
+                        lesson.name
+                    ))
+                })?;
+            }
+            if week < start.start_weeks {
+                let forecasts = self.company().naive_forecasts();
+                let refused = |refusal: Refusal| RunError::NotPossible(refusal.to_string());
+                self.advance("the start of the lesson", &forecasts, Via::Lesson, tell).map_err(refused)?;
+            }
+        }
+        self.begin_step(0, 1).map_err(|refusal| RunError::NotPossible(refusal.to_string()))
+    }
+
+    fn call_of_start(&mut self, call: &LessonCall) -> Result<(), Refusal> {
+        match call {
+            LessonCall::Tool(tool, args) => self.call(tool, args, Via::Lesson).map(|_| ()),
+            LessonCall::Rules(_) => {
+                Err(Refusal::new("not_possible", "no rules answer companies in the start of a lesson"))
+            }
+        }
+    }
+
+    /// Begins a step: its parameters are set.
+    pub(super) fn begin_step(&mut self, step: usize, number: u32) -> Result<(), Refusal> {
+        let Some(own) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned() else {
+            return Ok(());
+        };
+        for (key, value) in &own.parameters {
+            let value = serde_json::to_value(value).unwrap_or_default();
+            self.set_parameter_of_lesson(key, &value)?;
+        }
+        let note =
+            LessonNote { number: Some(number), ..LessonNote::about(LessonEvent::Begun, step as u32 + 1) };
+        self.note_lesson(note)
+    }
+
+    /// Takes up the lesson of a run that was opened again.
+    ///
+    /// # Errors
+    /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
+    pub(crate) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
+        let Some(stamp) = self.manifest().lesson.clone() else { return Ok(()) };
+        let lesson = Lesson::of_run(folder, &stamp.name)?;
+        let part = stamp.part as usize;
+        if lesson.digest != stamp.digest || !(1..=lesson.plan.parts.len()).contains(&part) {
+            return Err(RunError::Damaged {
+                path: folder.join("lesson.toml"),
+                line: 1,
+                problem: format!("the lesson is not the one that was played, {}", stamp.name),
+                safe: "The trajectory was not touched; restore lesson.toml and lesson.md from a copy to open the run"
+                    .to_owned(),
+            });
+        }
+        self.lesson = Some(Box::new(LessonStanding::of(Arc::new(lesson), part - 1, lines)));
+        // The program may have ended between a week and what it came to.
+        let is_open = |line: &Line| {
+            matches!(
+                line.record,
+                Record::Week(_) | Record::Override(_) | Record::Activity(Activity::Lesson(_))
+            )
+        };
+        if self.log().is_written() && lines.last().is_some_and(is_open) && !is_try_to_begin(lines) {
+            self.settle_lesson();
+        }
+        Ok(())
+    }
+
+    /// Begins what has not begun: the first step of a lesson, or the one that is tried again. A program may have ended on the
+    /// way; a week that it has left is simulated already.
+    ///
+    /// # Errors
+    /// The start of the lesson is refused.
+    pub(crate) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
+        let is_open = self.log().is_written() && self.ended().is_none();
+        let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
+        let Some(step) = self.lesson_step().filter(|step| !standing.has_begun(*step)) else { return Ok(()) };
+        if is_try_to_begin(lines) {
+            let number = self.tries_of_parent(step) + 1;
+            return self
+                .begin_step(step, number)
+                .map_err(|refusal| RunError::NotPossible(refusal.to_string()));
+        }
+        if step == 0 { self.go_on_with_start(self.calls_of_week(lines), &mut |_| {}) } else { Ok(()) }
+    }
+
+    /// How many calls of the start were made since the last week.
+    fn calls_of_week(&self, lines: &[Line]) -> usize {
+        let day = self.day();
+        let after = lines.iter().rposition(Line::closes_days).map_or(0, |week| week + 1);
+        let calls =
+            lines[after..].iter().filter(|line| line.day == day && line.record.accepted_call().is_some());
+        calls.count()
+    }
+
+    /// The newest try of a step in the run of which this one is a branch.
+    fn tries_of_parent(&self, step: usize) -> u32 {
+        let runs = self.folder().and_then(Path::parent);
+        let parent = self.manifest().parent.as_ref().zip(runs);
+        let read = parent.and_then(|(parent, runs)| {
+            Trajectory::read(&runs.join(&parent.run).join("trajectory.jsonl")).ok()
+        });
+        let own = read
+            .zip(self.lesson.as_deref())
+            .map(|(parent, own)| LessonStanding::of(own.lesson.clone(), own.part, &parent.lines).tries(step));
+        own.unwrap_or(1).max(1)
+    }
+}
+
+/// Whether the lines are those of another try of a step that has not begun yet.
+fn is_try_to_begin(lines: &[Line]) -> bool {
+    let begins = |line: &Line| match &line.record {
+        Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
+        _ => false,
+    };
+    let branch = lines.iter().rposition(|line| matches!(line.record, Record::Branch(_)));
+    branch.is_some_and(|branch| !lines[branch..].iter().any(begins))
+}

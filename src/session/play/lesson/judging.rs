@@ -1,0 +1,151 @@
+//! Judging a step: what goals, guesses and pitfalls measure, and the good play that goals are compared with.
+
+use super::reference::{PartPlay, answers_companies, play_part};
+use crate::play::{AnswersCompanies, Session};
+use novamind_database::Cell;
+use novamind_record::lesson::{
+    Guess, GuessForm, GuessTold, LessonGoal, LessonStanding, Measurement, Pitfall,
+};
+use novamind_record::trajectory::record::{LessonEvent, LessonNote};
+use novamind_tools::Refusal;
+
+/// Returns the value of a measurement over the weeks that ended on days after `from_day`; `None` if it has none.
+///
+/// # Errors
+/// The statement is refused, or does not answer with one number.
+pub fn measure(
+    measurement: &Measurement,
+    session: &mut Session,
+    from_day: u32,
+) -> Result<Option<f64>, String> {
+    match measurement.statement(from_day + 1, session.day()) {
+        Some(sql) => answer(session, &sql),
+        None => Ok(measurement.of_weeks(session.weeks().iter().filter(|week| week.day > from_day))),
+    }
+}
+
+fn answer(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
+    let rows = session.look_into_database(sql).map_err(|refusal| refusal.message)?;
+    match rows.rows.as_slice() {
+        [row] if row.len() == 1 => Ok(match &row[0] {
+            Cell::Integer(number) => Some(*number as f64),
+            Cell::Real(number) => Some(*number),
+            _ => None,
+        }),
+        rows => Err(format!("the statement answers with {} rows, not with one number", rows.len())),
+    }
+}
+
+impl Session {
+    /// Says how rules answer companies: goals that are relative to a good play with rules are held against that. A step that
+    /// has waited for it is judged now.
+    pub fn answer_companies_by(&mut self, answers: AnswersCompanies) {
+        self.company_answers = Some(answers);
+        if self.log().is_written() && self.awaits_judgement() {
+            self.settle_lesson();
+        }
+    }
+
+    /// Whether the weeks of a step are over, and the next one has not begun.
+    fn awaits_judgement(&self) -> bool {
+        let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
+            return false;
+        };
+        let (part, weeks) = (standing.own_part(), self.weeks_passed());
+        let step = weeks.checked_sub(1).and_then(|before| part.step_after(before));
+        step.is_some_and(|step| {
+            standing.has_begun(step) && !standing.has_begun(step + 1) && weeks == part.weeks_of(step).1
+        })
+    }
+
+    /// Whether a step can be judged only by somebody who says how rules answer companies.
+    pub(super) fn lacks_answers(&self, standing: &LessonStanding, step: usize) -> bool {
+        let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
+        self.company_answers.is_none()
+            && standing.step(step).is_some_and(|own| own.goals.iter().any(is_relative))
+            && answers_companies(&standing.lesson.plan.good.plays)
+    }
+
+    /// Records the pitfalls that the last week met for the first time.
+    pub(super) fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize, weeks: u32) {
+        let met = standing.pitfalls();
+        let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
+        let from = weeks.saturating_sub(1) * self.params().run.days_per_week;
+        for pitfall in standing.lesson.plan.pitfalls.iter().filter(own) {
+            let value = measure(&pitfall.measurement, self, from).ok().flatten();
+            if value.is_some_and(|value| pitfall.bound.is_met_by(value)) {
+                let about = LessonNote::about(LessonEvent::Pitfall, step as u32 + 1);
+                let (name, bound) = (Some(pitfall.name.clone()), Some(pitfall.bound.limit()));
+                let _ = self.note_lesson(LessonNote { name, value, bound, ..about });
+            }
+        }
+    }
+
+    /// Measures what was guessed in the step that is over; where the part is over, also what waited for its end.
+    pub(super) fn judge_guesses(&mut self, standing: &LessonStanding, step: usize, is_over: bool) {
+        let part = standing.own_part();
+        let is_last = is_over || step + 1 == part.steps.len();
+        for (at, own) in part.steps.iter().enumerate().take(step + 1) {
+            let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else { continue };
+            let is_due = if guess.told == GuessTold::Part { is_last } else { at == step };
+            if is_due {
+                let from = part.weeks_of(at).0 * self.params().run.days_per_week;
+                let outcome = self.outcome_of(standing, guess, at, from);
+                let _ = self.note_lesson(outcome);
+            }
+        }
+    }
+
+    /// What came of a guess, from a day on.
+    fn outcome_of(&mut self, standing: &LessonStanding, guess: &Guess, step: usize, from: u32) -> LessonNote {
+        let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
+        match &guess.form {
+            GuessForm::Number { outcome, .. } => {
+                LessonNote { value: measure(outcome, self, from).ok().flatten(), ..about }
+            }
+            GuessForm::Choice { answer, .. } => {
+                let right = *answer as f64 + 1.0;
+                let met = standing.guess(step).map(|guessed| guessed == right);
+                LessonNote { value: Some(right), met, ..about }
+            }
+        }
+    }
+
+    /// Measures what was to be reached.
+    pub(super) fn judge_goals(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
+        let Some(own) = standing.step(step) else { return };
+        let from = begin * self.params().run.days_per_week;
+        let judged = standing.goals(step).len();
+        let mut good = self.good_play(standing, step);
+        for (number, goal) in own.goals.iter().enumerate().skip(judged) {
+            let value = measure(&goal.measurement, self, from).ok().flatten();
+            let good = good.as_mut().filter(|_| goal.bound.is_relative());
+            let good = good.and_then(|play| measure(&goal.measurement, play, from).ok().flatten());
+            let bound = goal.bound.value(good);
+            let met = value.zip(bound).is_some_and(|(value, bound)| goal.bound.is_reached(value, bound));
+            let about = LessonNote::about(LessonEvent::Goal, step as u32 + 1);
+            let number = Some(number as u32 + 1);
+            let _ = self.note_lesson(LessonNote { number, value, bound, met: Some(met), ..about });
+        }
+    }
+
+    /// The good play on the seed of this run, up to the end of a step. `None` if no goal of the step depends on it, and if it
+    /// cannot be played.
+    fn good_play(&self, standing: &LessonStanding, step: usize) -> Option<Session> {
+        let goals = &standing.step(step)?.goals;
+        let mut relative = goals.iter().filter(|goal| goal.bound.is_relative()).peekable();
+        relative.peek()?;
+        let play = PartPlay {
+            lesson: &standing.lesson,
+            part: standing.part,
+            seed: Some(self.manifest().seed),
+            plays: &standing.lesson.plan.good.plays,
+            weeks: Some(standing.own_part().weeks_of(step).1),
+            // Its own goals would ask for the good play again.
+            is_judged: false,
+            asks_database: relative.any(|goal| goal.measurement.needs_database()),
+        };
+        let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "no rules"));
+        play_part(&play, self.company_answers.unwrap_or(refuses)).ok()
+    }
+}

@@ -1,0 +1,114 @@
+//! Reference plays: a part of a lesson played by its file, in memory.
+
+use std::sync::Arc;
+
+use crate::create::NewRun;
+use crate::create::lesson_entry::LessonEntry;
+use crate::play::{AnswersCompanies, Session};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::lesson::{Lesson, LessonCall, ScheduledCalls};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
+use novamind_tools::Refusal;
+
+/// A play of a part that is done by its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartPlay<'a> {
+    /// The lesson.
+    pub lesson: &'a Arc<Lesson>,
+    /// The part, counted from 0.
+    pub part: usize,
+    /// The seed; the student's if none is named.
+    pub seed: Option<u64>,
+    /// What is called, and when.
+    pub plays: &'a [ScheduledCalls],
+    /// It stops after so many weeks of the company; at the end of the part if none are named.
+    pub weeks: Option<u32>,
+    /// Whether goals and pitfalls are looked at.
+    pub is_judged: bool,
+    /// Whether it needs a database.
+    pub asks_database: bool,
+}
+
+/// Whether rules answer companies in some calls.
+pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
+    let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
+    plays.iter().any(|play| play.calls.iter().any(is_rules))
+}
+
+/// Plays a part in memory.
+///
+/// # Errors
+/// The part cannot begin, or a call is refused.
+pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies) -> Result<Session, RunError> {
+    play_part_watched(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
+}
+
+/// As [`play_part`]. `before_week` is called when everything is decided, before a week runs. `after_week` is called with the
+/// number of weeks that have passed.
+///
+/// # Errors
+/// The same, and those of `after_week`.
+pub fn play_part_watched(
+    play: &PartPlay<'_>,
+    answers: AnswersCompanies,
+    before_week: &mut dyn FnMut(&Session),
+    after_week: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
+) -> Result<Session, RunError> {
+    let part = &play.lesson.plan.parts[play.part];
+    let entry = LessonEntry { lesson: play.lesson.clone(), part: play.part, is_judged: play.is_judged };
+    let new = NewRun {
+        mode: Mode::Lesson,
+        seed: play.seed,
+        lesson: Some(entry),
+        // Rules ask the database which threads wait.
+        projection: play.asks_database || answers_companies(play.plays),
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::shipped())?;
+    session.company_answers = Some(answers);
+    let last = play.weeks.unwrap_or(part.weeks()).min(part.weeks());
+    for week in part.start_weeks..last {
+        if session.ended().is_some() {
+            break;
+        }
+        let made = play_week(&mut session, play, week, answers, before_week);
+        made.map_err(|refusal| {
+            let name = &play.lesson.name;
+            RunError::NotPossible(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
+        })?;
+        after_week(&mut session, week + 1)?;
+    }
+    Ok(session)
+}
+
+fn play_week(
+    session: &mut Session,
+    play: &PartPlay<'_>,
+    week: u32,
+    answers: AnswersCompanies,
+    before_week: &mut dyn FnMut(&Session),
+) -> Result<(), Refusal> {
+    let due = play.plays.iter().filter(|own| own.are_due(play.part, week));
+    for call in due.flat_map(|own| &own.calls) {
+        match call {
+            LessonCall::Tool(tool, args) => {
+                session.call(tool, args, Via::Script)?;
+            }
+            LessonCall::Rules(rules) => {
+                for (tool, args) in answers(rules, session)? {
+                    session.call(tool, &args, Via::Script)?;
+                }
+            }
+        }
+    }
+    before_week(session);
+    let awaits = |step: &usize| session.lesson().is_some_and(|own| own.awaits_guess(*step));
+    if let Some(step) = session.lesson_step().filter(awaits) {
+        let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
+        session.note_lesson(LessonNote { value: Some(1.0), ..about })?;
+    }
+    let forecasts = session.company().naive_forecasts();
+    session.advance("reference play", &forecasts, Via::Script, &mut |_| {}).map(|_| ())
+}

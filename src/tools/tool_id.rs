@@ -1,0 +1,74 @@
+//! The list of all tools by name: the identifiers here and the catalogue are built from it.
+
+use serde::{Deserialize, Serialize};
+use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
+
+/// Calls a macro with the types of all tools, in the order in which they are shown.
+macro_rules! each_tool {
+    ($macro:ident) => {
+        $macro! {
+            SetPrices,
+            SetModelTiers,
+            SetUsageQuotas,
+            SetPromotion,
+            SetDailySpend,
+            SetTargetedAdSpend,
+            SetAdsStrength,
+            SetLeadPromotion,
+            PostSocialMedia,
+            GetSocialPosts,
+            SetTargetedOpsSpend,
+            SetTargetedDevSpend,
+            StartResearchProject,
+            ListResearchProjects,
+            ResearchMarket,
+            ResearchGroup,
+            GetMarketOverview,
+            GetGroupInsights,
+            SetCapacityTier,
+            GetCostInfo,
+            SendEnterpriseDeal,
+            RejectEnterpriseDeal,
+            NextWeek,
+            PythonExec,
+            RegisterDailyCalculation,
+            RemoveDailyCalculation,
+            ListDailyCalculations,
+            ListAllTables,
+            DescribeTables,
+            GetToolDocumentation,
+            RegisterScript,
+            RunScript,
+            ListScripts,
+            DeleteScript,
+            Query,
+            GetVars,
+        }
+    };
+}
+pub(super) use each_tool;
+
+macro_rules! identifiers {
+    ($($tool:ident),* $(,)?) => {
+        /// A tool. Calls and records write it as its name: `set_prices`.
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
+            EnumString, IntoStaticStr,
+        )]
+        #[serde(rename_all = "snake_case")]
+        #[strum(serialize_all = "snake_case")]
+        #[allow(missing_docs)] // Each is described by its `Spec`.
+        pub enum ToolId {
+            $($tool),*
+        }
+    };
+}
+
+each_tool!(identifiers);
+
+impl ToolId {
+    /// Its name, as calls write it.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}

@@ -1,0 +1,128 @@
+//! Questions of pages that the session's thread answers in a few lines, or passes on to a thread of their own.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{Open, SessionThread};
+use crate::asking::{Question, Reply};
+use novamind_insight::{CurveExplorer, CurveLook, HiddenValues, Inspect, Kin, branches_of};
+use novamind_report::opponents::{Opponents, PlayOpponents};
+use novamind_session::identifiers::Group;
+use novamind_session::{Preview, Refusal};
+use novamind_tools::ToolId;
+
+/// What a call would do.
+#[derive(Debug, Clone)]
+pub struct CallCheck {
+    /// Tool.
+    pub tool: ToolId,
+    /// Arguments.
+    pub arguments: Value,
+}
+
+impl Question for CallCheck {
+    type Answer = Preview;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        if let Some(preview) = thread.with_run(|run| run.session.check(self.tool, &self.arguments)) {
+            reply.answer(preview);
+        }
+    }
+}
+
+/// The curve of a group, from what the player may know.
+#[derive(Debug, Clone)]
+pub struct CurveQuestion(pub Group);
+
+impl Question for CurveQuestion {
+    type Answer = CurveExplorer;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let found = thread.curve_of(self.0);
+        thread.notice_losses();
+        reply.answer(found);
+    }
+}
+
+/// Hidden true values of a day, for the screens that show them beside figures and estimates.
+#[derive(Debug, Clone)]
+pub struct HiddenValuesQuestion {
+    /// The day.
+    pub day: u32,
+}
+
+impl Question for HiddenValuesQuestion {
+    type Answer = Arc<HiddenValues>;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let session = thread.session_to_look_into(false);
+        let found = session.and_then(|session| session.inspect().hidden_values(Some(self.day)));
+        thread.notice_losses();
+        reply.answer(found.map(Arc::new));
+    }
+}
+
+/// The tree of branches of the run that is open. It is empty where other runs are not to be seen: in sessions of a
+/// study, and if the record is not among the runs that can be opened.
+#[derive(Debug, Clone)]
+pub struct RelatedRunsQuestion;
+
+impl Question for RelatedRunsQuestion {
+    type Answer = Vec<Kin>;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let Some(session) = thread.open.as_mut().map(Open::session) else { return };
+        let id = session.manifest().id.clone();
+        let is_among_runs = session.folder().and_then(Path::parent) == Some(thread.runs.as_path());
+        if thread.desk.is_some() || session.manifest().study.is_some() || !is_among_runs {
+            return reply.answer(Ok(Vec::new()));
+        }
+        let runs = thread.runs.clone();
+        reply.answer_on_thread(move |_| Ok(Some(branches_of(&runs, &id))));
+    }
+}
+
+/// How the strong policies, which this plays, end in the world of the run that is open.
+#[derive(Debug, Clone)]
+pub struct OpponentsQuestion(pub PlayOpponents);
+
+impl Question for OpponentsQuestion {
+    type Answer = Opponents;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let Some(open) = &mut thread.open else { return };
+        let missing = || Refusal::new("not_possible", "a run in memory has no record to play against");
+        let folder = open.session().folder().map(Path::to_owned).ok_or_else(missing);
+        let configuration = thread.configuration.clone();
+        reply.answer_on_thread(move |reply| {
+            (self.0)(&folder?, &configuration, &|| reply.go_on().is_continue())
+        });
+    }
+}
+
+impl SessionThread {
+    /// At the moment that is shown. A look at the truth is a line of the run, which is not the one of a replay.
+    fn curve_of(&mut self, group: Group) -> Result<CurveExplorer, Refusal> {
+        let none_open = || Refusal::new("not_possible", "no run is open");
+        let (is_allowed, day) = match self.open.as_ref().ok_or_else(none_open)? {
+            Open::Played(session) => (session.may_look_inside(), session.day()),
+            Open::Replayed(playback) => (playback.may_look_inside(), playback.session().day()),
+        };
+        let look = match is_allowed {
+            true => Some(CurveLook::begin(self.session_to_look_into(false)?, group, day)?),
+            false => None,
+        };
+        let session = self.open.as_mut().ok_or_else(none_open)?.session();
+        match look {
+            Some(look) => Ok(CurveExplorer::true_at(session, &look)),
+            None => CurveExplorer::estimated(session, group),
+        }
+    }
+}

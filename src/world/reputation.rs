@@ -1,0 +1,324 @@
+//! Reputation: what subscribers say, how it spreads, and what a departure costs (docs/mechanics/market/reputation.md).
+
+use std::ops::AddAssign;
+
+use serde::Serialize;
+
+use crate::canonical::canonical;
+use crate::fault::Fault;
+use crate::identifiers::{ByGroup, Group};
+use crate::params::{Params, Reputation};
+
+/// What some subscribers contribute to the reputation of their group today.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mood {
+    /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
+    pub sum: f64,
+    /// How many contributed.
+    pub count: u32,
+}
+
+impl AddAssign for Mood {
+    fn add_assign(&mut self, other: Mood) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+/// Reputation by group, 0.001..=1 after the first write.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReputationBook {
+    values: ByGroup<f64>,
+}
+
+canonical! { ReputationBook { values } }
+
+/// What moved a reputation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ReputationCause {
+    /// Individuals found nothing acceptable and left.
+    Departures,
+    /// A company was lost.
+    LostCompany,
+    /// What the group's own subscribers say: their contributions today.
+    Mood(Mood),
+    /// What subscribers of another group say.
+    SpillOver(SpillOver),
+}
+
+/// The share of a group's change that reaches another: change × weight × factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpillOver {
+    /// Where it comes from.
+    pub source: Group,
+    /// Change of the source by the mood of its own subscribers.
+    pub change: f64,
+    /// Weight of the source on the group.
+    pub weight: f64,
+    /// What all spill-over is multiplied by.
+    pub factor: f64,
+}
+
+/// Changes that one mechanism made to a reputation, one after the other, and what they came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReputationWrite<'a> {
+    /// Whose reputation it is.
+    pub group: Group,
+    /// Which mechanism it was.
+    pub cause: ReputationCause,
+    /// What was added, before limits.
+    pub changes: &'a [f64],
+    /// Reputation before the first of them.
+    pub before: f64,
+    /// Reputation after the last of them.
+    pub after: f64,
+}
+
+/// Who is told of each write.
+pub type OnWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
+
+impl ReputationBook {
+    /// Everybody starts with the same reputation; groups without a stored one read as it too.
+    pub fn opening(params: &Params) -> ReputationBook {
+        ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
+    }
+
+    /// Reputation of a group.
+    pub fn of(&self, group: Group) -> f64 {
+        self.values[group]
+    }
+
+    /// Sets a reputation as it is; for tests and given states.
+    pub fn set(&mut self, group: Group, value: f64) {
+        self.values[group] = value;
+    }
+
+    /// Adds a change, clamps to 0..=1 and then to the floor.
+    pub fn move_by(&mut self, group: Group, change: f64, params: &Params) {
+        let law = &params.reputation;
+        let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
+        let has_floor = !params.has_fault(Fault::ReputationWithoutFloor);
+        self.values[group] = if has_floor { moved.max(law.reputation_floor) } else { moved };
+    }
+
+    /// Adds changes, one after the other, and tells what they came to.
+    pub fn write(
+        &mut self,
+        (group, cause): (Group, ReputationCause),
+        changes: &[f64],
+        params: &Params,
+        told: &mut OnWrite<'_>,
+    ) {
+        let before = self.of(group);
+        changes.iter().for_each(|change| self.move_by(group, *change, params));
+        told(&ReputationWrite { group, cause, changes, before, after: self.of(group) });
+    }
+}
+
+/// What one subscriber contributes: 0.0005 S, twice as much when S is negative.
+#[inline]
+pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
+    let weight = if satisfaction < 0.0 { law.negative_satisfaction_multiplier } else { 1.0 };
+    law.base_rep_per_customer * weight * satisfaction
+}
+
+/// Change of a group's reputation that the contributions of today call for: (sum / m) log2(m), m = max(count, 2).
+pub fn called_change(mood: &Mood, law: &Reputation) -> f64 {
+    let size = f64::from(mood.count.max(law.min_group_size));
+    mood.sum / size * libm::log2(size)
+}
+
+/// The change that is made; nothing when it is too small.
+pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
+    let change = called_change(mood, law);
+    (change.abs() >= law.daily_delta_min_abs).then_some(change)
+}
+
+/// What the change of a group does to another one that is known.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spill {
+    /// The group that changed.
+    pub from: Group,
+    /// The one that hears of it.
+    pub to: Group,
+    /// Change of the group that it is made of.
+    pub source_change: f64,
+    /// Weight of the one for the other.
+    pub weight: f64,
+    /// What all spill-over is multiplied by.
+    pub factor: f64,
+    /// Change of the reputation, if it counts.
+    pub change: f64,
+    /// Whether there is a weight, and the change is large enough.
+    pub counts: bool,
+}
+
+/// What a change of a group does to another one.
+pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
+    let law = &params.reputation;
+    let weight = params.reputation_weight(from, to);
+    let (source_change, factor) = (change, law.cross_group_spillover_factor);
+    let change = change * weight * factor;
+    let change = if params.has_fault(Fault::SpillOverReversed) { -change } else { change };
+    let counts = weight > 0.0 && change.abs() > law.cross_delta_min_abs;
+    Spill { from, to, source_change, weight, factor, change, counts }
+}
+
+/// Scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
+pub fn event_scale(subscribers: u32, law: &Reputation) -> f64 {
+    let size = f64::from(subscribers.max(law.event_scale_min_group_size));
+    libm::log2(size) / size
+}
+
+/// Damage of an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
+pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, law: &Reputation) -> f64 {
+    let bad = satisfaction.min(0.0);
+    event_damage(subscribers, u, law) * (1.0 + law.cancel_negative_satisfaction_coef * bad * bad)
+}
+
+/// Damage of a lost company: the same without its satisfaction.
+pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
+    law.reputation_quality_cancel_damage
+        * (law.cancel_damage_noise_offset + u)
+        * event_scale(subscribers, law)
+}
+
+/// Moves reputations by the moods of today; each change spreads to the other known groups by their weights.
+pub fn contribute(
+    book: &mut ReputationBook,
+    moods: &ByGroup<Mood>,
+    is_known: impl Fn(Group) -> bool,
+    params: &Params,
+    told: &mut OnWrite<'_>,
+) {
+    let law = &params.reputation;
+    for group in Group::all().filter(|group| moods[*group].count > 0) {
+        let Some(change) = daily_change(&moods[group], law) else { continue };
+        book.write((group, ReputationCause::Mood(moods[group])), &[change], params, told);
+        if !is_known(group) {
+            continue;
+        }
+        for other in Group::all().filter(|other| *other != group && is_known(*other)) {
+            let spill = spill(change, group, other, params);
+            if spill.counts {
+                let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
+                let cause = ReputationCause::SpillOver(SpillOver { source: group, change, weight, factor });
+                book.write((other, cause), &[spill.change], params, told);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(id: &str) -> Group {
+        Group::parse(id).expect("a group")
+    }
+
+    /// Reputations after a day with these moods: (group, subscribers, satisfaction).
+    fn after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
+        let params = Params::shipped();
+        let mut book = ReputationBook::opening(&params);
+        let mut by_group = ByGroup::<Mood>::default();
+        for &(id, count, satisfaction) in moods {
+            book.set(group(id), start);
+            let mood = &mut by_group[group(id)];
+            mood.count += count;
+            for _ in 0..count {
+                mood.sum += contribution(satisfaction, &params.reputation);
+            }
+        }
+        let known = |group: Group| group.initially_known() || discovered.contains(&group.id());
+        contribute(&mut book, &by_group, known, &params, &mut |_| {});
+        book
+    }
+
+    fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
+        for &(id, value) in expected {
+            let own = book.of(group(id));
+            assert!((own / value - 1.0).abs() < 1e-9, "{id}: {own} instead of {value}");
+        }
+    }
+
+    #[test]
+    fn moods_move_a_group_and_spread_where_they_are_large() {
+        assert_book(
+            &after(&[("S1", 1000, 0.3)], 0.5, &[]),
+            &[("S1", 0.501494867643), ("S3", 0.5), ("E1", 0.5)],
+        );
+        let unhappy = after(&[("S1", 1000, -0.3)], 0.5, &[]);
+        assert_book(&unhappy, &[("S1", 0.497010264715), ("S3", 0.499865461912), ("S2", 0.5), ("E1", 0.5)]);
+        let small = after(&[("S1", 1, 0.5), ("S2", 100, 0.001)], 0.5, &[]);
+        assert_book(&small, &[("S1", 0.500125), ("S2", 0.5)]);
+        assert_book(&after(&[("S1", 600, 0.2), ("S1", 400, -0.1)], 0.5, &[]), &[("S1", 0.500199315686)]);
+        let crowd = after(&[("S1", 50_000, -1.2)], 0.5, &[]);
+        assert_book(&crowd, &[("S1", 0.481268431431), ("S2", 0.499719026471), ("S3", 0.499157079414)]);
+    }
+
+    #[test]
+    fn changes_spread_to_known_groups_only() {
+        let book = after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
+        let expected = [
+            ("S3", 0.495613686286),
+            ("S1", 0.499473642354),
+            ("S2", 0.499684185413),
+            ("E1", 0.49953943706),
+            ("E2", 0.49953943706),
+            ("E3", 0.499631549648),
+            ("D_S05", 0.499526278119),
+            ("D_S07", 0.499605231766),
+            ("D_S06", 0.5),
+        ];
+        assert_book(&book, &expected);
+    }
+
+    #[test]
+    fn reputation_is_clamped_and_floored() {
+        assert_book(&after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
+        assert_book(&after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
+    }
+
+    #[test]
+    fn a_departure_hurts_a_small_group_more() {
+        let params = Params::shipped();
+        let law = &params.reputation;
+        for (count, scale) in [
+            (0, 0.5),
+            (1, 0.5),
+            (2, 0.5),
+            (10, 0.332192809489),
+            (100, 0.066438561898),
+            (1000, 0.009965784285),
+            (5000, 0.00245754248),
+            (100_000, 0.000166096405),
+        ] {
+            assert!((event_scale(count, law) - scale).abs() < 1e-11, "{count}");
+        }
+        for (satisfaction, count, u, damage) in [
+            (-0.3, 1000, 0.5, 1.046407350e-5),
+            (0.2, 1000, 0.5, 3.737169107e-6),
+            (-1.0, 50, 0.0, 4.444536749e-4),
+        ] {
+            assert!((cancel_damage(satisfaction, count, u, law) / damage - 1.0).abs() < 1e-9);
+        }
+        let mut book = ReputationBook::opening(&params);
+        book.move_by(group("S1"), -cancel_damage(-0.3, 10, 0.25, law), &params);
+        assert_book(&book, &[("S1", 0.499738398)]);
+    }
+
+    #[test]
+    fn a_lost_company_hurts_without_its_mood() {
+        let law = Params::shipped().reputation;
+        for (count, low, middle) in [
+            (1, 9.375e-5, 1.875e-4),
+            (2, 9.375e-5, 1.875e-4),
+            (10, 6.228615178e-5, 1.245723036e-4),
+            (100, 1.245723036e-5, 2.491446071e-5),
+        ] {
+            assert!((event_damage(count, 0.0, &law) / low - 1.0).abs() < 1e-9);
+            assert!((event_damage(count, 0.5, &law) / middle - 1.0).abs() < 1e-9);
+        }
+    }
+}

@@ -19,7 +19,9 @@
 //! # A week in ten lines
 //!
 //! ```
-//! use novamind::session::{Configuration, NewRun, Session, Via};
+//! use novamind::record::folder::configuration::Configuration;
+//! use novamind::record::trajectory::record::Via;
+//! use novamind::session::{NewRun, Session};
 //! use serde_json::json;
 //!
 //! let mut run = Session::create(NewRun { seed: Some(7), ..NewRun::default() }, &Configuration::shipped())?;
@@ -51,6 +53,8 @@ pub use novamind_insight as insight;
 pub use novamind_lab as lab;
 #[doc(inline)]
 pub use novamind_plain as plain;
+#[doc(inline)]
+pub use novamind_record as record;
 #[doc(inline)]
 pub use novamind_report as report;
 #[doc(inline)]

@@ -8,10 +8,12 @@ use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
 use novamind::database::query::Limits;
+use novamind::database::{Cell, QueryConnection, QueryError, Rows};
 use novamind::insight::Inspect;
-use novamind::session::{
-    Cell, Configuration, Mode, NewRun, QueryConnection, QueryError, Rows, Session, Storage, Via,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
 /// No clock decides here: what is endless ends by its number of steps.

@@ -14,11 +14,12 @@ use super::runs::{as_csv, tidy_up_on_signals};
 use super::{Context, Failure, print};
 use crate::console::effect::Effect;
 use crate::lab::answers_to_companies;
+use crate::record::files::write_whole;
+use crate::record::folder::runs::find_run_to_read;
 use crate::report::class::{
     ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
 };
 use crate::report::count;
-use crate::session::{find_run_to_read, write_whole};
 use crate::worker::request::Request;
 use novamind_course::{Class, ClassCollection, ClassSources, CollectedClass, ToHandOut};
 

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use crate::lab;
-use crate::session::{Refusal, RunError};
+use crate::record::error::RunError;
+use crate::tools::Refusal;
 
 /// Why a command did not do what it was asked.
 #[derive(Debug)]

@@ -10,10 +10,12 @@ use super::{Context, Failure, print};
 use crate::course::{Lesson, MEASURED_SEEDS, PlayedPart};
 use crate::lab::{LessonCheck, PlayResult, check_lesson};
 use crate::notation::compact;
+use crate::record::folder::configuration::Configuration;
+use crate::record::folder::runs::find_run_to_read;
 use crate::report::debrief::in_words;
 use crate::report::{debrief_as_html, debrief_as_markdown};
 use crate::rules::answers_to_companies;
-use crate::session::{Configuration, Session, find_run_to_read};
+use crate::session::Session;
 
 /// Options of `lesson`.
 #[derive(Debug, Args)]

@@ -35,10 +35,13 @@ use clap::{Parser, Subcommand};
 
 pub use failure::Failure;
 
-use crate::session::{
-    Configuration, LabKey, Manifest, ModelSettings, RunError, SealKey, Trajectory, manifest_of,
-    participant_folder, record_look,
-};
+use crate::record::error::RunError;
+use crate::record::folder::configuration::Configuration;
+use crate::record::folder::derived::manifest_of;
+use crate::record::folder::manifest::Manifest;
+use crate::record::folder::runs::participant_folder;
+use crate::record::trajectory::Trajectory;
+use crate::session::{LabKey, ModelSettings, SealKey, record_look};
 use novamind_study::{STUDY_FILE, Study, lab_key_of, record_refused_code, seal_key_of};
 
 /// Run a simulated AI subscription company for 500 days.

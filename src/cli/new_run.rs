@@ -4,9 +4,10 @@ use clap::Args;
 
 use super::run::parse_override;
 use super::{Context, Failure};
+use crate::record::consent::ConsentGiven;
+use crate::record::mode::Mode;
 #[cfg(feature = "server")]
-use crate::session::baseline_terms;
-use crate::session::{ConsentGiven, Fault, Mode, NewRun, Storage};
+use crate::session::{Fault, NewRun, Storage, baseline_terms};
 
 /// What a new run is made of.
 #[derive(Debug, Args, Clone, Default, PartialEq)]

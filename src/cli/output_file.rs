@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use super::Failure;
-use crate::session::folder_of;
+use crate::record::files::folder_of;
 
 /// Bytes by which a drawing, rows, a page, a record and a file of configuration are told apart.
 const BEGINNING: u64 = 8;

@@ -13,10 +13,14 @@ use crate::console::effect::Effect;
 use crate::console::keys::Keys;
 use crate::console::themes;
 use crate::lab::play_opponents;
-use crate::session::{
-    Access, Configuration, ConsentGiven, ConsentMeans, Goal, LessonEntry, Library, Mode, NewRun, RunError,
-    Session, find_run, steady,
-};
+use crate::record::clock::steady;
+use crate::record::consent::{ConsentGiven, ConsentMeans};
+use crate::record::error::RunError;
+use crate::record::folder::configuration::Configuration;
+use crate::record::folder::library::Library;
+use crate::record::folder::runs::find_run;
+use crate::record::mode::Mode;
+use crate::session::{Access, Goal, LessonEntry, NewRun, Session};
 use crate::tui::glyphs::Glyphs;
 use crate::tui::theme::Theme;
 use crate::worker::preferences::Preferences;

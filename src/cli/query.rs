@@ -6,13 +6,18 @@ use clap::{Args, ValueEnum};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
+use crate::database::{Cell, Rows};
 use crate::insight::Inspect;
 use crate::notation::{csv_cell, printable};
-use crate::session::record::Outcome;
+use crate::record::error::RunError;
+use crate::record::folder::derived::manifest_of;
+use crate::record::folder::library::Library;
+use crate::record::folder::runs::find_run_to_read;
+use crate::record::trajectory::record::Outcome;
+use crate::record::trajectory::{Line, Record, Trajectory};
 use crate::session::{
-    Access, Cell, Library, Line, Record, Rows, RunError, SealKey, Session, Trajectory, connection_to_file,
-    find_run_to_read, manifest_of, may_look_inside, query_refusal, rebuild_database, rows_as_json,
-    with_the_way_to_hidden_tables,
+    Access, SealKey, Session, connection_to_file, may_look_inside, query_refusal, rebuild_database,
+    rows_as_json, with_the_way_to_hidden_tables,
 };
 
 /// Options of `query`.

@@ -11,9 +11,9 @@ use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
 use crate::insight::open_to_look_inside;
-use crate::session::{Goal, find_run_to_read, record_look, verify_sealed};
-use crate::worker::request::Recorded;
-use crate::worker::request::Request;
+use crate::record::folder::runs::find_run_to_read;
+use crate::session::{Goal, record_look, verify_sealed};
+use crate::worker::request::{Recorded, Request};
 
 /// Options of `replay`.
 #[derive(Debug, Args)]

@@ -6,10 +6,12 @@ use clap::{Args, ValueEnum};
 
 use super::output_file::write_text;
 use super::{Context, Failure, print};
+use crate::record::folder::runs::find_run_to_read;
+use crate::record::trajectory::Trajectory;
 use crate::report::{
     Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
 };
-use crate::session::{Session, Trajectory, find_run_to_read, lines_afterwards};
+use crate::session::{Session, lines_afterwards};
 
 /// Options of `report`.
 #[derive(Debug, Args)]
@@ -114,7 +116,9 @@ pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Configuration, NewRun, Storage, Via};
+    use crate::record::folder::configuration::Configuration;
+    use crate::record::trajectory::record::Via;
+    use crate::session::{NewRun, Storage};
 
     #[test]
     fn a_run_on_the_disk_is_told_in_both_formats() {

@@ -250,7 +250,7 @@ pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Refusal;
+    use crate::tools::Refusal;
 
     #[test]
     fn a_seed_without_a_result_is_an_error() {

@@ -6,7 +6,9 @@ use clap::Args;
 
 use super::new_run::NewRunOptions;
 use super::{Context, Failure};
-use crate::session::{RunError, Session, find_run};
+use crate::record::error::RunError;
+use crate::record::folder::runs::find_run;
+use crate::session::Session;
 
 /// The run that a program plays: one that is there, or a new one.
 #[derive(Debug, Args, Clone)]

@@ -7,8 +7,9 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
+use novamind_record::clock::steady;
+use novamind_record::consent::{ConsentGiven, ConsentMeans};
 use novamind_report::prose::{Face, laid_out};
-use novamind_session::{ConsentGiven, ConsentMeans, steady};
 use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Scroll;

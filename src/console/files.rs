@@ -5,7 +5,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
-use novamind_session::{Configuration, Library, Refusal, library};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::library;
+use novamind_record::folder::library::Library;
+use novamind_tools::Refusal;
 use novamind_worker::answer_on_thread;
 use novamind_worker::message::{Message, News};
 

@@ -13,7 +13,7 @@ use super::app::{App, Order, Settings};
 use super::effect::Effect;
 use super::files;
 use super::frame;
-use novamind_session::record::LeavingCause;
+use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Access, Goal, PlaybackPosition};
 use novamind_study::Study;
 use novamind_tui::chord::Chord;

@@ -38,7 +38,9 @@ impl Keys {
     ///
     /// # Errors
     /// What is wrong with the file, with its name.
-    pub fn of_user(configuration: &novamind_session::Configuration) -> Result<Keys, String> {
+    pub fn of_user(
+        configuration: &novamind_record::folder::configuration::Configuration,
+    ) -> Result<Keys, String> {
         let mut keys = Keys::shipped();
         if let Some(source) = configuration.file("keys.toml").map_err(|error| error.to_string())? {
             keys.patch(&source.text).map_err(|problem| format!("{}: {problem}", source.name))?;

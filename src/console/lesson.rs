@@ -7,7 +7,7 @@ use super::action::Action;
 use super::context::{Look, ScreenId};
 use novamind_course::{GoalPage, LessonPage, LessonQuestion};
 use novamind_report::lesson::{goal_at, guess_and_outcome};
-use novamind_session::ToolId;
+use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -129,7 +129,8 @@ impl Measured {
 mod tests {
     use super::*;
     use crate::keys::Keys;
-    use novamind_session::{Configuration, NewRun, Session, Storage};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_session::{NewRun, Session, Storage};
     use novamind_tui::glyphs::Glyphs;
     use novamind_tui::theme::Theme;
 
@@ -156,7 +157,7 @@ mod tests {
         drop(session);
         keys_during_weeks(settings(runs.path()), "latest", 2).expect("two weeks");
         let session = Session::open(
-            &novamind_session::find_run(runs.path(), "latest").expect("the run"),
+            &novamind_record::folder::runs::find_run(runs.path(), "latest").expect("the run"),
             novamind_session::Access::Write,
             false,
         );

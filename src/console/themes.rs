@@ -1,6 +1,6 @@
 //! Themes of the user and bundled themes.
 
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 use novamind_tui::theme::Theme;
 
 /// Returns a theme by name. A file of the user takes precedence over a bundled theme.

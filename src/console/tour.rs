@@ -232,10 +232,12 @@ mod tests {
 
     use super::*;
     use crate::test_kit::{company, painted, played};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
     use novamind_report::fit::Beside;
     use novamind_report::needs::Place;
+    use novamind_session::Session;
     use novamind_session::identifiers::Group;
-    use novamind_session::{Configuration, Session, Via};
     use novamind_worker::company::Company;
 
     fn facts(company: &Company) -> TourFacts<'_> {

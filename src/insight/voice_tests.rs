@@ -9,11 +9,11 @@ use crate::counterfactual::branch::counterfactual_with_hashes;
 use crate::counterfactual::edits::Edits;
 use crate::counterfactual::kept_state::KeptState;
 use crate::counterfactual::script::{Move, moves};
-use novamind_session::record::{Record, VoiceAnswer};
-use novamind_session::{
-    Configuration, Manner, Mode, NewRun, Origin, Session, Storage, Stub, Trajectory, Via, read_recorded,
-    verify,
-};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::Trajectory;
+use novamind_record::trajectory::record::{Record, Via, VoiceAnswer};
+use novamind_session::{Manner, NewRun, Origin, Session, Storage, Stub, read_recorded, verify};
 
 /// Three weeks of a company that has customers, with a post before the second.
 fn played(runs: &Path, configuration: &Configuration) -> Session {

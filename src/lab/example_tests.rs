@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::policy::{Policy, PriceBook};
-use novamind_session::{Configuration, best_starting_channel};
+use novamind_record::folder::configuration::Configuration;
+use novamind_session::best_starting_channel;
 use novamind_tools::CATALOGUE;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;

@@ -3,7 +3,9 @@
 
 use super::policy::Policy;
 use super::runner::{RunError, RunSpec, weeks_of};
-use novamind_session::{Bands, Configuration, Coverage, Hindcast, Stage, WeekFigures, hindcasts};
+use novamind_record::figures::WeekFigures;
+use novamind_record::folder::configuration::Configuration;
+use novamind_session::{Bands, Coverage, Hindcast, Stage, hindcasts};
 use novamind_world::params::Params;
 
 /// Days ahead that forecasts are asked for.

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use novamind_course::{Lesson, MEASURED_SEEDS, MeasuredFigure, ReferencePlay, measure_over_part};
+use novamind_record::error::RunError;
 use novamind_rules::answers_to_companies;
-use novamind_session::{PartPlay, RunError, Session, play_part, play_part_watched};
+use novamind_session::{PartPlay, Session, play_part, play_part_watched};
 
 /// How far a measured figure may be from the one that a lesson states, as a share of it.
 pub const TOLERANCE: f64 = 0.15;

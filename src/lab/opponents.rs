@@ -9,8 +9,11 @@ use super::runner::{advance, decide};
 use super::strong::STRONG;
 use super::{RunError, RunSpec};
 use novamind_insight::SameWorld;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Ended;
 use novamind_report::opponents::{Opponent, Opponents};
-use novamind_session::{Configuration, Ended, Refusal, Session};
+use novamind_session::Session;
+use novamind_tools::Refusal;
 
 /// Plays the strong policies and the baseline in the world of the run in a folder, with its luck; demand surges, days and cash
 /// are those of the run. None if it was not to go on.

@@ -11,11 +11,14 @@ use super::metrics::Collector;
 use super::policy::Policy;
 use super::routine;
 use super::symbols::Symbols;
-use novamind_session::{
-    Configuration, DayReport, Ended, Mode, NewRun, Refusal, RunError as SessionError, Session, Storage, Via,
-    WeekFigures, policy_rationale,
-};
-use novamind_tools::{Answer, ToolId};
+use novamind_record::error::RunError as SessionError;
+use novamind_record::figures::WeekFigures;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::policy_rationale;
+use novamind_record::trajectory::record::{Ended, Via};
+use novamind_session::{DayReport, NewRun, Session, Storage};
+use novamind_tools::{Answer, Refusal, ToolId};
 
 /// What to run.
 #[derive(Debug, Clone)]

@@ -9,7 +9,7 @@ mod tests {
 
     use super::STRONG;
     use crate::{Collector, Policy, RunEnd, RunSpec, play};
-    use novamind_session::Configuration;
+    use novamind_record::folder::configuration::Configuration;
 
     /// Seeds that no strong policy was tuned on; the second has a surge while companies sign.
     const SEEDS: [u64; 2] = [113, 114];

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use novamind_base::notation::plain_numbers;
 use novamind_database::text::aligned;
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 /// The answer to a line.
 #[derive(Debug, Clone, PartialEq)]
@@ -197,7 +197,7 @@ fn without_long_words(text: &str) -> String {
 mod tests {
     use super::*;
     use novamind_database::text::table;
-    use novamind_session::{Cell, Rows};
+    use novamind_database::{Cell, Rows};
     use novamind_tools::DealResult;
 
     #[test]

@@ -36,9 +36,10 @@ use super::signals::{Phase, Watch};
 use novamind_base::nearest;
 use novamind_database::text::table;
 use novamind_insight::{Causes, LastRead, WhatIf};
+use novamind_record::folder::library::Library;
+use novamind_record::trajectory::record::{Activity, Help, QuerySource, Select, Via};
 use novamind_report::research::late_in_words;
-use novamind_session::record::{Help, Select};
-use novamind_session::{Activity, Change, Library, QuerySource, RunDatabase, Session, Via, rows_as_json};
+use novamind_session::{Change, RunDatabase, Session, rows_as_json};
 use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, Kind, Module, ToolId};
 

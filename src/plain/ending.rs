@@ -1,6 +1,6 @@
 //! How a dialogue ends: its name in answers, its cause in the record, its exit code.
 
-use novamind_session::record::LeavingCause;
+use novamind_record::trajectory::record::LeavingCause;
 
 /// Number of the signal that a terminal sends when it is closed.
 const HANGUP: i32 = 1;

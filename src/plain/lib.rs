@@ -29,8 +29,9 @@ use ending::End;
 use input::Read;
 use lines::Lines;
 use novamind_base::notation::printable;
-use novamind_session::record::LeavingCause;
-use novamind_session::{Interface, Library, Session};
+use novamind_record::folder::library::Library;
+use novamind_record::trajectory::record::LeavingCause;
+use novamind_session::{Interface, Session};
 use novamind_study::Study;
 
 /// How answers look and when the dialogue ends.

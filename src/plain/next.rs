@@ -11,10 +11,12 @@ use super::lines::Lines;
 use super::prompt;
 use novamind_base::notation::{dollars, grouped, signed_dollars};
 use novamind_course::{LessonAccess, LessonStanding};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_report::research::late_lines;
 use novamind_report::review::alike_lines;
-use novamind_session::{Mode, Refusal, Session, TIME_LIMIT, Via, Week};
-use novamind_tools::{FORECAST_KEYS, Forecast};
+use novamind_session::{Session, TIME_LIMIT, Week};
+use novamind_tools::{FORECAST_KEYS, Forecast, Refusal};
 
 /// What is filed before a week.
 #[derive(Debug, Clone, PartialEq)]
@@ -298,7 +300,8 @@ mod tests {
 
     use super::*;
     use novamind_course::{Lesson, guess_in_lesson};
-    use novamind_session::{Configuration, LessonEntry, NewRun};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_session::{LessonEntry, NewRun};
 
     /// The lesson of two weeks, in memory; its access may be another.
     fn in_lesson(access: &str) -> Session {

@@ -8,8 +8,9 @@ use super::answers::Answer;
 use super::commands::Interpreter;
 use super::grammar::Line;
 use super::next::{self, Filing};
-use novamind_session::record::{Limit, LimitEvent};
-use novamind_session::{Refusal, TIME_LIMIT};
+use novamind_record::trajectory::record::{Limit, LimitEvent};
+use novamind_session::TIME_LIMIT;
+use novamind_tools::Refusal;
 
 /// What can be done while the clock stands.
 const WHILE_STOPPED: [&str; 4] = ["resume", "help", "quit", "exit"];

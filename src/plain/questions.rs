@@ -9,7 +9,8 @@ use super::input::Read;
 use super::lines::Lines;
 use super::{Style, withdraws};
 use novamind_base::notation::printable;
-use novamind_session::{Session, steady};
+use novamind_record::clock::steady;
+use novamind_session::Session;
 use novamind_study::{DueQuestion, Form, Study};
 
 /// Asks everything that is due; how the dialogue ends, if it ends before all of it is answered.

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use novamind_session::Interrupt;
+use novamind_database::Interrupt;
 
 /// What the dialogue is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

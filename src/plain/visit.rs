@@ -9,10 +9,13 @@ use super::input::Read;
 use super::lines::Lines;
 use super::{End, Style, dialogue, prompt, withdraws};
 use novamind_base::notation::printable;
+use novamind_record::clock::steady;
+use novamind_record::consent::{Agreed, ConsentGiven, ConsentMeans};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::library::Library;
 use novamind_report::prose::as_plain;
-use novamind_session::{
-    Agreed, Configuration, ConsentGiven, ConsentMeans, Library, RunError, Session, steady,
-};
+use novamind_session::Session;
 use novamind_study::{DECLINED, NextStep, Study, Visit};
 
 /// What ends a visit early.

@@ -95,7 +95,7 @@ impl Anonymiser {
         let (run, participant, created, last) = (run?, participant?, created?, last?);
         let mut links = Vec::new();
         for row in runs.iter().skip(1).filter(|row| !row[created].is_empty()) {
-            self.began.insert(row[run].clone(), novamind_session::nanoseconds_of(&row[created]));
+            self.began.insert(row[run].clone(), novamind_record::clock::nanoseconds(&row[created]));
             links.push(Link {
                 participant: row[participant].clone(),
                 new_participant: self.label(&row[participant]),
@@ -153,7 +153,7 @@ impl Anonymiser {
     fn note_visits(&mut self, rows: &[Vec<String>]) -> Result<(), String> {
         let (label, at) = (place(rows, "participant")?, place(rows, "at")?);
         for row in rows.iter().skip(1).filter(|row| !row[label].is_empty()) {
-            let moment = novamind_session::nanoseconds_of(&row[at]);
+            let moment = novamind_record::clock::nanoseconds(&row[at]);
             self.came.entry(row[label].clone()).and_modify(|own| *own = moment.min(*own)).or_insert(moment);
         }
         Ok(())
@@ -271,7 +271,7 @@ fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
 /// Seconds from a moment in nanoseconds since 1970 to another; empty where there is none to count from.
 fn since(began: Option<&i64>, at: &str) -> String {
     began.map_or(String::new(), |began| {
-        let passed = novamind_session::nanoseconds_of(at) - began;
+        let passed = novamind_record::clock::nanoseconds(at) - began;
         format!("{}", (passed as f64 / 1e6).round() / 1e3 + 0.0)
     })
 }

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use novamind_database::{Cell, Rows, number_at, text_at};
+use novamind_record::figures::Booked;
+use novamind_session::Session;
 use novamind_session::identifiers::Group;
-use novamind_session::{Booked, Cell, Rows, Session, number_at, text_at};
 
 /// Who came and left by week and group. A deal that was left early ends in the future: it counts from the last day.
 const FLOWS: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)

@@ -3,7 +3,9 @@
 use serde_json::Value;
 
 use super::words::number;
-use novamind_session::{Change, Decisions, JournalEntry, ToolId, WeekFigures, week_of};
+use novamind_record::figures::WeekFigures;
+use novamind_session::{Change, Decisions, JournalEntry, week_of};
+use novamind_tools::ToolId;
 
 /// Weeks that began with the same decision: the first of them decided, the others let it stand.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::Logbook;
 use super::tables::StudyTables;
+use novamind_record::error::RunError;
 use novamind_session::archive::Workshop;
-use novamind_session::{Export, LabKey, LabPublicKey, RunError, Seal, SealKey};
+use novamind_session::{Export, LabKey, LabPublicKey, Seal, SealKey};
 use novamind_study::{
     CollectNote, FoundRun, FoundVisit, Gathered, Study, VisitSummary, gather, missing_places,
 };

@@ -3,7 +3,10 @@
 use super::logbook::Logbook;
 use super::ranking::published;
 use super::words::{dollar_tick, whole};
-use novamind_session::{DEFAULT_SCENARIO, Mode, Observation, RunSummary};
+use novamind_record::folder::configuration::DEFAULT_SCENARIO;
+use novamind_record::folder::runs::RunSummary;
+use novamind_record::mode::Mode;
+use novamind_session::Observation;
 
 /// Last day of the published runs.
 pub const PUBLISHED_DAYS: u32 = 500;
@@ -206,7 +209,8 @@ pub fn not_ranked_in_words(runs: &[Vec<Obstacle>]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::{Configuration, NewRun, Session};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_session::{NewRun, Session};
 
     const COMPARABLE: RunTerms<'static> = RunTerms {
         days: 500,

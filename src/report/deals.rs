@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use super::words::count;
 use novamind_base::notation::cents;
-use novamind_session::{CompanyNames, ToolId};
+use novamind_session::CompanyNames;
+use novamind_tools::ToolId;
 
 /// Deals of a call that are told one by one.
 const TOLD: usize = 3;

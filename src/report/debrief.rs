@@ -12,7 +12,10 @@ use novamind_course::{
     JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, SettingContrast,
 };
 use novamind_glossary::{Term, terms};
-use novamind_session::{CompanyNames, Ended, FigureUnit, ToolId, WeekFigure};
+use novamind_record::figures::{FigureUnit, WeekFigure};
+use novamind_record::trajectory::record::Ended;
+use novamind_session::CompanyNames;
+use novamind_tools::ToolId;
 
 /// Most settings of a tool that are named one by one.
 const MOST_SETTINGS: usize = 6;

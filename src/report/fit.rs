@@ -386,7 +386,8 @@ mod tests {
     use super::*;
     use crate::lead_costs::{SPELL, pair_costs};
     use crate::test_kit::played;
-    use novamind_session::{Via, number_at};
+    use novamind_database::number_at;
+    use novamind_record::trajectory::record::Via;
 
     fn number(session: &mut Session, sql: &str) -> f64 {
         number_at(&session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0], 0)

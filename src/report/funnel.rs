@@ -108,7 +108,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use novamind_session::{Configuration, NewRun, Storage, Via};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
+    use novamind_session::{NewRun, Storage};
 
     #[test]
     fn companies_are_counted_as_the_tables_have_them() {
@@ -144,7 +146,7 @@ mod tests {
         let all = funnels(&session);
         assert_eq!(all.iter().map(|own| own.group.id()).collect::<Vec<_>>(), ["E1", "E2", "E3"]);
         let mut number =
-            |sql: String| novamind_session::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
+            |sql: String| novamind_database::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
         for own in &all {
             let group = own.group;
             let of = |table: &str, condition: &str| {

@@ -2,7 +2,8 @@
 
 use super::words::{count, money, whole};
 use novamind_base::notation::signed_dollars;
-use novamind_session::{Ended, WeekFigures};
+use novamind_record::figures::WeekFigures;
+use novamind_record::trajectory::record::Ended;
 
 /// A day worth remembering.
 #[derive(Debug, Clone, PartialEq, Eq)]

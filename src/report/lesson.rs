@@ -3,7 +3,7 @@
 use super::words::money;
 use novamind_base::notation::{cents, compact, parse_number, percent, short_dollars};
 use novamind_course::{GoalPage, LessonPage, LessonQuestion};
-use novamind_session::{LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 
 /// The word of an event, as lines write it.
 pub fn word(event: LessonEvent) -> &'static str {

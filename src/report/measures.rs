@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::books::ChannelRow;
+use novamind_record::trajectory::record::Ended;
 use novamind_session::identifiers::{Channel, Group};
 use novamind_session::{
-    Decisions, Ended, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
+    Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
 };
 
 /// Words that show somebody weighing what may come.

@@ -5,7 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use novamind_base::notation::dollars;
-use novamind_session::{Configuration, Refusal};
+use novamind_record::folder::configuration::Configuration;
+use novamind_tools::Refusal;
 
 /// What became of a policy in the world of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,7 +8,8 @@ use super::ranking::{Whose, published_targeted_shares};
 use super::story::{Ruin, Story};
 use super::words::{cash_change_in_words, count, money, origin_in_words, whole};
 use novamind_base::notation::{capital, grouped, percent, signed_dollars};
-use novamind_session::{Ended, ModelStamp};
+use novamind_record::trajectory::record::Ended;
+use novamind_session::ModelStamp;
 
 /// The page that tells a story.
 pub fn page_of(story: &Story) -> Page {

@@ -3,7 +3,7 @@
 
 use super::words::whole;
 use novamind_base::notation::percent;
-use novamind_session::WeekFigures;
+use novamind_record::figures::WeekFigures;
 
 /// The busiest days of the last two weeks, and the next at the same growth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ pub fn peak_beside_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String 
 mod tests {
     use super::*;
     use crate::test_kit::played;
-    use novamind_session::number_at;
+    use novamind_database::number_at;
 
     #[test]
     fn the_projection_follows_from_the_days_in_the_tables() {

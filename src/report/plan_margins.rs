@@ -10,8 +10,10 @@ pub use sentences::margin_sentences;
 
 use super::words::money;
 use novamind_base::notation::{cents, compact, percent};
+use novamind_database::{Cell, Rows, number_at, text_at};
 use novamind_session::identifiers::{ByPlan, Group, Plan};
-use novamind_session::{Cell, Refusal, Rows, Session, ToolId, number_at, query_refusal, text_at};
+use novamind_session::{Session, query_refusal};
+use novamind_tools::{Refusal, ToolId};
 
 /// Active subscriptions by group and plan.
 const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");

@@ -28,7 +28,7 @@ pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> 
 mod tests {
     use super::*;
     use crate::test_kit::played;
-    use novamind_session::number_at;
+    use novamind_database::number_at;
 
     #[test]
     fn leads_are_counted_on_both_sides_of_the_day() {

@@ -3,10 +3,10 @@
 
 use crate::tables::headings;
 use novamind_base::notation::{dollars, grouped};
-use novamind_session::{
-    AtLimit, BREAK_SECONDS, Configuration, DraftsKept, FAST_WEEK_SECONDS, FreeText, IDLE_AFTER, ResultsShown,
-    RunError, TimeLimits,
-};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, TimeLimits};
+use novamind_session::{BREAK_SECONDS, FAST_WEEK_SECONDS, IDLE_AFTER};
 use novamind_study::{
     ASSIGNMENT_FILE, Assignment, AuditKind, Form, Moment, PracticeOffer, Questionnaire, SeedPlan, Study,
     lab_public_key_of,

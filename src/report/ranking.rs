@@ -168,7 +168,9 @@ pub fn published_terms() -> String {
 mod tests {
     use super::*;
     use crate::test_kit;
-    use novamind_session::{Configuration, Mode, NewRun, Session};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::mode::Mode;
+    use novamind_session::{NewRun, Session};
 
     #[test]
     fn a_score_stands_among_the_published_ones() {

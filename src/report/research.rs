@@ -90,7 +90,10 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use novamind_session::{Configuration, Mode, NewRun, Session, Storage, Via};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::mode::Mode;
+    use novamind_record::trajectory::record::Via;
+    use novamind_session::{NewRun, Session, Storage};
 
     fn run(days: u32, mode: Mode) -> Session {
         let new = NewRun {

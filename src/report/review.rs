@@ -79,7 +79,9 @@ mod tests {
 
     use super::*;
     use crate::test_kit;
-    use novamind_session::{Session, Via, number_at};
+    use novamind_database::number_at;
+    use novamind_record::trajectory::record::Via;
+    use novamind_session::Session;
 
     #[test]
     fn eighteen_changes_have_one_total_and_purchases_stand_apart() {

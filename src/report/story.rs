@@ -7,9 +7,10 @@ use super::measures::Measures;
 use super::ranking::{Standing, standing};
 use super::turn::{Cost, costs, turned};
 use novamind_insight::{BranchOrigin, origin_of};
-use novamind_session::{
-    Ended, Observation, ResultsShown, ScoredForecast, Session, SessionRules, WeekFigures, filed_forecasts,
-};
+use novamind_record::figures::WeekFigures;
+use novamind_record::rules::{ResultsShown, SessionRules};
+use novamind_record::trajectory::record::Ended;
+use novamind_session::{Observation, ScoredForecast, Session, filed_forecasts};
 
 /// How a company went under.
 #[derive(Debug, Clone, PartialEq)]

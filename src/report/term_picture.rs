@@ -5,8 +5,10 @@ use super::fit::{Fit, fits};
 use super::plot::{Drawn, plot};
 use novamind_base::notation::{compact, percent};
 use novamind_insight::example_curve;
+use novamind_record::figures::{WeekFigures, churn_of_last_week};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
-use novamind_session::{DeliveredQuality, GroupWeek, Numbers, Session, WeekFigures, churn_of_last_week};
+use novamind_session::{DeliveredQuality, GroupWeek, Session};
+use novamind_tools::Numbers;
 
 /// A change of reputation, as an example.
 const CHANGE: f64 = 0.1;

@@ -2,7 +2,10 @@
 
 use serde_json::{Value, json};
 
-use novamind_session::{Configuration, Line, NewRun, Session, Storage, Trajectory, Via};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Via;
+use novamind_record::trajectory::{Line, Trajectory};
+use novamind_session::{NewRun, Session, Storage};
 
 /// A run in memory of some weeks, played by a sensible beginner who changes one thing in the third week.
 pub fn played(weeks: usize) -> Session {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::words::{money, whole};
-use novamind_session::WeekFigures;
+use novamind_record::figures::WeekFigures;
 
 /// A kind of cost over the whole run.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,9 +7,9 @@ use super::chapters::change_in_words;
 use super::movement::{Movement, movement};
 use super::words::{category_name, money, number, points, short_week_in_words, whole};
 use novamind_base::notation::{compact, percent};
+use novamind_record::figures::{Booked, WeekFigures};
 use novamind_session::{
-    Booked, Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, WeekFigures,
-    filed_forecasts,
+    Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT, filed_forecasts,
 };
 
 /// A figure that moved.
@@ -307,9 +307,13 @@ mod tests {
 
     #[test]
     fn calls_between_the_single_days_of_the_last_short_week_are_told() {
-        use novamind_session::{Mode, NewRun, Storage, Via};
+        use novamind_record::mode::Mode;
+        use novamind_record::trajectory::record::Via;
+        use novamind_session::{NewRun, Storage};
         let new = NewRun { days: Some(10), mode: Mode::Debug, storage: Storage::Memory, ..NewRun::default() };
-        let mut session = Session::create(new, &novamind_session::Configuration::shipped()).expect("a run");
+        let mut session =
+            Session::create(new, &novamind_record::folder::configuration::Configuration::shipped())
+                .expect("a run");
         for days in [7, 1] {
             session.step(days, &mut |_| {}).expect("days");
         }
@@ -333,7 +337,7 @@ mod tests {
             let sql = format!("SELECT category, sum(amount) FROM ledger WHERE {of_week} GROUP BY 1");
             for row in session.query(&sql).expect("rows").rows {
                 let (id, dollars) =
-                    (novamind_session::text_at(&row, 0), novamind_session::number_at(&row, 1));
+                    (novamind_database::text_at(&row, 0), novamind_database::number_at(&row, 1));
                 let category = Category::ALL.into_iter().find(|own| own.id() == id).expect("a category");
                 assert!((week.booked.of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
             }

@@ -8,7 +8,7 @@ use novamind_insight::{
     BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin,
     ParameterDifference,
 };
-use novamind_session::FigureUnit;
+use novamind_record::figures::FigureUnit;
 
 /// The name of the branch without edits. Days after the end of the record were not played in it either.
 const UNCHANGED: &str = "your decisions unchanged";
@@ -274,7 +274,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use novamind_session::ToolId;
+    use novamind_tools::ToolId;
 
     #[test]
     fn weeks_after_the_end_of_the_record_are_not_called_played() {

@@ -4,7 +4,7 @@ use super::chapters::change_in_words;
 use super::words::{count, number, points, short_week_in_words, whole};
 use novamind_base::notation::{grouped, percent};
 use novamind_insight::{Detail, InputDetail, Why};
-use novamind_session::FigureUnit;
+use novamind_record::figures::FigureUnit;
 
 /// What no cause explains.
 pub const REST: &str = "composition and chance";
@@ -94,7 +94,8 @@ fn in_words(detail: &Detail) -> String {
 mod tests {
     use super::*;
     use novamind_insight::{Cause, WeekQuantity, WhyPart};
-    use novamind_session::{ToolId, WeekFigure};
+    use novamind_record::figures::WeekFigure;
+    use novamind_tools::ToolId;
 
     fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
         let part =

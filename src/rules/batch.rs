@@ -6,7 +6,8 @@ use super::grammar::{Action, OfferLine, Price, Rule};
 use super::thread::{AskingThread, Market, TOOLS};
 use novamind_base::notation::{cents, dollars, grouped, percent};
 use novamind_session::identifiers::Plan;
-use novamind_session::{CompanyNames, Refusal, Session, ToolId};
+use novamind_session::{CompanyNames, Session};
+use novamind_tools::{Refusal, ToolId};
 
 /// What a thread would be sent.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,10 @@ use serde_json::{Value, json};
 
 use super::usage::{SEAT_USAGE, SeatUsage};
 use novamind_base::notation::json_number;
+use novamind_database::{Rows, number_at, text_at};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{CompanyNames, Refusal, Rows, Session, ToolId, WaitingThread, number_at, text_at};
+use novamind_session::{CompanyNames, Session, WaitingThread};
+use novamind_tools::{Refusal, ToolId};
 
 /// The statement for what companies wrote last: a thread ends a week after it.
 pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
@@ -22,7 +24,7 @@ pub struct Letters(BTreeMap<u32, Plan>);
 impl Letters {
     /// Reads the answer to [`LAST_LETTERS`].
     pub fn read(rows: &Rows) -> Letters {
-        let plan = |row: &Vec<novamind_session::Cell>| {
+        let plan = |row: &Vec<novamind_database::Cell>| {
             let plan = other_plan_in(text_at(row, 1), Plan::parse(text_at(row, 2)))?;
             Some((number_at(row, 0) as u32, plan))
         };

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use novamind_database::{Rows, number_at, text_at};
 use novamind_session::identifiers::Group;
-use novamind_session::{Rows, number_at, text_at};
 
 /// The statement that measures it: group, plan, users, seats, units of the last day.
 pub const SEAT_USAGE: &str = include_str!("../../assets/readings/usage.sql");

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use novamind_session::{RunError, SERVER_FILE, write_whole};
+use novamind_record::error::RunError;
+use novamind_record::files::write_whole;
+use novamind_record::folder::lock::SERVER_FILE;
 
 /// Where a run is served.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,8 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::request::{Answer, Request, Status};
-use novamind_session::{QuerySource, Refusal, Session, Via, WeekRequest, rows_as_json};
-use novamind_tools::{Kept, ToolId};
+use novamind_record::trajectory::record::{QuerySource, Via};
+use novamind_session::{Session, WeekRequest, rows_as_json};
+use novamind_tools::{Kept, Refusal, ToolId};
 
 /// Tools whose arguments older programs send as null where they mean to leave them out.
 const NULLS_ARE_LEFT_OUT: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];

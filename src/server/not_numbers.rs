@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 /// The literals, the longest first.
 const LITERALS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];

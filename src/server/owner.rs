@@ -13,8 +13,9 @@ use tokio::sync::oneshot;
 use super::answering::answer;
 use super::request::{Answer, Request, Status};
 use super::running::Running;
-use novamind_session::record::LeavingCause;
-use novamind_session::{Access, Interface, ModelSettings, RunDatabase, RunError, Session, Via};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{LeavingCause, Via};
+use novamind_session::{Access, Interface, ModelSettings, RunDatabase, Session};
 use novamind_tools::Kept;
 
 /// Hears of defects of ours.

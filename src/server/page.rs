@@ -11,7 +11,7 @@ use super::client::module_name;
 use super::schema::specs;
 use novamind_base::notation::dollars;
 use novamind_database::tables;
-use novamind_session::RunError;
+use novamind_record::error::RunError;
 use novamind_tools::describe::{ToolDocument, document, manual};
 use novamind_tools::{Module, Numbers};
 

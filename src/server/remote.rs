@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use tokio::net::TcpStream;
 
 use super::announcement::Announcement;
-use novamind_session::is_being_played;
+use novamind_record::folder::lock::is_being_played;
 
 /// A server that is well answers this at once, also while a week is simulated.
 const HEALTH_DEADLINE: Duration = Duration::from_secs(10);

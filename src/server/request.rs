@@ -3,9 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::schema::REQUEST_ID;
-use novamind_session::Refusal;
-use novamind_session::record::RefusalRecord;
-use novamind_tools::{ToolId, find};
+use novamind_record::trajectory::record::RefusalRecord;
+use novamind_tools::{Refusal, ToolId, find};
 
 /// What a program asks of a run.
 #[derive(Debug, Clone, PartialEq)]

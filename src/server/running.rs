@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use novamind_session::Interrupt;
+use novamind_database::Interrupt;
 
 /// A request that is answered.
 struct Held {

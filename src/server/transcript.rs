@@ -6,7 +6,8 @@ use super::answering::answer;
 use super::inspect_log;
 use super::request::Request;
 use super::zip::ZipArchive;
-use novamind_session::{PYTHON_NOT_RUN, Session, Via};
+use novamind_record::trajectory::record::Via;
+use novamind_session::{PYTHON_NOT_RUN, Session};
 use novamind_tools::{ToolId, find};
 
 /// Largest file that is read from an archive, bytes: 500 days of an agent take a few megabytes.
@@ -187,7 +188,8 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use novamind_session::{Configuration, NewRun};
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_session::NewRun;
 
     #[test]
     fn names_are_read_as_clients_write_them() {

@@ -51,39 +51,7 @@ pub use inside::look::{Look, WatchedDays};
 pub use inside::shadow::Shadow;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{Manner, Stub};
-pub use novamind_database::{Cell, Interrupt, QueryConnection, QueryError, Rows, Ticket, number_at, text_at};
-pub use novamind_record::clock::{ScriptedClock, nanoseconds as nanoseconds_of, steady, written_moment};
-pub use novamind_record::consent::{Agreed, Consent, ConsentGiven, ConsentMeans, ConsentText};
-pub use novamind_record::error::RunError;
-pub use novamind_record::figures::{
-    Booked, FigureUnit, GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure, WeekFigures,
-    churn_of_last_week,
-};
-pub use novamind_record::files::{folder_of, write_whole};
-pub use novamind_record::folder::configuration::{
-    Configuration, DEFAULT_SCENARIO, Scenario, check_cash, check_days,
-};
-pub use novamind_record::folder::derived::{manifest_of, manifest_text};
-pub use novamind_record::folder::library::{self, Library};
-pub use novamind_record::folder::lock::{SERVER_FILE, is_being_played};
-pub use novamind_record::folder::manifest::{FORMAT, Manifest};
-pub use novamind_record::folder::preview::{RunPreview, run_preview};
-pub use novamind_record::folder::runs::{
-    RunSummary, all_run_folders, base_of_runs, delete_run, find_run, find_run_to_read, list_runs,
-    participant_folder, run_folder,
-};
-pub use novamind_record::mode::Mode;
-pub use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
-pub use novamind_record::stamp::{EarlierRun, LessonStamp, StudyStamp};
-pub use novamind_record::trajectory::record::{
-    Activity, Calculated, Ended, LessonEvent, LessonNote, Parent, QuerySource, Reversal, Via,
-};
-pub use novamind_record::trajectory::{
-    Line, Record, Trajectory, end_of, policy_of, policy_rationale, record,
-};
-pub use novamind_tools::{FORECAST_KEYS, Numbers, PublicPost, Refusal, ToolId};
 pub use novamind_voice::CompanyNames;
-pub use novamind_voice::judge::Judgement;
 pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
 pub use novamind_world::customers::drift::Expectation;
 pub use novamind_world::enterprise::Answer as CompanyAnswer;

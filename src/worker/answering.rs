@@ -5,7 +5,7 @@ use std::sync::mpsc::Sender;
 use std::sync::{Mutex, MutexGuard};
 
 use crate::message::{Message, News};
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 /// Runs `work` on its own thread and reports its result. A panic is reported as a refusal, so that no pane waits forever.
 /// Nothing is reported if `work` returns `None`: the user has stopped it.

@@ -12,7 +12,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use super::answering::catch_defect;
 use super::{Job, SessionThread, Workers};
 use crate::message::{Delivery, Message};
-use novamind_session::{Refusal, Ticket};
+use novamind_database::Ticket;
+use novamind_tools::Refusal;
 
 /// A question that a page asks the worker.
 pub trait Question: Clone + Debug + Send + Sync + 'static {
@@ -260,7 +261,7 @@ mod tests {
 
     use super::*;
     use crate::message::News;
-    use novamind_session::Configuration;
+    use novamind_record::folder::configuration::Configuration;
 
     /// Answers with its number, or panics.
     #[derive(Debug, Clone, PartialEq)]

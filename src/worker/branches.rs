@@ -12,8 +12,9 @@ use crate::message::News;
 use novamind_insight::{
     BranchComparison, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions, look_at_what_if,
 };
-use novamind_session::record::LeavingCause;
-use novamind_session::{Access, Refusal, Session};
+use novamind_record::trajectory::record::LeavingCause;
+use novamind_session::{Access, Session};
+use novamind_tools::Refusal;
 
 /// What is asked of the run's record.
 #[derive(Debug, Clone, PartialEq)]

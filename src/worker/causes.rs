@@ -6,7 +6,7 @@ use super::answering::lock_kept;
 use super::{Open, SessionThread};
 use crate::asking::{Question, Reply};
 use novamind_insight::{WeekQuantity, WeekQuestion, Why, WhyProgress, folder_of_causes, look_at_figure};
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 /// Why a figure changed in a week.
 #[derive(Debug, Clone)]

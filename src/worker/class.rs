@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use super::SessionThread;
 use crate::message::News;
 use novamind_course::{CollectedClass, Handout};
+use novamind_record::error::RunError;
+use novamind_record::folder::runs::{base_of_runs, participant_folder};
 use novamind_report::class::{ClassView, Shown};
-use novamind_session::{Access, RunError, Session, base_of_runs, participant_folder};
+use novamind_session::{Access, Session};
 
 impl SessionThread {
     /// Reads a class; what is not there of what is to be shown is told instead.

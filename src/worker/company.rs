@@ -9,6 +9,10 @@ use serde_json::{Map, Value};
 use crate::posts::{self, Posts};
 use novamind_course::LessonPage;
 use novamind_insight::HiddenValues;
+use novamind_record::figures::WeekFigures;
+use novamind_record::mode::Mode;
+use novamind_record::rules::SessionRules;
+use novamind_record::stamp::StudyStamp;
 use novamind_report::WeekReport;
 use novamind_report::fit::{Fit, fits};
 use novamind_report::funnel::{Funnel, funnels};
@@ -16,12 +20,12 @@ use novamind_report::lead_costs::{PairCost, pair_costs};
 use novamind_report::needs::{Need, needs};
 use novamind_session::identifiers::{ByGroup, Group};
 use novamind_session::{
-    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Mode, Numbers,
-    Observation, ResearchMeans, RunningStudy, Session, SessionRules, StudyStamp, ToolLimits, WeekFigures,
+    CompanyNames, DeliveredQuality, ForecastScore, Forecasts, GroupWeek, JournalEntry, Observation,
+    ResearchMeans, RunningStudy, Session, ToolLimits,
 };
 use novamind_tools::{
     GetCostInfo, GetGroupInsights, GetMarketOverview, GroupInsights, ListResearchProjects, MarketOverview,
-    PriceList, ResearchProjects, ToolId,
+    Numbers, PriceList, ResearchProjects, ToolId,
 };
 
 /// The company as a player may know it.

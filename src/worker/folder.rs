@@ -8,12 +8,15 @@ use super::{Open, SessionThread};
 use crate::asking::{Question, Reply};
 use crate::company::Company;
 use crate::message::{Instead, News};
-use novamind_rules::answers_to_companies;
-use novamind_session::record::LeavingCause;
-use novamind_session::{
-    Access, NewRun, Refusal, RunError, RunPreview, RunSummary, SealKey, Session, Storage, all_run_folders,
-    delete_run, end_run, find_run, find_run_to_read, list_runs, rescue, run_preview,
+use novamind_record::error::RunError;
+use novamind_record::folder::preview::{RunPreview, run_preview};
+use novamind_record::folder::runs::{
+    RunSummary, all_run_folders, delete_run, find_run, find_run_to_read, list_runs,
 };
+use novamind_record::trajectory::record::LeavingCause;
+use novamind_rules::answers_to_companies;
+use novamind_session::{Access, NewRun, SealKey, Session, Storage, end_run, rescue};
+use novamind_tools::Refusal;
 
 /// How a run of the folder went.
 #[derive(Debug, Clone)]

@@ -7,9 +7,10 @@ use super::{Open, SessionThread};
 use crate::message::News;
 use crate::request::LessonRequest;
 use novamind_course::{PlayedPart, begin_part, guess_in_lesson, take_hint, try_step_again};
+use novamind_record::trajectory::record::LeavingCause;
 use novamind_rules::answers_to_companies;
-use novamind_session::record::LeavingCause;
-use novamind_session::{Refusal, Session};
+use novamind_session::Session;
+use novamind_tools::Refusal;
 
 impl SessionThread {
     /// Does what a person asks of a lesson.

@@ -40,11 +40,13 @@ use crate::message::{Message, News};
 use crate::preferences::Preferences;
 use crate::request::Request;
 use answering::words_of;
+use novamind_database::{Interrupt, Rows};
 use novamind_insight::{Causes, LastRead, WhatIf};
-use novamind_session::record::LeavingCause;
-use novamind_session::{
-    Configuration, Goal, Interface, Interrupt, Playback, QuerySource, Refusal, Rows, RunError, Session,
-};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::{LeavingCause, QuerySource};
+use novamind_session::{Goal, Interface, Playback, Session};
+use novamind_tools::Refusal;
 use queries::QueryThreads;
 use run::OpenRun;
 use visit::Desk;

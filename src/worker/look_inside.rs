@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use super::{Open, SessionThread};
 use crate::asking::{Question, Reply};
 use crate::message::News;
+use novamind_database::Rows;
 use novamind_insight::{Breakpoint, Condition, DrawnPart, Inspect, LeadEquation, LeadFactor, Lens};
 use novamind_report::xray::{
     AskedWords, EVENINGS, SATISFACTION, SpillMap, breakpoints_in_words, company_in_words, customer_in_words,
@@ -14,7 +15,8 @@ use novamind_report::xray::{
     reputation_in_words, rivals_in_words, satisfaction_in_words, spillover_in_words, streams_in_words,
 };
 use novamind_session::identifiers::Group;
-use novamind_session::{Access, REFUSED_LOOK, Refusal, Rows, Session};
+use novamind_session::{Access, REFUSED_LOOK, Session};
+use novamind_tools::Refusal;
 
 /// A look at hidden state. Days are those that are over.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,12 +6,14 @@ use crossterm::event::Event;
 
 use crate::company::Company;
 use novamind_course::{CollectedClass, Debrief};
+use novamind_record::folder::library::Library;
+use novamind_record::folder::runs::RunSummary;
+use novamind_record::trajectory::record::Limit;
 use novamind_report::Story;
 use novamind_report::class::Shown;
-use novamind_session::record::Limit;
-use novamind_session::{Change, Library, PlaybackPosition, Refusal, RunSummary, TimeLeft, UnsentTexts, Week};
+use novamind_session::{Change, PlaybackPosition, TimeLeft, UnsentTexts, Week};
 use novamind_study::{DueQuestion, NextStep};
-use novamind_tools::{Answer, ToolId};
+use novamind_tools::{Answer, Refusal, ToolId};
 
 /// Something that arrives.
 pub enum Message {

@@ -10,8 +10,11 @@ use super::{BETWEEN_DAYS, Open, SessionThread};
 use crate::company::Company;
 use crate::message::{Arrival, Instead, Message, News};
 use crate::request::Recorded;
-use novamind_session::record::LeavingCause;
-use novamind_session::{Goal, Mode, Playback, RunError, SeekResult, find_run, find_run_to_read};
+use novamind_record::error::RunError;
+use novamind_record::folder::runs::{find_run, find_run_to_read};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::LeavingCause;
+use novamind_session::{Goal, Playback, SeekResult};
 
 /// Lines of somebody else are looked for this often.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);

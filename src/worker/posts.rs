@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(who(told("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
     use crate::test_kit::played;
-    use novamind_session::Via;
+    use novamind_record::trajectory::record::Via;
 
     #[test]
     fn only_what_is_new_is_read_and_it_is_the_same_as_everything() {

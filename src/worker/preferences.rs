@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use novamind_session::{Configuration, RunError};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
 use novamind_tui::glyphs::Glyphs;
 
 const FILE: &str = "console.toml";

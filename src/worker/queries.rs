@@ -9,9 +9,10 @@ use super::{Job, SessionThread, Workers};
 use crate::asking::{Question, Reply};
 use crate::readings::Reading;
 use novamind_database::query::Limits;
-use novamind_session::{
-    Interrupt, QueryConnection, QuerySource, Refusal, Rows, Session, Ticket, query_refusal,
-};
+use novamind_database::{Interrupt, QueryConnection, Rows, Ticket};
+use novamind_record::trajectory::record::QuerySource;
+use novamind_session::{Session, query_refusal};
+use novamind_tools::Refusal;
 
 /// A query of the user.
 #[derive(Debug, Clone, PartialEq)]

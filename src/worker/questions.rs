@@ -9,9 +9,9 @@ use super::{Open, SessionThread};
 use crate::asking::{Question, Reply};
 use novamind_insight::{CurveExplorer, CurveLook, HiddenValues, Inspect, Kin, branches_of};
 use novamind_report::opponents::{Opponents, PlayOpponents};
+use novamind_session::Preview;
 use novamind_session::identifiers::Group;
-use novamind_session::{Preview, Refusal};
-use novamind_tools::ToolId;
+use novamind_tools::{Refusal, ToolId};
 
 /// What a call would do.
 #[derive(Debug, Clone)]

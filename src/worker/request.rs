@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use novamind_insight::DecisionEdit;
+use novamind_record::consent::ConsentGiven;
+use novamind_record::mode::Mode;
 use novamind_report::class::Shown;
-use novamind_session::{Access, ConsentGiven, Forecasts, Goal, Mode, NewRun};
+use novamind_session::{Access, Forecasts, Goal, NewRun};
 use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 

@@ -10,10 +10,12 @@ use super::BETWEEN_DAYS;
 use super::queries::QueryThreads;
 use crate::company::Company;
 use crate::message::{DayTold, DaysRan, Message, News};
+use novamind_database::Interrupt;
 use novamind_insight::Inspect;
+use novamind_record::trajectory::record::Via;
 use novamind_report::xray::stop_in_words;
 use novamind_report::{Story, as_html, as_markdown};
-use novamind_session::{DayReport, Forecasts, Interrupt, RunDatabase, Session, Via};
+use novamind_session::{DayReport, Forecasts, RunDatabase, Session};
 use novamind_tools::ToolId;
 
 /// The run that is open, and where news of it go.

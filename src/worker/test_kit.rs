@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use novamind_session::{Configuration, NewRun, Session, Storage, Via};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Via;
+use novamind_session::{NewRun, Session, Storage};
 
 /// A run in memory on its first day.
 pub fn session() -> Session {

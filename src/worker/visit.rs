@@ -3,7 +3,8 @@
 use super::{Open, SessionThread};
 use crate::message::{News, VisitNews};
 use crate::request::{GivenAnswer, VisitRequest};
-use novamind_session::{Agreed, RunError};
+use novamind_record::consent::Agreed;
+use novamind_record::error::RunError;
 use novamind_study::{DueQuestion, NextStep, Study, Visit, record_refused_code};
 
 /// A study that is being visited.

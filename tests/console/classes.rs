@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::course::{Class, ClassCollection, ClassSources, Handout, Lesson, ToHandOut, guess_in_lesson};
+use novamind::record::trajectory::record::Via;
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Session, Via};
+use novamind::session::{Access, Session};
 use novamind::tui::theme::Theme;
 use serde_json::json;
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 
 use novamind::lab::{Collector, Policy, RunSpec, play};
-use novamind::session::Configuration;
+use novamind::record::folder::configuration::Configuration;
 
 /// Files of a folder of runs: path below it and bytes.
 type Files = Vec<(PathBuf, Vec<u8>)>;

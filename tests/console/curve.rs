@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use novamind::session::{Goal, Mode, Record, Session, lines_afterwards, verify};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Record;
+use novamind::session::{Goal, Session, lines_afterwards, verify};
 
 use super::harness::Console;
 use super::looks::{SIZES, picture};

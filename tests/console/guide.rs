@@ -1,6 +1,7 @@
 //! Stories of somebody who is new here.
 
-use novamind::session::{Ended, list_runs};
+use novamind::record::folder::runs::list_runs;
+use novamind::record::trajectory::record::Ended;
 
 use super::harness::Console;
 

@@ -8,7 +8,7 @@ use novamind::console::app::Settings;
 use novamind::console::headless::Headless;
 use novamind::console::keys::Keys;
 use novamind::console::themes;
-use novamind::session::Configuration;
+use novamind::record::folder::configuration::Configuration;
 use novamind::tui::glyphs::Glyphs;
 use ratatui::buffer::Buffer;
 

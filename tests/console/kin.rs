@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use novamind::session::{Goal, Mode, Session};
+use novamind::record::mode::Mode;
+use novamind::session::{Goal, Session};
 use serde_json::json;
 
 use super::harness::Console;
@@ -127,7 +128,7 @@ fn a_copy_of_a_folder_stands_in_the_tree_once() {
     console.press("0 t");
     let screen = console.screen();
     assert!(!screen.contains("copied"), "{screen}");
-    let listed = novamind::session::list_runs(runs.path()).expect("a list");
+    let listed = novamind::record::folder::runs::list_runs(runs.path()).expect("a list");
     let told: Vec<_> =
         listed.iter().filter_map(|run| Some((run.id.as_str(), run.copy_of.as_deref()?))).collect();
     assert_eq!(told, [("copied", ids[1].as_str())]);

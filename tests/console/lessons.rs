@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use novamind::session::{Access, Configuration, Session, find_run};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::runs::find_run;
+use novamind::session::{Access, Session};
 
 use super::harness::Console;
 use super::looks;

@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
-use novamind::session::{list_runs, verify};
+use novamind::record::folder::runs::list_runs;
+use novamind::session::verify;
 
 use super::harness::Console;
 use crate::support::dice::Dice;

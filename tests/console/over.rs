@@ -1,6 +1,7 @@
 //! A run that is over: it offers what can still be done, and no next week.
 
-use novamind::session::{Configuration, Mode};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
 
 use super::harness::Console;
 use super::looks::SIZES;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use novamind::insight::Inspect;
-use novamind::session::{Access, Goal, Mode, Session, lines_afterwards};
+use novamind::record::mode::Mode;
+use novamind::session::{Access, Goal, Session, lines_afterwards};
 use novamind::world::identifiers::Group;
 
 use super::harness::Console;

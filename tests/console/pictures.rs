@@ -2,7 +2,8 @@
 //! week 45. The pictures in `snapshots/` are those of a usual window; small and large windows are checked for cut words and empty
 //! halves. `cargo insta review` shows what a change does to them.
 
-use novamind::session::{Goal, Mode};
+use novamind::record::mode::Mode;
+use novamind::session::Goal;
 use novamind::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 

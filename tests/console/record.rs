@@ -4,10 +4,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use crossterm::event::Event;
-use novamind::session::record::{ClockEvent, Draft, DraftOutcome, LeavingCause, PresenceEvent, View};
-use novamind::session::{
-    Activity, Configuration, NewRun, QuerySource, Record, Session, Storage, Trajectory, find_run, verify,
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::runs::find_run;
+use novamind::record::trajectory::record::{
+    Activity, ClockEvent, Draft, DraftOutcome, LeavingCause, PresenceEvent, QuerySource, View,
 };
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{NewRun, Session, Storage, verify};
 
 use super::harness::Console;
 

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::session::{Goal, Mode, Session, Via, list_runs, verify};
+use novamind::record::folder::runs::list_runs;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Goal, Session, verify};
 use novamind::worker::request::Recorded;
 use serde_json::json;
 

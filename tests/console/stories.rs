@@ -1,6 +1,8 @@
 //! Whole stories.
 
-use novamind::session::{Configuration, list_runs, verify};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::runs::list_runs;
+use novamind::session::verify;
 
 use super::harness::Console;
 

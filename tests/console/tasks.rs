@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use novamind::session::{list_runs, verify};
+use novamind::record::folder::runs::list_runs;
+use novamind::session::verify;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

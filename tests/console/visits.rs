@@ -2,7 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::session::{Access, Activity, ConsentMeans, Goal, Mode, Record, Trajectory, lines_afterwards};
+use novamind::record::consent::ConsentMeans;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Activity;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, Goal, lines_afterwards};
 use novamind::study::{CodeDigest, Study, VisitEvent, visits};
 use novamind::tui::glyphs::Glyphs;
 use novamind::worker::request::{Recorded, Request};
@@ -133,7 +137,7 @@ impl Lab {
 fn questions_of(run: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
     let after = lines_afterwards(run, &trajectory).expect("it reads");
-    let told = |line: &novamind::session::Line| match &line.record {
+    let told = |line: &novamind::record::trajectory::Line| match &line.record {
         Record::Activity(Activity::Question(asked)) => {
             Some(format!("{} asked {} {}", line.day, asked.occasion, asked.id))
         }

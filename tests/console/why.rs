@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use novamind::session::Mode;
+use novamind::record::mode::Mode;
 
 use super::harness::Console;
 use crate::support::company::{begin_run, call, open_shop, week, weeks};

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crossterm::event::Event;
 use novamind::insight::Inspect;
-use novamind::session::{Access, Goal, Mode, Record, Session, lines_afterwards, verify};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Record;
+use novamind::session::{Access, Goal, Session, lines_afterwards, verify};
 use novamind::worker::request::Recorded;
 use novamind::world::identifiers::Group;
 

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use novamind::insight::{Condition, Hit, Inspect, WriteTarget, WrittenBy};
-use novamind::session::{
-    Access, Activity, Configuration, Mode, NewRun, Record, ReputationCause, Session, Storage, Trajectory,
-    Via, lines_afterwards, verify,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::{Activity, Via};
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, NewRun, ReputationCause, Session, Storage, lines_afterwards, verify};
 use novamind::world::identifiers::{ByGroup, Group};
 use proptest::prelude::*;
 use serde_json::json;

@@ -1,7 +1,9 @@
 //! The curve explorer line by line: who is told what, and what a look leaves behind.
 
 use novamind::insight::{CurveExplorer, CurveLook};
-use novamind::session::{Mode, Trajectory, lines_afterwards};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Trajectory;
+use novamind::session::lines_afterwards;
 use novamind::world::identifiers::Group;
 
 use crate::support::company::{begin_run, open_shop, week};

@@ -7,11 +7,12 @@ use std::sync::Arc;
 use novamind::course::{
     Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, guess_in_lesson, try_step_again,
 };
+use novamind::record::figures::WeekFigure;
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
 use novamind::report::{debrief_as_html, debrief_as_markdown};
 use novamind::rules::answers_to_companies;
-use novamind::session::{
-    Access, Configuration, LessonEntry, Mode, NewRun, PartPlay, Session, Storage, WeekFigure, play_part,
-};
+use novamind::session::{Access, LessonEntry, NewRun, PartPlay, Session, Storage, play_part};
 use serde_json::json;
 
 use crate::support::company::{call, week};

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use novamind::insight::{Inspect, open_to_look_inside};
-use novamind::session::{Mode, Session, Trajectory, Via, lines_afterwards, verify};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Trajectory;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Session, lines_afterwards, verify};
 use serde_json::json;
 
 use crate::support::company::{begin_run, open_shop, week, weeks};
@@ -170,5 +173,5 @@ fn a_parameter_that_differs_leads() {
         .inspect()
         .xray_query("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None)
         .expect("a look");
-    assert_eq!(novamind::session::number_at(&recorded.rows[0], 0), sum);
+    assert_eq!(novamind::database::number_at(&recorded.rows[0], 0), sum);
 }

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use novamind::database::text_at;
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::trajectory::record::Via;
+use novamind::record::trajectory::{Record, Trajectory};
 use novamind::rules::AskingThread;
-use novamind::session::{
-    Access, Configuration, NewRun, Record, Session, Storage, Trajectory, Via, WaitingThread, text_at, verify,
-};
+use novamind::session::{Access, NewRun, Session, Storage, WaitingThread, verify};
 use serde_json::{Value, json};
 
 use crate::support::company::{call, column, number};

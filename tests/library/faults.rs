@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use novamind::insight::{Inspect, LeadFactor, MoodTerm, WriteTarget, WrittenBy};
-use novamind::session::{
-    Category, Configuration, Mode, NewRun, Record, ReputationCause, RunError, Session, Storage, Trajectory,
-    manifest_of, verify,
-};
+use novamind::record::error::RunError;
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::derived::manifest_of;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Category, NewRun, ReputationCause, Session, Storage, verify};
 use novamind::world::fault::Fault;
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
@@ -81,7 +83,7 @@ fn symptom(fault: Fault) -> Symptom {
                 .inspect()
                 .xray_query("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
                 .expect("a look");
-            let pmi = novamind::session::number_at(&rows.rows[0], 0);
+            let pmi = novamind::database::number_at(&rows.rows[0], 0);
             let gap = pmi - parameter(session, "macro.neutral_pmi");
             assert!(gap.abs() > 0.1 && parameter(session, "group.S1.macro_beta.lead_generation") > 0.0);
             (factor - 1.0) * gap < 0.0
@@ -255,7 +257,7 @@ fn only_a_debug_run_has_a_fault() {
     let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
     std::fs::write(own.join("run.toml"), text.replace("mode = \"debug\"", "mode = \"sandbox\""))
         .expect("a file");
-    let read = novamind::session::Manifest::read(&own);
+    let read = novamind::record::folder::manifest::Manifest::read(&own);
     assert!(matches!(read, Err(RunError::NotPossible(_))), "{read:?}");
 }
 

@@ -1,6 +1,9 @@
 //! Calculations and scripts of a run: kept, run, shown, replayed.
 
-use novamind::session::{Access, Configuration, NewRun, Refusal, Session, Storage, Via, verify};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Access, NewRun, Session, Storage, verify};
+use novamind::tools::Refusal;
 use serde_json::{Value, json};
 
 use crate::support::company::{call, week};
@@ -116,7 +119,7 @@ fn what_is_kept_survives_leaving_and_is_verified() {
     assert!(dashboard.contains("money:\n  cash\n  999405.0\n"), "{dashboard}");
 
     // Branches take along what was kept before them.
-    let mut branch = session.branch(2, novamind::session::Mode::Sandbox).expect("a branch");
+    let mut branch = session.branch(2, novamind::record::mode::Mode::Sandbox).expect("a branch");
     assert_eq!(call(&mut branch, "list_daily_calculations", json!({})), json!({"calculations": ["money"]}));
 }
 

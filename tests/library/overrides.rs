@@ -4,10 +4,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use novamind::insight::Inspect;
-use novamind::session::{
-    Access, Configuration, Goal, Mode, NewRun, Playback, Record, SealKey, Session, Trajectory, Via,
-    list_runs, rescue, verify,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::runs::list_runs;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, Goal, NewRun, Playback, SealKey, Session, rescue, verify};
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
@@ -46,7 +48,7 @@ fn place(session: &Session) -> PathBuf {
 
 fn states(folder: &Path) -> Vec<(u32, String)> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
-    let state = |line: &novamind::session::Line| match &line.record {
+    let state = |line: &novamind::record::trajectory::Line| match &line.record {
         Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.state_hash.clone())),
         _ => None,
     };
@@ -54,7 +56,7 @@ fn states(folder: &Path) -> Vec<(u32, String)> {
 }
 
 /// Everything that a database holds of money and customers.
-fn tables(session: &mut Session) -> Vec<Vec<novamind::session::Cell>> {
+fn tables(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
     let mut all = Vec::new();
     for sql in [
         "SELECT day, category, sum(amount), count(*) FROM ledger GROUP BY day, category ORDER BY day, category",

@@ -5,10 +5,12 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use novamind::insight::branch_with_decisions;
-use novamind::session::{
-    Access, Configuration, Mode, NewRun, QuerySource, Record, Refusal, Session, Storage, Trajectory, Via,
-    verify,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::{QuerySource, Via};
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, NewRun, Session, Storage, verify};
+use novamind::tools::Refusal;
 use serde_json::{Value, json};
 
 use crate::support::company::{call, week};

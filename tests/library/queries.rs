@@ -2,7 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use novamind::session::{Cell, Configuration, Library, NewRun, Rows, Session, Via, number_at, text_at};
+use novamind::database::{Cell, Rows, number_at, text_at};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::library::Library;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session};
 use serde_json::{Value, json};
 
 use crate::support::company::{call, number, numbers, rows};

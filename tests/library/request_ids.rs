@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use novamind::session::{Mode, Session, Via, WeekRequest, lines_afterwards, verify};
-use novamind::session::{Record, Trajectory};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Session, WeekRequest, lines_afterwards, verify};
 use serde_json::{Value, json};
 
 use crate::durability::run::{create, open, runs};

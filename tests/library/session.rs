@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use novamind::session::record::{Call, Outcome};
-use novamind::session::{
-    Access, Configuration, Ended, Forecasts, Line, Mode, NewRun, Record, Session, SettingId, Storage,
-    Trajectory, Via, find_run, find_run_to_read, list_runs, verify,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::runs::{find_run, find_run_to_read, list_runs};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::{Call, Ended, Outcome, Via};
+use novamind::record::trajectory::{Line, Record, Trajectory};
+use novamind::session::{Access, Forecasts, NewRun, Session, SettingId, Storage, verify};
 use serde_json::{Value, json};
 
 use crate::support::company::{call, number, open_shop, text, week, weeks};

@@ -2,7 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Via};
+use novamind::database::Cell;
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session};
 use serde_json::json;
 
 use crate::support::company::{call, number, rows, text};

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use novamind::session::{Configuration, NewRun, Session, Storage};
+use novamind::record::folder::configuration::Configuration;
+use novamind::session::{NewRun, Session, Storage};
 use novamind::world::identifiers::Group;
 use novamind::world::params::Params;
 use rusqlite::Connection;

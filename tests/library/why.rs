@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use novamind::insight::{Causes, Condition, Inspect, OfRecord, WeekQuestion, Why, folder_of_causes};
-use novamind::session::{Mode, Refusal, Session};
+use novamind::record::mode::Mode;
+use novamind::session::Session;
+use novamind::tools::Refusal;
 use serde_json::json;
 
 use crate::support::company::{begin_run, call, number, open_shop, week, weeks};

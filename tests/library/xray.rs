@@ -3,10 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use novamind::database::Cell;
 use novamind::insight::{CustomerLens, DayOutcome, Inspect, LeadFactor, Lens};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::{Activity, Via};
+use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{
-    Access, Activity, Cell, CompanyAnswer, Configuration, EndCause, Mode, NewRun, Record, Session, Storage,
-    Trajectory, Via, WaitingThread, lines_afterwards, verify,
+    Access, CompanyAnswer, EndCause, NewRun, Session, Storage, WaitingThread, lines_afterwards, verify,
 };
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};

@@ -3,7 +3,11 @@
 use std::path::Path;
 
 use novamind::insight::{DrawnPart, Inspect};
-use novamind::session::{Mode, Refusal, Session, Trajectory, Via, lines_afterwards, verify};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Trajectory;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Session, lines_afterwards, verify};
+use novamind::tools::Refusal;
 use novamind::world::identifiers::Group;
 use serde_json::json;
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use novamind::session::{nanoseconds_of, written_moment};
+use novamind::record::clock::{nanoseconds as nanoseconds_of, written_moment};
 use serde_json::{Map, Value, json};
 
 use crate::support::home::{Home, Said, said};

@@ -7,7 +7,11 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use novamind::lab::{Collector, Policy, RunSpec, play};
-use novamind::session::{Access, Configuration, Mode, NewRun, Session, Storage, Trajectory, Via};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Trajectory;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Access, NewRun, Session, Storage};
 use serde_json::{Value, json};
 
 fn program(runs: &Path) -> Command {

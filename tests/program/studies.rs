@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
-use novamind::session::{Activity, Record, Trajectory, lines_afterwards};
+use novamind::record::trajectory::record::Activity;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::lines_afterwards;
 use novamind::study::{VisitEvent, visits};
 
 use crate::support::home::{Home, Said, id, said};

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use std::time::Duration;
 
 use crossterm::event::Event;
-use novamind::session::ScriptedClock;
+use novamind::record::clock::ScriptedClock;
 use novamind::worker::message::Message;
 
 use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};

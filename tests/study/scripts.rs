@@ -1,6 +1,6 @@
 //! What each participant does.
 
-use novamind::session::{ScriptedClock, nanoseconds_of};
+use novamind::record::clock::{ScriptedClock, nanoseconds as nanoseconds_of};
 
 use crate::console::Player;
 use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};

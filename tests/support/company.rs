@@ -2,7 +2,11 @@
 
 use std::path::Path;
 
-use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Storage, Via, Week};
+use novamind::database::Cell;
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session, Storage, Week};
 use serde_json::{Value, json};
 
 /// Calls a tool that has to accept.

@@ -4,7 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::course::Lesson;
-use novamind::session::{Configuration, LessonEntry, Mode, NewRun, Refusal, Session, Storage, Via};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{LessonEntry, NewRun, Session, Storage};
+use novamind::tools::Refusal;
 
 /// The lesson of a plan, in a file of that name.
 pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::session::{Activity, Record, Trajectory};
+use novamind::record::trajectory::record::Activity;
+use novamind::record::trajectory::{Record, Trajectory};
 
 /// The lines of the run in a folder.
 #[track_caller]

@@ -16,8 +16,10 @@ use crate::cli::lab::{OutputOptions, stopped_by_signals};
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::{Context, Failure};
 use crate::lab::results::{FinishedRun, Try, tries_exhibit};
+use crate::record::files::write_whole;
+use crate::record::trajectory::Trajectory;
 use crate::server::write_client;
-use crate::session::{Session, Trajectory, write_whole};
+use crate::session::Session;
 
 /// Options of `agent batch`.
 #[derive(Debug, Args)]

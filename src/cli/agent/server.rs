@@ -12,8 +12,10 @@ use std::time::{Duration, Instant};
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::which_run::begin;
 use crate::cli::{Context, Failure};
+use crate::record::files::write_whole;
+use crate::record::folder::lock::is_being_played;
+use crate::record::folder::runs::{find_run_to_read, run_folder};
 use crate::server::{Remote, write_client};
-use crate::session::{find_run_to_read, is_being_played, run_folder, write_whole};
 
 /// File in the folder of runs that names the run which `agent new` began last.
 const LATEST: &str = "agent-run.txt";

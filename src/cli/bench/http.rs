@@ -6,8 +6,9 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use crate::lab::bench::{Bench, BenchError, BenchFigure, Case, Samples, Unit, keep_a_large_company};
+use crate::record::folder::runs::run_folder;
 use crate::server::{HeldPort, HttpOptions, Remote, serve_http};
-use crate::session::{Access, Session, run_folder};
+use crate::session::{Access, Session};
 
 /// Requests of a kind for each repetition.
 const REQUESTS: usize = 40;

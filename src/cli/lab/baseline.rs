@@ -9,8 +9,8 @@ use crate::cli::{Context, Failure};
 use crate::lab::RunSpec;
 use crate::lab::baseline::{Grid, GridPoint, PAPER, baseline_exhibit, is_shared, leaders};
 use crate::lab::experiment::{Arm, Experiment, ExperimentResults, Prepared};
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
 use crate::report::comparable::PUBLISHED_DAYS;
-use crate::session::DEFAULT_SCENARIO;
 
 /// Options of `lab baseline`.
 #[derive(Debug, Args)]

@@ -6,8 +6,9 @@ use serde_json::json;
 use crate::cli::{Context, Failure, print};
 use crate::insight::{Inspect, open_to_look_inside};
 use crate::notation::printable;
+use crate::record::folder::runs::find_run_to_read;
 use crate::report::xray::{difference_as_data, runs_in_words};
-use crate::session::{Session, find_run_to_read};
+use crate::session::Session;
 
 /// Options of `lab diff`.
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use crate::cli::run::figure_rows;
 use crate::cli::{Context, Failure, print};
 use crate::insight::{Inspect, open_to_look_inside};
 use crate::lab::Collector;
-use crate::session::find_run_to_read;
+use crate::record::folder::runs::find_run_to_read;
 
 /// Options of `lab metrics`.
 #[derive(Debug, Args)]

@@ -7,8 +7,10 @@ use crate::cli::{Context, Failure, print};
 use crate::database::text::aligned;
 use crate::lab::play_opponents;
 use crate::notation::dollars;
+use crate::record::folder::runs::find_run_to_read;
+use crate::record::trajectory::record::Ended;
 use crate::report::opponents::{Opponent, Opponents};
-use crate::session::{Ended, Session, find_run_to_read};
+use crate::session::Session;
 
 /// Options of `lab opponents`.
 #[derive(Debug, Args)]

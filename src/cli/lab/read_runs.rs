@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
-use crate::session::{Manifest, Session, Trajectory, find_run_to_read};
+use crate::record::folder::manifest::Manifest;
+use crate::record::folder::runs::find_run_to_read;
+use crate::record::trajectory::Trajectory;
+use crate::session::Session;
 
 /// What is read of each run that was named; that it is read is recorded with the run.
 ///

@@ -9,10 +9,13 @@ use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
 use crate::lab::Policy;
 use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsBy, ResultsTable, idle_company};
+use crate::record::error::RunError;
+use crate::record::folder::configuration::Configuration;
+use crate::record::folder::runs::{RunSummary, all_run_folders, list_runs, run_folder};
+use crate::record::trajectory::Trajectory;
+use crate::record::trajectory::record::Ended;
 use crate::report::comparable::{Obstacle, RunTerms};
-use crate::session::{
-    Configuration, Ended, RunError, RunSummary, Session, Trajectory, all_run_folders, list_runs, run_folder,
-};
+use crate::session::Session;
 
 /// Options of `lab table`.
 #[derive(Debug, Args)]

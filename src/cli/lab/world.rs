@@ -5,7 +5,7 @@ use clap::Args;
 use crate::cli::run::parse_override;
 use crate::cli::{Context, Failure};
 use crate::lab::Params;
-use crate::session::DEFAULT_SCENARIO;
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
 
 /// Which parameters are in force.
 #[derive(Debug, Args)]

@@ -8,10 +8,10 @@ use serde_json::Value;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
+use crate::record::folder::derived::manifest_of;
 use crate::report::transcript::{
     Surroundings, Transcript, atif, inspect, inspect_file_name, plain_script, python_script,
 };
-use crate::session::manifest_of;
 
 /// What a run is written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

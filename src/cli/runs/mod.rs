@@ -15,11 +15,13 @@ use serde_json::{Value, json};
 use super::{Context, Failure, print};
 use crate::insight::{BranchOrigin, origin_of};
 use crate::notation::{dollars, printable};
-use crate::report::origin_in_words;
-use crate::session::{
-    Record, RunSummary, Trajectory, all_run_folders, delete_run, end_run, find_run, find_run_to_read,
-    list_runs, manifest_text, rescue,
+use crate::record::folder::derived::manifest_text;
+use crate::record::folder::runs::{
+    RunSummary, all_run_folders, delete_run, find_run, find_run_to_read, list_runs,
 };
+use crate::record::trajectory::{Record, Trajectory};
+use crate::report::origin_in_words;
+use crate::session::{end_run, rescue};
 
 /// Options of `runs`.
 #[derive(Debug, Args)]

@@ -5,9 +5,10 @@ use std::path::Path;
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
+use crate::record::mode::Mode;
 use crate::report::count;
 use crate::server::ForeignTranscript;
-use crate::session::{Mode, NewRun, Session};
+use crate::session::{NewRun, Session};
 
 /// Largest transcript, bytes: 500 days of an agent are a few megabytes.
 const LARGEST: u64 = 512 << 20;

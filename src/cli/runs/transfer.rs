@@ -17,13 +17,13 @@ use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::notation::csv_cell;
+use crate::record::error::RunError;
+use crate::record::files::folder_of;
+use crate::record::folder::runs::RunSummary;
 use crate::report::Logbook;
 use crate::report::tables::{StudyTables, columns_table, headings};
 use crate::session::archive::close_workshops;
-use crate::session::{
-    Export as Sealing, Imported, LabKey, LabPublicKey, RunError, RunSummary, Seal, SealKey, folder_of,
-    import_run,
-};
+use crate::session::{Export as Sealing, Imported, LabKey, LabPublicKey, Seal, SealKey, import_run};
 use novamind_study::{FoundVisit, VISITS, visits};
 
 /// Options of `runs export`.

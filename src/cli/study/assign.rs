@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::{Failure, print};
-use crate::session::{RunError, write_whole};
+use crate::record::error::RunError;
+use crate::record::files::write_whole;
 use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE};
 
 /// Options of `study assign`.

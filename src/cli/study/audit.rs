@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::read_study;
 use crate::cli::{Context, Failure, print};
+use crate::database::{Cell, Rows};
 use crate::notation::printable;
 use crate::plain::table as aligned;
-use crate::session::{Cell, Rows};
 use novamind_study::{Audit, AuditFinding, RunFacts, Study, audit};
 
 /// Options of `study audit`.

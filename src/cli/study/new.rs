@@ -6,7 +6,7 @@ use clap::Args;
 use include_dir::{Dir, include_dir};
 
 use crate::cli::{Failure, print};
-use crate::session::RunError;
+use crate::record::error::RunError;
 use novamind_study::{STUDY_FILE, Study};
 
 /// What a new study looks like.

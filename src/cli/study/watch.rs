@@ -8,9 +8,12 @@ use clap::Args;
 
 use super::read_study;
 use crate::cli::{Context, Failure, print};
+use crate::database::{Cell, Rows};
 use crate::notation::printable;
 use crate::plain::table as aligned;
-use crate::session::{Cell, Rows, nanoseconds_of, participant_folder, week_of};
+use crate::record::clock::nanoseconds as nanoseconds_of;
+use crate::record::folder::runs::participant_folder;
+use crate::session::week_of;
 use novamind_study::{
     REMARKS, Remark, Sitting, SittingState, Study, VisitSummary, has_come, remarks, sittings, visits_of,
     write_remark,

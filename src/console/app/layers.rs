@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::attention::ms;
 use crate::dialogs::Dialog;
-use novamind_session::record::{DialogOutcome, DialogStep, DialogUse};
+use novamind_record::trajectory::record::{DialogOutcome, DialogStep, DialogUse};
 
 /// A dialog over the screen.
 pub enum Layer {

@@ -5,8 +5,8 @@ use crate::context::ScreenId;
 use crate::dialogs::confirm::Confirm;
 use crate::effect::Effect;
 use crate::screens::menu::Menu;
+use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::Access;
-use novamind_session::record::LeavingCause;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
 

@@ -13,7 +13,7 @@ use crate::effect::Effect;
 use crate::lesson::{WIDE, why_closed};
 use novamind_course::{Debrief, LessonPage};
 use novamind_report::count;
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 use novamind_worker::company::Company;
 use novamind_worker::request::{LessonRequest, Request};
 

@@ -2,8 +2,9 @@
 
 use super::App;
 use crate::effect::Effect;
-use novamind_session::record::{DraftOutcome, Limit, LimitEvent, LimitScope};
-use novamind_session::{DraftsKept, SessionRules, TIME_LIMIT, TimeLeft};
+use novamind_record::rules::{DraftsKept, SessionRules};
+use novamind_record::trajectory::record::{DraftOutcome, Limit, LimitEvent, LimitScope};
+use novamind_session::{TIME_LIMIT, TimeLeft};
 use novamind_worker::request::Request;
 
 /// What was told of time limits.

@@ -88,7 +88,8 @@ mod tests {
     use crate::frame;
     use crate::headless::event;
     use crate::test_kit::{company, settings};
-    use novamind_session::{Refusal, Rows};
+    use novamind_database::Rows;
+    use novamind_tools::Refusal;
     use novamind_worker::asking::Question;
     use novamind_worker::message::{Message, News};
     use novamind_worker::queries::Query;

@@ -8,10 +8,11 @@ use crossterm::event::{Event, KeyEventKind, MouseEventKind};
 use super::{App, Layer, Order, Run, Stage};
 use crate::attention::Edit;
 use crate::context::ScreenId;
-use novamind_session::record::{
+use novamind_record::rules::DraftsKept;
+use novamind_record::trajectory::record::{
     Activity, DialogOutcome, Draft, DraftOutcome, Help, PresenceEvent, Select, View,
 };
-use novamind_session::{DraftsKept, Interface, Session};
+use novamind_session::{Interface, Session};
 use novamind_tools::ToolId;
 use novamind_worker::Job;
 use novamind_worker::request::Request;

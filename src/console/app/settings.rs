@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use crate::keys::Keys;
+use novamind_record::folder::configuration::Configuration;
 use novamind_report::opponents::PlayOpponents;
-use novamind_session::Configuration;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
 

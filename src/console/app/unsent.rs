@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::{App, Layer, Stage};
 use crate::dialogs::restore::Restore;
+use novamind_record::trajectory::record::{Draft, DraftOutcome};
 use novamind_session::UnsentTexts;
-use novamind_session::record::{Draft, DraftOutcome};
 
 /// Texts that change are kept this often.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);

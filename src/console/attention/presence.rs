@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::stopwatch::ms;
+use novamind_record::trajectory::record::PresenceEvent;
 use novamind_session::IDLE_AFTER;
-use novamind_session::record::PresenceEvent;
 
 /// A window that is being resized is recorded once it has kept its size for this long.
 const SETTLED: Duration = Duration::from_secs(1);

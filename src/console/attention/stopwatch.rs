@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use novamind_session::steady;
+use novamind_record::clock::steady;
 
 /// A watch that can be halted. Everything the record measures is measured with it.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::stopwatch::ms;
-use novamind_session::record::{Draft, DraftOutcome};
+use novamind_record::trajectory::record::{Draft, DraftOutcome};
 
 /// What stands between the cells of a form where they are taken as one text; it is no letter.
 pub const BETWEEN_CELLS: &str = "\u{1f}";

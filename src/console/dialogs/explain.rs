@@ -10,7 +10,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, Look, ScreenId};
 use crate::effect::Effect;
 use novamind_glossary::{Explanation, Subject};
-use novamind_session::Numbers;
+use novamind_tools::Numbers;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -10,7 +10,7 @@ use crate::action::{Action, Scope};
 use crate::context::Look;
 use crate::effect::Effect;
 use novamind_glossary::{Subject, Term, terms};
-use novamind_session::Numbers;
+use novamind_tools::Numbers;
 use novamind_tui::canvas::{Canvas, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -33,7 +33,7 @@ use super::context::Look;
 use super::effect::Effect;
 use novamind_course::Debrief;
 use novamind_report::Story;
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 use novamind_tui::canvas::Canvas;
 
 /// What follows from an action in a dialog.

@@ -10,7 +10,8 @@ use crate::effect::Effect;
 use crate::keys::Keys;
 use crate::lesson::why_closed;
 use novamind_glossary::Subject;
-use novamind_session::{JournalEntry, Library};
+use novamind_record::folder::library::Library;
+use novamind_session::JournalEntry;
 use novamind_tools::{CATALOGUE, Kind, ToolId};
 use novamind_tui::canvas::{Align, Canvas, Click, centered, rows_of};
 use novamind_tui::fuzzy::{self, Found};
@@ -448,7 +449,7 @@ mod tests {
         assert!(report.doc.starts_with("not now, no week has run yet: "), "{}", report.doc);
         for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
             let arguments = serde_json::from_str(arguments).expect("JSON");
-            session.call(tool, &arguments, novamind_session::Via::Form).expect(tool);
+            session.call(tool, &arguments, novamind_record::trajectory::record::Via::Form).expect(tool);
         }
         let palette = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
         let first: Vec<&str> =

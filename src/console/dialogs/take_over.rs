@@ -6,7 +6,7 @@ use super::{Dialog, Outcome};
 use crate::action::{Action, Scope};
 use crate::context::Look;
 use crate::effect::Effect;
-use novamind_session::Mode;
+use novamind_record::mode::Mode;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -9,7 +9,7 @@ use crate::context::{Figure, Look};
 use crate::effect::Effect;
 use novamind_insight::{Cause, WeekQuantity, Why, WhyProgress};
 use novamind_report::why::{CauseLine, equation, heading, lines};
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, Click, centered, fit, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
@@ -205,7 +205,8 @@ mod tests {
     use super::*;
     use crate::test_kit::{company, dialog_picture, in_dialog};
     use novamind_insight::{Detail, InputDetail, WhyPart};
-    use novamind_session::{ToolId, WeekFigure};
+    use novamind_record::figures::WeekFigure;
+    use novamind_tools::ToolId;
 
     fn cancellations() -> WeekQuantity {
         WeekQuantity::of_company(WeekFigure::Cancellations).expect("a figure of the company")

@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::{Figure, Look, PaneKeys, ScreenId};
 use super::effect::Effect;
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::message::News;
 use novamind_worker::readings::Reading;

@@ -1,9 +1,9 @@
 //! What a person did besides acting, in few words.
 
 use super::told::time;
-use novamind_session::Activity;
-use novamind_session::record::{
-    ClockEvent, DialogOutcome, DraftOutcome, LeavingCause, LimitEvent, LimitScope, Presence, PresenceEvent,
+use novamind_record::trajectory::record::{
+    Activity, ClockEvent, DialogOutcome, DraftOutcome, LeavingCause, LimitEvent, LimitScope, Presence,
+    PresenceEvent,
 };
 use novamind_tui::theme::Role;
 
@@ -101,7 +101,7 @@ fn presence_in_words(presence: &Presence) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::record::{Clock, DialogStep, DialogUse, Draft, Help, Select};
+    use novamind_record::trajectory::record::{Clock, DialogStep, DialogUse, Draft, Help, Select};
 
     #[test]
     fn activities_say_what_counts() {

@@ -3,12 +3,13 @@
 use super::activities;
 use crate::screens::journal::entries::in_words;
 use novamind_base::notation::{dollars, grouped, short_dollars};
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::{
+    Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, Reversal, VoiceAnswer,
+};
 use novamind_report::count;
 use novamind_report::deals::deals_in_words;
-use novamind_session::record::{Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, VoiceAnswer};
-use novamind_session::{
-    Chapter, CompanyNames, PlaybackPosition, Record, RecordView, Reversal, ScoredForecast, naively,
-};
+use novamind_session::{Chapter, CompanyNames, PlaybackPosition, RecordView, ScoredForecast, naively};
 use novamind_tui::theme::Role;
 
 /// Longest JSON that is written in one line, in bytes.
@@ -208,9 +209,7 @@ pub(super) fn time(milliseconds: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Activity;
-    use novamind_session::record::{End, RefusalRecord, View};
-    use novamind_session::{Ended, Parent, Via};
+    use novamind_record::trajectory::record::{Activity, End, Ended, Parent, RefusalRecord, Via, View};
     use novamind_tools::Forecast;
     use serde_json::json;
 

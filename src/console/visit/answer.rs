@@ -6,7 +6,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::Value;
 
 use crate::action::Action;
-use novamind_session::steady;
+use novamind_record::clock::steady;
 use novamind_study::{DueQuestion, Form};
 use novamind_tui::widgets::{Editor, Field};
 use novamind_worker::request::GivenAnswer;

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
+use novamind_record::figures::WeekFigure;
 use novamind_record::lesson::{GuessForm, Lesson, LessonStanding, Measurement};
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::{Integrity, SealKey, Session, WeekFigure, measure, read_recorded, setting_values};
+use novamind_session::{Integrity, SealKey, Session, measure, read_recorded, setting_values};
 
 /// What a run of a class shows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

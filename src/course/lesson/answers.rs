@@ -2,7 +2,8 @@
 
 use novamind_record::lesson::{LessonStanding, Measurement};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_session::{Refusal, Session, measure};
+use novamind_session::{Session, measure};
+use novamind_tools::Refusal;
 
 /// Whole weeks that have passed.
 pub(super) fn weeks_passed(session: &Session) -> u32 {

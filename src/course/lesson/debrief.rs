@@ -11,15 +11,13 @@ use super::answers::lesson_step;
 use super::decisions::{PartedDecision, WeekDecisions, parted};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 
+use novamind_record::figures::{WeekFigure, WeekFigures};
 use novamind_record::lesson::{
     LessonCall, LessonGoal, LessonStanding, NumberSource, Over, ReferencePlay, ScheduledCalls,
 };
 use novamind_record::trajectory::record::Ended;
-use novamind_session::{
-    AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Refusal, Session, ToolId, WeekFigure,
-    WeekFigures, play_part_watched,
-};
-use novamind_tools::highest_named;
+use novamind_session::{AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Session, play_part_watched};
+use novamind_tools::{Refusal, ToolId, highest_named};
 use novamind_world::params::Params;
 
 /// A part of a lesson that was played: what its debrief is found from.

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use novamind_session::{JournalEntry, Session, ToolId};
-use novamind_tools::Kind;
+use novamind_session::{JournalEntry, Session};
+use novamind_tools::{Kind, ToolId};
 
 /// What holds in a week, and what was done at its start.
 #[derive(Debug, Clone, PartialEq)]

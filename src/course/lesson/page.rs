@@ -7,7 +7,8 @@ use super::debrief::{DebriefStep, result_of_step};
 use super::answers::{lesson_step, weeks_passed};
 use novamind_record::lesson::{GoalBound, GuessForm, GuessTold, LessonGoal, LessonStanding};
 use novamind_record::trajectory::record::LessonNote;
-use novamind_session::{Session, ToolId, measure};
+use novamind_session::{Session, measure};
+use novamind_tools::ToolId;
 
 /// What a student sees of a lesson.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,13 @@
 //! Further runs of a lesson: another try of a step, and another part.
 
+use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_session::{LessonEntry, NewRun, Refusal, RunError, Session, Storage, branch_of_lesson};
+use novamind_session::{LessonEntry, NewRun, Session, Storage, branch_of_lesson};
+use novamind_tools::Refusal;
 
 /// Tries a step again from its beginning, counted from 0, in a separate run that counts the tries.
 ///

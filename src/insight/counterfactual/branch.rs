@@ -9,12 +9,12 @@ use super::companies::{CallHere, in_other_numbers};
 use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
 use super::kept_state::KeptState;
 use super::script::{Move, PastCall, PastDays, has_replies};
-use novamind_record::figures::MeasuredGroup;
+use novamind_record::figures::{MeasuredGroup, WeekFigures};
+use novamind_session::GroupWeek;
 use novamind_session::engine::{
     ParameterChange, RunDatabase, Simulation, StateHash, Taken, count_groups, measured_group, not_allowed,
     value_of_json,
 };
-use novamind_session::{GroupWeek, WeekFigures};
 use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View, bounds};
 use novamind_world::command::Command;
 use novamind_world::events::{DayFigures, LedgerEntry};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use novamind_session::WeekFigures;
+use novamind_record::figures::WeekFigures;
 use novamind_session::engine::UsageRule;
 use novamind_tools::ToolId;
 use novamind_world::customers::numbers::CustomerNumbers;

@@ -1,7 +1,7 @@
 //! Which figures branches are compared by.
 
 use crate::counterfactual::branch::BranchOutcome;
-use novamind_session::{FigureUnit, WeekFigures};
+use novamind_record::figures::{FigureUnit, WeekFigures};
 use novamind_world::events::DayFigures;
 
 /// Days of which leavers are counted against those who were there before.

@@ -36,10 +36,11 @@ use crate::counterfactual::one_each::one_each;
 use crate::counterfactual::past::Past;
 use crate::counterfactual::script::{Move, PastDecision};
 use crate::why::{Sight, sight};
+use novamind_record::figures::WeekFigures;
 use novamind_record::lesson::LessonStanding;
 use novamind_record::mode::Mode;
 use novamind_session::engine::UsageRule;
-use novamind_session::{Look, Session, WeekFigures, not_readable};
+use novamind_session::{Look, Session, not_readable};
 use novamind_tools::{Refusal, highest_named};
 use novamind_world::events::DayFigures;
 

@@ -6,8 +6,7 @@ use std::str::FromStr;
 use crate::xray::breakpoint::grammar::{ConditionProblem, Words, why_not};
 use crate::xray::breakpoint::measure::NoQuantity;
 use novamind_base::nearest;
-use novamind_record::figures::SimulatedWeek;
-use novamind_session::{FigureUnit, WeekFigure};
+use novamind_record::figures::{FigureUnit, SimulatedWeek, WeekFigure};
 use novamind_world::identifiers::Group;
 
 /// A figure of a week, of the company or of a group.

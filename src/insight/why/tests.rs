@@ -6,10 +6,9 @@ use serde_json::json;
 
 use super::*;
 use crate::counterfactual::test_kit::{WEEKS, played};
-use novamind_record::figures::{GroupOfWeek, MeasuredGroup, SimulatedWeek};
+use novamind_record::figures::{GroupOfWeek, MeasuredGroup, SimulatedWeek, WeekFigure};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
-use novamind_session::WeekFigure;
 use novamind_tools::ToolId;
 use novamind_world::identifiers::{ByGroup, Group};
 

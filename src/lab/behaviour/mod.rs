@@ -8,12 +8,13 @@ use super::ranks::rank_correlation;
 use crate::comparison::{ComparedFigure, figure_of, measure_of};
 use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
 use novamind_base::statistics::Sample;
+use novamind_record::trajectory::{Line, Record};
 use novamind_report::Logbook;
 use novamind_report::books::{Books, GroupBook};
 use novamind_report::measures::{Wording, planning_sentences};
 use novamind_report::plot::level;
 use novamind_report::ranking::published;
-use novamind_session::{Line, Record, Session};
+use novamind_session::Session;
 
 /// A run with what its behaviour is told by.
 pub struct ObservedRun {
@@ -323,8 +324,8 @@ fn correlation_in_words(runs: &[ObservedRun]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use novamind_record::trajectory::record::Ended;
     use novamind_report::test_kit;
-    use novamind_session::Ended;
 
     fn observed() -> Vec<ObservedRun> {
         let (session, lines) = test_kit::recorded();

@@ -7,7 +7,8 @@ use super::machine::{folder_size, peak_memory};
 use super::{Bench, BenchError, BenchFigure, Case, Samples, Unit, queries, resimulation};
 use crate::{Collector, Policy, RunSpec, play};
 use novamind_base::statistics::median;
-use novamind_session::{Access, Session, find_run};
+use novamind_record::folder::runs::find_run;
+use novamind_session::{Access, Session};
 
 /// What is measured of the simulator.
 pub const CASES: &[Case] = &[

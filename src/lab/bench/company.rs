@@ -5,7 +5,8 @@ use std::time::Instant;
 use super::{Bench, BenchError};
 use crate::policy::Policy;
 use crate::runner::{RunSpec, decide, new_run};
-use novamind_session::{NewRun, Session, Storage, Via};
+use novamind_record::trajectory::record::Via;
+use novamind_session::{NewRun, Session, Storage};
 
 /// Policy of all figures.
 pub const POLICY: &str = "P1a";

@@ -73,7 +73,9 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::runner::RunError;
-use novamind_session::{Configuration, Refusal, RunError as SessionError};
+use novamind_record::error::RunError as SessionError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_tools::Refusal;
 
 pub use cases::{CASES, keep_a_large_company};
 pub use machine::calibrate;

@@ -7,8 +7,9 @@ use serde_json::json;
 use super::company::{Company, Keep};
 use super::{Bench, BenchError, BenchFigure, Samples, Unit};
 use novamind_base::statistics::median;
-use novamind_session::library::Library;
-use novamind_session::{Session, Via};
+use novamind_record::folder::library::Library;
+use novamind_record::trajectory::record::Via;
+use novamind_session::Session;
 use novamind_tools::ToolId;
 
 /// About the most subscribers that P1a ever has.

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::exhibit::Measure;
+use novamind_record::trajectory::record::Ended;
 use novamind_report::ranking::{Agent, published};
-use novamind_session::Ended;
 
 /// A figure of all runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -3,7 +3,7 @@
 use super::compared::{Comparison, Row};
 use crate::exhibit::{Column, Datum, Exhibit, Measure, Tabulation, column_name};
 use novamind_base::notation::grouped;
-use novamind_session::Ended;
+use novamind_record::trajectory::record::Ended;
 
 /// A column of figures: the figure, its horizon, and its heading; the most telling ones first.
 const COLUMNS: [(&str, &str, &str); 10] = [

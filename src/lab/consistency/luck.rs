@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use crate::policy::Policy;
 use crate::runner::{RunError, RunSpec, advance, decide_telling, is_over, new_run};
 use novamind_insight::{DrawnPart, Follows, Inspect, KeyedDraws};
-use novamind_session::{Configuration, DayReport, Refusal, Session, Xray};
-use novamind_tools::{Answer, DiscoveryAttempt};
+use novamind_record::folder::configuration::Configuration;
+use novamind_session::{DayReport, Session, Xray};
+use novamind_tools::{Answer, DiscoveryAttempt, Refusal};
 use novamind_world::identifiers::{Channel, Group};
 
 /// What something is called: a day, an attempt, a customer of a group.

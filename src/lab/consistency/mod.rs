@@ -9,7 +9,7 @@ mod luck;
 use super::policy::{Policy, PolicyError};
 use super::runner::{RunError, RunSpec};
 use luck::{Drawn, LuckKey, PlayedLuck, play_for_luck};
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::params::ParameterSource;
 use rayon::prelude::*;

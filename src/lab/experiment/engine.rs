@@ -12,7 +12,8 @@ use super::key::ArmKey;
 use super::result::DayWatch;
 use super::{Arm, Experiment, ResultStore, RunResult};
 use crate::runner::{self, RunError, RunSpec};
-use novamind_session::{Configuration, DayReport};
+use novamind_record::folder::configuration::Configuration;
+use novamind_session::DayReport;
 
 /// What an experiment is conducted with.
 pub struct Conduct<'a> {

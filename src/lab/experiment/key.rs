@@ -1,7 +1,8 @@
 //! What names a run of an experiment: everything its result depends on.
 
 use super::{Arm, Wanted};
-use novamind_session::{Configuration, RunError};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
 /// What the runs of an arm have in common.

@@ -22,7 +22,8 @@ use key::ArmKey;
 
 use super::policy::Policy;
 use super::runner::{RunSpec, new_run};
-use novamind_session::{Configuration, RunError};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::Params;
 
 /// One way to play that is compared with others.

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::Wanted;
 use crate::metrics::Collector;
 use crate::runner::{Outcome, RunEnd};
-use novamind_session::{DayReport, WeekFigures};
+use novamind_record::figures::WeekFigures;
+use novamind_session::DayReport;
 
 /// What is kept of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

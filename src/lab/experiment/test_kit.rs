@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::{Arm, Conduct, Experiment, ExperimentResults};
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 
 /// The results of arms over seeds, all played.
 pub fn played(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> ExperimentResults {

@@ -2,7 +2,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use super::*;
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 
 fn arm(name: &str, policy: &str) -> Arm {
     let policy = Policy::find(policy, &Configuration::shipped()).expect("a shipped policy");

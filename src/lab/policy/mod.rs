@@ -12,7 +12,7 @@ pub use rule_based::PriceBook;
 pub use rule_based::{CapacityRule, OperationsRule, RuleBased, Target};
 
 use super::answers::EnterpriseRule;
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::ParameterSource;
 
 /// What drives a run without a person.

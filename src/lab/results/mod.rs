@@ -11,10 +11,13 @@ use super::metrics::Collector;
 use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play};
 use novamind_base::statistics::Sample;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::{Line, policy_of};
 use novamind_report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
 use novamind_report::measures::{survival_days, tool_use};
 use novamind_report::ranking::{beaten, by_result, published};
-use novamind_session::{Configuration, Ended, Line, Session, policy_of};
+use novamind_session::Session;
 
 #[cfg(feature = "server")]
 pub use tries::{Try, tries_exhibit};

@@ -10,7 +10,8 @@ use crate::experiment::{Arm, Experiment, Wanted};
 use crate::policy::Policy;
 use crate::runner::RunSpec;
 use crate::seeds::parse_seeds;
-use novamind_session::{Configuration, DEFAULT_SCENARIO, RunError, check_cash, check_days};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
 /// Most runs of a study.

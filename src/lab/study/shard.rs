@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::StudyPlan;
 use crate::experiment::ExperimentError;
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
 /// What the first line of a shard begins with.

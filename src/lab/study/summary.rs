@@ -6,8 +6,9 @@ use crate::exhibit::{
 };
 use crate::experiment::{Experiment, RunResult, groups};
 use novamind_base::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
 use novamind_report::count;
-use novamind_session::{Configuration, RunError};
 
 /// Most arms whose curves can be told apart.
 const MOST_CURVES: usize = 8;

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::experiment::test_kit;
-use novamind_session::Configuration;
+use novamind_record::folder::configuration::Configuration;
 
 fn write(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("study.toml");

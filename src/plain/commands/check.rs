@@ -11,8 +11,9 @@ use novamind_report::peak::peak_beside_tier;
 use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_sentences};
 use novamind_report::research::outlook_lines;
 use novamind_report::review::terms_line;
+use novamind_session::Preview;
 use novamind_session::identifiers::ByPlan;
-use novamind_session::{Preview, ToolId};
+use novamind_tools::ToolId;
 
 impl Interpreter {
     /// Reads the call in a line that begins with the word `check`, so that columns are those of the line.

@@ -6,8 +6,8 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem};
 use super::{COMMANDS, NEXT, inbox, parameters, problem, readings, rules, tool_called, words, xray};
 use novamind_base::nearest;
-use novamind_session::{Bands, Numbers};
-use novamind_tools::Kind;
+use novamind_session::Bands;
+use novamind_tools::{Kind, Numbers};
 
 const NEEDS: &str = "\
 needs                     what costs money or is about to: each with the object, the amount and the call that addresses it

@@ -12,7 +12,8 @@ use novamind_course::{
 use novamind_report::debrief::in_words;
 use novamind_report::lesson::{page_in_words, typed_guess};
 use novamind_rules::answers_to_companies;
-use novamind_session::{Refusal, Session};
+use novamind_session::Session;
+use novamind_tools::Refusal;
 
 impl Interpreter {
     /// `lesson`, `lesson next`

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::super::answers::Answer;
 use super::Interpreter;
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 impl Interpreter {
     /// `memo`

@@ -6,9 +6,10 @@ use super::super::answers::Answer;
 use super::super::grammar::{Argument, Problem, as_object};
 use super::super::signals::Phase;
 use super::{Interpreter, problem, unknown};
-use novamind_session::library::NamedQuery;
-use novamind_session::{QuerySource, Refusal, RunDatabase, Via};
-use novamind_tools::ToolId;
+use novamind_record::folder::library::NamedQuery;
+use novamind_record::trajectory::record::{QuerySource, Via};
+use novamind_session::RunDatabase;
+use novamind_tools::{Refusal, ToolId};
 
 impl Interpreter {
     /// `queries`

@@ -11,6 +11,7 @@ use super::help::not_there;
 use super::{Interpreter, problem, tool_called};
 use novamind_base::nearest;
 use novamind_base::notation::{dollars, grouped, signed_dollars};
+use novamind_record::trajectory::record::Reversal;
 use novamind_report::cash_change_in_words;
 use novamind_report::chapters::change_in_words;
 use novamind_report::deals::deals_in_words;
@@ -19,7 +20,8 @@ use novamind_report::parameters::entry_in_words;
 use novamind_report::peak::PeakProjection;
 use novamind_report::research::late_lines;
 use novamind_report::review::{alike_lines, money_lines};
-use novamind_session::{Change, CompanyNames, JournalEntry, Numbers, Reversal, undone_calls};
+use novamind_session::{Change, CompanyNames, JournalEntry, undone_calls};
+use novamind_tools::Numbers;
 use novamind_tools::describe::{self, ToolDocument, document};
 
 impl Interpreter {

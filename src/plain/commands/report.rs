@@ -7,7 +7,8 @@ use super::super::grammar::{Argument, Problem};
 use super::{Interpreter, problem};
 use novamind_base::notation::signed_dollars;
 use novamind_report::{Story, WeekReport, as_markdown};
-use novamind_session::{Refusal, Verdict};
+use novamind_session::Verdict;
+use novamind_tools::Refusal;
 
 /// Moves that are told.
 const TOLD: usize = 6;

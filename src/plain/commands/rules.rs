@@ -6,8 +6,10 @@ use super::super::answers::Answer;
 use super::Interpreter;
 use novamind_base::notation::{cents, grouped};
 use novamind_database::text::aligned;
+use novamind_record::trajectory::record::Via;
 use novamind_rules::{AskingThread, Batch, RuledThread};
-use novamind_session::{CompanyNames, Refusal, ToolId, Via};
+use novamind_session::CompanyNames;
+use novamind_tools::{Refusal, ToolId};
 
 /// Threads that a preview lists; programs get all.
 const LISTED: usize = 20;

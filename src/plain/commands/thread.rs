@@ -7,9 +7,10 @@ use super::super::grammar::{Argument, Problem};
 use super::inbox::{ask_in_words, offer_in_words};
 use super::{Interpreter, count as number, problem};
 use novamind_base::notation::{cents, grouped};
+use novamind_database::{Cell, Rows, number_at, text_at};
 use novamind_report::count;
 use novamind_rules::{AskingThread, offer_of};
-use novamind_session::{Cell, Refusal, Rows, number_at, text_at};
+use novamind_tools::Refusal;
 
 /// Columns of the turns of a thread.
 const TURNS: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \

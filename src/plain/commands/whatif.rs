@@ -12,13 +12,14 @@ use novamind_insight::{
     BranchComparison, BranchFigures, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions,
     branches_of, folder_of_causes, look_at_what_if, unless_stopped,
 };
+use novamind_record::trajectory::record::LeavingCause;
 use novamind_report::whatif::{
     bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
     name, table,
 };
 use novamind_rules::answers_to_companies;
-use novamind_session::record::LeavingCause;
-use novamind_session::{Interface, Refusal, Session};
+use novamind_session::{Interface, Session};
+use novamind_tools::Refusal;
 
 /// Futures that are drawn where no number is named.
 const FUTURES: u32 = 20;

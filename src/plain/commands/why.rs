@@ -8,8 +8,8 @@ use super::Interpreter;
 use novamind_database::text::aligned;
 use novamind_insight::{ConditionProblem, WeekQuestion, Why, begin_why, folder_of_causes, unless_stopped};
 use novamind_report::why::{equation, heading, lines};
-use novamind_session::Refusal;
 use novamind_session::identifiers::Group;
+use novamind_tools::Refusal;
 
 impl Interpreter {
     pub(super) fn why(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {

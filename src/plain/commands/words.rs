@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::super::answers::Answer;
 use novamind_glossary::{Explanation, Subject, Term, terms};
 use novamind_report::term_picture::term_picture_of;
-use novamind_session::{Numbers, Session};
+use novamind_session::Session;
+use novamind_tools::Numbers;
 
 /// `explain TERM`, and `what TERM`.
 pub(super) fn explain(command: &str, words: &str, numbers: &Numbers) -> Answer {
@@ -82,8 +83,10 @@ pub(super) fn glossary(word: &str, session: &Session) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
     use novamind_session::identifiers::Group;
-    use novamind_session::{Configuration, NewRun, Session, Via};
+    use novamind_session::{NewRun, Session};
 
     /// Names of the fields of an answer; keys of maps by group are none.
     fn fields(value: &Value, found: &mut Vec<String>) {

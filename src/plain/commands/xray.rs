@@ -16,7 +16,8 @@ use novamind_database::text::table;
 use novamind_insight::{Inspect, LeadFactor, Lens};
 use novamind_report::xray::{company_in_words, customer_in_words, leads_in_words};
 use novamind_session::identifiers::Group;
-use novamind_session::{Refusal, rows_as_json};
+use novamind_session::rows_as_json;
+use novamind_tools::Refusal;
 
 /// What can be shown.
 const VIEWS: [&str; 9] =

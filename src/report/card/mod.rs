@@ -8,7 +8,8 @@ use super::highlights::{highest_cash, lowest_cash, peak_week};
 use super::story::Story;
 use super::words::{money, whole};
 use novamind_base::notation::printable;
-use novamind_session::{Ended, WeekFigures};
+use novamind_record::figures::WeekFigures;
+use novamind_record::trajectory::record::Ended;
 
 /// A fact with what it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -118,7 +119,8 @@ mod tests {
 
     use super::*;
     use crate::test_kit;
-    use novamind_session::{Cell, Session};
+    use novamind_database::Cell;
+    use novamind_session::Session;
 
     fn number(session: &mut Session, sql: &str) -> f64 {
         let rows = session.query(sql).expect(sql);

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use novamind_session::record::{DialogOutcome, DraftOutcome};
-use novamind_session::{Activity, TimeSpent};
+use novamind_record::trajectory::record::{Activity, DialogOutcome, DraftOutcome};
+use novamind_session::TimeSpent;
 
 /// What was done between two weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

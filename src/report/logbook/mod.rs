@@ -17,11 +17,12 @@ pub use timeline::Pause;
 use super::books::{Books, ChannelRow};
 use super::chapters::change_in_words;
 use super::measures::{Measures, Wording};
-use novamind_session::record::FiledForecast;
-use novamind_session::{
-    Attendance, Consent, Ended, Line, Mode, ModelStamp, Record, ScoredForecast, Session, SittingCount,
-    StudyStamp, TimeSpent, end_of, policy_of,
-};
+use novamind_record::consent::Consent;
+use novamind_record::mode::Mode;
+use novamind_record::stamp::StudyStamp;
+use novamind_record::trajectory::record::{Ended, FiledForecast};
+use novamind_record::trajectory::{Line, Record, end_of, policy_of};
+use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SittingCount, TimeSpent};
 use timeline::{Span, Timeline};
 
 /// How a run was played.

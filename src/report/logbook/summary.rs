@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::{Effort, Logbook, WeekLog};
 use crate::page::{Block, Fact, Page, Table};
 use crate::words::{count, money, whole};
-use novamind_session::{BREAK_SECONDS, Ended, ModelStamp, TimeSpent};
+use novamind_record::trajectory::record::Ended;
+use novamind_session::{BREAK_SECONDS, ModelStamp, TimeSpent};
 
 /// The page that tells how a run was played.
 pub fn page_of(book: &Logbook) -> Page {

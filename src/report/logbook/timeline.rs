@@ -4,10 +4,12 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::Effort;
-use novamind_session::record::{Closing, FiledForecast, LimitEvent, Outcome, View};
-use novamind_session::{
-    Activity, Attendance, AttendedWeek, Attention, BREAK_SECONDS, Line, Record, Reversal, written_moment,
+use novamind_record::clock::written_moment;
+use novamind_record::trajectory::record::{
+    Activity, Closing, FiledForecast, LimitEvent, Outcome, Reversal, View,
 };
+use novamind_record::trajectory::{Line, Record};
+use novamind_session::{Attendance, AttendedWeek, Attention, BREAK_SECONDS};
 
 /// A time of more than ten minutes in which nobody played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -182,8 +184,7 @@ impl Timeline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Via;
-    use novamind_session::record::{Advance, Branch, Call, Memo, Query};
+    use novamind_record::trajectory::record::{Advance, Branch, Call, Memo, Query, Via};
     use serde_json::json;
 
     fn lines(all: &[(&str, Record)]) -> Vec<Line> {
@@ -200,7 +201,7 @@ mod tests {
     fn call() -> Record {
         let outcome = Outcome::Accepted(json!({}));
         Record::Call(Call {
-            tool: novamind_session::ToolId::SetPrices.into(),
+            tool: novamind_tools::ToolId::SetPrices.into(),
             args: json!({}),
             outcome,
             via: Via::Form,

@@ -7,8 +7,8 @@ use super::{AHEAD, Need, Place, Problem, Situation};
 use crate::lead_costs::{AdSpell, PairCost, pair_costs};
 use crate::words::{count, money};
 use novamind_base::notation::{cents, json_number};
-use novamind_session::ToolId;
 use novamind_session::identifiers::{Channel, Group};
+use novamind_tools::ToolId;
 
 /// Companies of four weeks from which on it counts that none asks.
 const ENOUGH_COMPANIES: u32 = 3;

@@ -14,11 +14,12 @@ mod tests;
 
 use serde_json::Value;
 
+use novamind_record::figures::WeekFigures;
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{
-    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolId,
-    ToolLimits, WeekFigures,
+    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolLimits,
 };
+use novamind_tools::ToolId;
 
 /// What is wrong. Of two needs with the same money at risk the one that stands first here comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,8 +5,9 @@ use serde_json::{Map, Value, json};
 use super::{AHEAD, MONTH, Need, Place, Problem, Situation};
 use crate::words::{count, money, whole};
 use novamind_base::notation::json_number;
+use novamind_session::ModelTier;
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{ModelTier, ToolId};
+use novamind_tools::ToolId;
 
 /// Weeks of cash below which it is urgent.
 const SHORT: f64 = 8.0;

@@ -7,7 +7,8 @@ use crate::chapters::change_in_words;
 use crate::words::{count, money, whole};
 use novamind_base::notation::{json_number, percent};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{Change, Decisions, ToolId};
+use novamind_session::{Change, Decisions};
+use novamind_tools::ToolId;
 
 /// Cancellations of a week below which nobody speaks of a wave.
 const FEW: f64 = 20.0;

@@ -7,7 +7,8 @@ use crate::fit::TruthRange;
 use crate::words::{count, money, whole};
 use novamind_base::notation::{cents, json_number, percent};
 use novamind_session::identifiers::{Channel, Group, Plan};
-use novamind_session::{DeliveredQuality, Estimates, GroupWeek, ToolId};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
+use novamind_tools::ToolId;
 
 /// Leads of a week from which on it counts how few sign.
 const ENOUGH_LEADS: u32 = 20;

@@ -6,7 +6,9 @@ use super::{AHEAD, Need, Place, Problem, Situation, rounded_up};
 use crate::peak::PeakProjection;
 use crate::words::{count, money, whole};
 use novamind_base::notation::{json_number, percent};
-use novamind_session::{CapacityTier, SettingId, ToolId, WeekFigures};
+use novamind_record::figures::WeekFigures;
+use novamind_session::{CapacityTier, SettingId};
+use novamind_tools::ToolId;
 
 /// Weeks ahead in which capacity must not run out.
 const SOON: f64 = 2.0;

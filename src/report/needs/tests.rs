@@ -3,8 +3,12 @@
 use serde_json::{Value, json};
 
 use super::*;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Via;
 use novamind_session::identifiers::Plan;
-use novamind_session::{Configuration, Mode, NewRun, Storage, ToolId, Via};
+use novamind_session::{NewRun, Storage};
+use novamind_tools::ToolId;
 
 /// A company that can be bought from, is heard of and has room to grow.
 fn sound() -> Vec<(&'static str, Value)> {
@@ -468,7 +472,7 @@ fn leads_that_become_dear_are_named_with_what_they_cost_before() {
             "SELECT sum(spend) / sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND \
              group_id = 'S1' AND (day + 6) / 7 BETWEEN {from} AND {upto}"
         );
-        novamind_session::number_at(&session.query(&sql).expect("rows").rows[0], 0)
+        novamind_database::number_at(&session.query(&sql).expect("rows").rows[0], 0)
     };
     let last = session.weeks().len() as u32;
     let now = cost(last - 3, last, &mut session);

@@ -108,7 +108,7 @@ pub fn people(story: &Story) -> Option<Block> {
     if story.weeks.len() < 2 {
         return None;
     }
-    let through = |figure: fn(&novamind_session::WeekFigures) -> u32| -> Vec<(f64, f64)> {
+    let through = |figure: fn(&novamind_record::figures::WeekFigures) -> u32| -> Vec<(f64, f64)> {
         story.weeks.iter().map(|week| (f64::from(week.day) / 7.0, f64::from(figure(week)))).collect()
     };
     let mut curves =

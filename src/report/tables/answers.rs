@@ -2,8 +2,8 @@
 
 use super::column::{Column, columns};
 use super::place::{LineRow, Placed, with_place};
-use novamind_session::record::{Answered, Asked};
-use novamind_session::{Activity, Record};
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::{Activity, Answered, Asked};
 use serde_json::Value;
 
 /// A question, and its answer with its place.

@@ -5,8 +5,10 @@ use super::column::{Column, columns};
 use super::place::{LineRow, Placed, with_place};
 use super::{flag, number, word};
 use novamind_base::notation::json_number;
-use novamind_session::record::{Call, DialogStep, Draft, Outcome, Presence, Start, VoiceAnswer};
-use novamind_session::{Activity, Record, Reversal};
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::{
+    Activity, Call, DialogStep, Draft, Outcome, Presence, Reversal, Start, VoiceAnswer,
+};
 
 /// The columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, Event>>> {

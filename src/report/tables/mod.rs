@@ -20,7 +20,8 @@ use serde::Serialize;
 
 use super::logbook::Logbook;
 use column::Column;
-use novamind_session::{ForecastScore, Line};
+use novamind_record::trajectory::Line;
+use novamind_session::ForecastScore;
 use novamind_study::FoundVisit;
 
 pub use column::Heading;

@@ -3,7 +3,7 @@
 use super::column::{Column, columns};
 use super::place::{LineRow, Placed, with_place};
 use crate::measures::Wording;
-use novamind_session::Record;
+use novamind_record::trajectory::Record;
 
 /// The notes as they were kept.
 pub(super) struct KeptNotes<'a> {

@@ -3,7 +3,8 @@
 use super::column::{Column, columns};
 use super::rounded;
 use crate::logbook::Logbook;
-use novamind_session::{Line, week_of};
+use novamind_record::trajectory::Line;
+use novamind_session::week_of;
 
 /// A line with its place.
 pub(super) struct Placed<'a> {

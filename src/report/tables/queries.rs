@@ -3,8 +3,8 @@
 use super::column::{Column, columns};
 use super::place::{LineRow, Placed, with_place};
 use super::word;
-use novamind_session::Record;
-use novamind_session::record::Query;
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::Query;
 
 /// The columns.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {

@@ -4,7 +4,8 @@ use super::column::{Column, columns};
 use super::{in_console, pairs, rounded, score, screens, seen, tools};
 use crate::logbook::Logbook;
 use crate::measures::ChannelSkill;
-use novamind_session::{ConsentGiven, ConsentMeans, TimeSpent};
+use novamind_record::consent::{ConsentGiven, ConsentMeans};
+use novamind_session::TimeSpent;
 
 fn scored(run: &Logbook, horizon_days: u32) -> u32 {
     score(&run.measures.forecasts, horizon_days).map_or(0, |score| score.scored)

@@ -7,7 +7,8 @@ use time::format_description::well_known::Rfc3339;
 use super::atif::atif;
 use super::{Surroundings, Transcript};
 use novamind_base::notation::dollars;
-use novamind_session::{Ended, Manifest};
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::Ended;
 
 const VERSION: u32 = 2;
 const TASK: &str = "novamind";

@@ -20,11 +20,14 @@ pub use plain_script::plain_script;
 pub use python_script::python_script;
 pub use told::Surroundings;
 
-use novamind_session::record::{CalledTool, End, FiledForecast, Outcome, RefusalRecord};
-use novamind_session::{
-    FORECAST_KEYS, Goal, Line, Manifest, Numbers, Playback, QuerySource, Record, RunError, Session,
-    rows_as_json,
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::trajectory::record::{
+    CalledTool, End, FiledForecast, Outcome, QuerySource, RefusalRecord,
 };
+use novamind_record::trajectory::{Line, Record};
+use novamind_session::{Goal, Playback, Session, rows_as_json};
+use novamind_tools::{FORECAST_KEYS, Numbers};
 
 /// A run, action by action.
 #[derive(Debug)]

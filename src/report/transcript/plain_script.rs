@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::{Deed, Transcript, TranscriptAct, predictions};
-use novamind_session::Mode;
-use novamind_session::record::CalledTool;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::CalledTool;
 
 /// The script, with the command that plays it in its first lines.
 pub fn plain_script(run: &Transcript) -> String {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::plain_script::{judge_in_words, new_run, refused_in_words};
 use super::{Deed, Transcript, predictions};
-use novamind_session::RunError;
+use novamind_record::error::RunError;
 
 /// The program.
 ///

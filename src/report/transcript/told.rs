@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use novamind_session::{Line, QuerySource, Reversal, Via};
+use novamind_record::trajectory::Line;
+use novamind_record::trajectory::record::{QuerySource, Reversal, Via};
 
 /// What whoever plays is told before the first action.
 #[derive(Debug, Clone, Default)]

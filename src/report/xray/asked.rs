@@ -8,7 +8,8 @@ use crate::parameters::{changed_in_words, set_in_words};
 use novamind_base::nearest;
 use novamind_base::notation::written::{Argument, Problem, Reader};
 use novamind_insight::{Condition, ConditionProblem, Difference, Inspect, Judged, WhoWrites, WriteTarget};
-use novamind_session::{ChangedParameter, ChangedParameters, Refusal, Session};
+use novamind_session::{ChangedParameter, ChangedParameters, Session};
+use novamind_tools::Refusal;
 
 const USAGE_OF_DIFF: &str = "name two days: diff 83 84";
 const USAGE_OF_SET: &str =

@@ -4,7 +4,8 @@ mod module;
 
 use std::path::{Path, PathBuf};
 
-use novamind_session::{RunError, write_whole};
+use novamind_record::error::RunError;
+use novamind_record::files::write_whole;
 use novamind_tools::{Module, Numbers};
 
 pub use module::name as module_name;

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::not_numbers;
 use crate::request::{Answer, Status};
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 /// Bytes of a body.
 const MOST_BYTES: usize = 1024 * 1024;

@@ -9,7 +9,7 @@ use axum::http::HeaderMap;
 use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 
 use crate::request::{Answer, Status};
-use novamind_session::RunError;
+use novamind_record::error::RunError;
 
 /// What requests must carry.
 #[derive(Debug, Clone)]

@@ -22,7 +22,9 @@ use super::announcement::Announcement;
 use super::owner::{Door, OnDefect, Owner};
 use super::request::{Answer, Status};
 use guard::Guard;
-use novamind_session::{RunError, Session, Via};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::Via;
+use novamind_session::Session;
 use routes::Served;
 use shutdown::Shutdown;
 

@@ -23,7 +23,9 @@ use super::announcement::Announcement;
 use super::owner::{Door, Handle, OnDefect, Owner};
 use super::page::{PageOf, goal_and_rules};
 use super::request::Request;
-use novamind_session::{RunError, Session, Via};
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::Via;
+use novamind_session::Session;
 use novamind_tools::Numbers;
 
 /// What a client is told first.

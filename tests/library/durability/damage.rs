@@ -6,8 +6,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use novamind::session::record::Outcome;
-use novamind::session::{Access, Line, Record, Session, Trajectory};
+use novamind::record::trajectory::record::Outcome;
+use novamind::record::trajectory::{Line, Record, Trajectory};
+use novamind::session::{Access, Session};
 use serde_json::Value;
 
 use super::games::{decide, week};

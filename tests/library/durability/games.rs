@@ -1,6 +1,7 @@
 //! Random games: what a restless person might do, drawn from a seed. Some of it is refused, as it should be.
 
-use novamind::session::{Session, Via};
+use novamind::record::trajectory::record::Via;
+use novamind::session::Session;
 use serde_json::{Value, json};
 
 use crate::support::company;

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use novamind::session::{
-    Access, JournalEntry, Line, Record, Reversal, Session, Trajectory, lines_afterwards, verify,
-};
+use novamind::record::trajectory::record::Reversal;
+use novamind::record::trajectory::{Line, Record, Trajectory};
+use novamind::session::{Access, JournalEntry, Session, lines_afterwards, verify};
 use serde_json::Value;
 
 use super::games::Deed;

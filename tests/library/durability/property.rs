@@ -5,7 +5,9 @@
 
 use std::path::Path;
 
-use novamind::session::{Cell, Session, Trajectory, verify};
+use novamind::database::Cell;
+use novamind::record::trajectory::Trajectory;
+use novamind::session::{Session, verify};
 
 use super::games::{act, decide, week};
 use super::run::{create, open, runs};

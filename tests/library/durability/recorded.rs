@@ -11,9 +11,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use novamind::session::{
-    Access, Configuration, Session, Trajectory, lines_afterwards, manifest_text, verify,
-};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::folder::derived::manifest_text;
+use novamind::record::trajectory::Trajectory;
+use novamind::session::{Access, Session, lines_afterwards, verify};
 use novamind::tools::ToolId;
 use serde_json::{Value, json};
 
@@ -63,7 +64,7 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
         (1, "SELECT count(*) FROM segment_discovery"),
     ] {
         let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-        let count = novamind::session::number_at(&rows.rows[0], 0);
+        let count = novamind::database::number_at(&rows.rows[0], 0);
         assert!(count >= f64::from(least), "{sql}: {count}");
     }
 }

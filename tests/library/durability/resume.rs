@@ -30,7 +30,7 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
         let seed = dice.roll(1 << 20) as u64;
         let go_on = |session: &mut Session| {
             let mut dice = Dice::new(seed);
-            let _ = session.undo(novamind::session::Via::Form);
+            let _ = session.undo(novamind::record::trajectory::record::Via::Form);
             (0..2).for_each(|_| act(session, &mut dice));
             week(session);
         };

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use novamind::session::{Access, Configuration, NewRun, Session, Storage};
+use novamind::record::folder::configuration::Configuration;
+use novamind::session::{Access, NewRun, Session, Storage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

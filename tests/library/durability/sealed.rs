@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use novamind::session::{Access, Configuration, NewRun, SealKey, Session, Storage};
+use novamind::record::folder::configuration::Configuration;
+use novamind::session::{Access, NewRun, SealKey, Session, Storage};
 
 use super::games::week;
 use super::run::{copy, create, open, runs, view};

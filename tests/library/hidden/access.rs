@@ -4,7 +4,10 @@ use std::fs;
 
 use novamind::database::hidden_tables;
 use novamind::insight::Inspect;
-use novamind::session::{Access, Activity, Mode, Record, Session, Trajectory, lines_afterwards, verify};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Activity;
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, Session, lines_afterwards, verify};
 
 use super::{hidden, open_wide, run_in, whole};
 use crate::support::company::{week, weeks};

@@ -1,7 +1,8 @@
 //! What the connection of the x-ray answers, refuses and leaves as it was.
 
+use novamind::database::Cell;
 use novamind::insight::Inspect;
-use novamind::session::{Cell, Mode};
+use novamind::record::mode::Mode;
 
 use super::{hidden, open_wide, run_in, whole};
 use crate::support::company::{week, weeks};

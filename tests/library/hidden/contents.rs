@@ -2,8 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use novamind::database::Cell;
 use novamind::insight::{Inspect, Lens};
-use novamind::session::{Cell, CompanyAnswer, DayReport, Mode, Session, Via};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{CompanyAnswer, DayReport, Session};
 use novamind::world::identifiers::{Channel, Group, Plan};
 use novamind::world::market::economy::Dimension;
 

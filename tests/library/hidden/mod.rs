@@ -8,8 +8,12 @@ mod page;
 
 use std::path::Path;
 
+use novamind::database::Cell;
 use novamind::insight::Inspect;
-use novamind::session::{Cell, Configuration, Mode, NewRun, Session, Storage, Via};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
 use crate::support::company::open_shop;

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use novamind::database::{Column, Table, hidden_tables};
+use novamind::database::{Cell, Column, Table, hidden_tables};
 use novamind::insight::Inspect;
-use novamind::session::{Cell, Mode};
+use novamind::record::mode::Mode;
 
 use super::{open_wide, run_in};
 use crate::support::company::weeks;

@@ -7,7 +7,9 @@ mod past;
 mod settings;
 mod support_budget;
 
-use novamind::session::{Configuration, Mode, NewRun, Session, Storage};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::session::{NewRun, Session, Storage};
 
 /// A run in memory, or below a folder.
 fn create(storage: Storage, overrides: &[(&str, &str)]) -> Session {

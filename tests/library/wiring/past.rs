@@ -1,6 +1,8 @@
 //! The past: what a branch takes over, and what forecasts were filed.
 
-use novamind::session::{Access, Mode, Session, Storage, Trajectory};
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::Trajectory;
+use novamind::session::{Access, Session, Storage};
 use serde_json::json;
 
 use super::create;

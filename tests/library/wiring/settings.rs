@@ -1,6 +1,7 @@
 //! Settings: what a tool sets is what undo, redo, the change review and the tables know.
 
-use novamind::session::{Session, Storage, Via};
+use novamind::record::trajectory::record::Via;
+use novamind::session::{Session, Storage};
 use novamind::tools::{CATALOGUE, Kind};
 use serde_json::{Value, json};
 

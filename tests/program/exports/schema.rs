@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use novamind::session::{Configuration, Mode, NewRun, Session, Storage, Via, WeekRequest};
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::mode::Mode;
+use novamind::record::trajectory::record::Via;
+use novamind::session::{NewRun, Session, Storage, WeekRequest};
 use serde_json::{Map, Value, json};
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
@@ -151,7 +154,7 @@ fn lines_of(folder: &Path) -> Vec<Value> {
 
 /// Everything that a person does besides acting, as the examples of the schema show it.
 fn note_every_activity(run: &mut Session) {
-    use novamind::session::record::*;
+    use novamind::record::trajectory::record::*;
     let root = schema();
     let example = |kind: &str| root.pointer(&format!("/$defs/{kind}/examples/0")).expect(kind).clone();
     fn of<T: serde::de::DeserializeOwned>(example: Value) -> T {

@@ -4,11 +4,12 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use novamind::session::record::{
-    Answered, Asked, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help,
-    LeavingCause, LimitScope, PresenceEvent, Select,
+use novamind::record::folder::configuration::Configuration;
+use novamind::record::trajectory::record::{
+    Activity, Answered, Asked, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome,
+    Help, LeavingCause, LimitScope, PresenceEvent, Select, Via,
 };
-use novamind::session::{Access, Activity, Configuration, Interface, NewRun, Session, Storage, Via};
+use novamind::session::{Access, Interface, NewRun, Session, Storage};
 
 use super::{folders, played, table, text};
 use crate::support::home::{Home, id};

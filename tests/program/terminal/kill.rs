@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use novamind::session::{Access, Record, Session, Trajectory, verify};
+use novamind::record::trajectory::{Record, Trajectory};
+use novamind::session::{Access, Session, verify};
 
 use super::pty::Terminal;
 use crate::support::dice::Dice;

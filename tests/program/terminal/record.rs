@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::session::record::{LeavingCause, PresenceEvent};
-use novamind::session::{Activity, Record, Trajectory};
+use novamind::record::trajectory::record::{Activity, LeavingCause, PresenceEvent};
+use novamind::record::trajectory::{Record, Trajectory};
 
 use super::pty::Terminal;
 

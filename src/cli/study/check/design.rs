@@ -1,7 +1,8 @@
 //! What a protocol lays down that a session of its length cannot do.
 
 use super::{Outcome, Point};
-use crate::session::{Configuration, RunError};
+use crate::record::error::RunError;
+use crate::record::folder::configuration::Configuration;
 use novamind_study::{Moment, Study};
 
 /// The points of the design: questions, assignment, forecasts.

@@ -12,7 +12,7 @@ use crate::context::Look;
 use crate::effect::Effect;
 use decisions::Decisions;
 use novamind_insight::FORMS;
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
 use novamind_worker::asking::{Ask, Pending};

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 
 use crate::action::Action;
 use novamind_insight::{BranchComparison, BranchFigure, DecisionEdit, Futures};
+use novamind_record::figures::FigureUnit;
 use novamind_report::whatif::{
     bankrupt, branch_line, cell, cell_in_two, decisions, difference_line, futures_cell, futures_cell_in_two,
     futures_heading, heading, week_of_milestone,
 };
-use novamind_session::FigureUnit;
 use novamind_tui::canvas::{Canvas, Click, fit, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::chart;

@@ -6,7 +6,7 @@ use super::*;
 use crate::keys::Keys;
 use crate::test_kit::{asked, company, dialog_picture, in_dialog};
 use novamind_insight::{DecisionEdit, PastCall, PastDecision};
-use novamind_session::ToolId;
+use novamind_tools::ToolId;
 
 const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use novamind_worker::company::Company;
 use novamind_base::notation::grouped;
 use novamind_report::category_name;
-use novamind_session::{Booked, Category, WeekFigure, entries_of_weeks, week_of};
+use novamind_record::figures::{Booked, WeekFigure};
+use novamind_session::{Category, entries_of_weeks, week_of};
 
 /// A category of the ledger on this screen.
 #[derive(Debug, PartialEq, Eq)]

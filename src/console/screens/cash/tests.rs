@@ -2,7 +2,8 @@ use super::model::*;
 use super::*;
 use crate::screens::Screen;
 use crate::test_kit::{act, drawn, on_screen, played};
-use novamind_session::{Cell as Value, WEEK_OF_ENTRY, filed_forecasts};
+use novamind_database::Cell as Value;
+use novamind_session::{WEEK_OF_ENTRY, filed_forecasts};
 
 #[test]
 fn the_books_agree_with_the_ledger() {
@@ -81,7 +82,7 @@ fn every_figure_of_the_books_is_made_of_its_rows() {
             let figure = screen.figure(&look).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
             let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-            let made = novamind_session::number_at(&rows.rows[0], 0);
+            let made = novamind_database::number_at(&rows.rows[0], 0);
             let shown = subject.of(&amounts);
             assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);
             for _ in 1..column {

@@ -11,7 +11,7 @@ use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent};
-use novamind_session::{Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::{Align, Canvas, Click};
 use novamind_tui::theme::Role;
@@ -267,7 +267,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, share: f64, here: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Cell;
+    use novamind_database::Cell;
 
     #[test]
     fn a_cohort_only_shrinks() {

@@ -11,7 +11,7 @@ use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, percent, price_to_cents};
 use novamind_report::fit::{Beside, Concern, Fit, TruthRange};
 use novamind_session::identifiers::Plan;
-use novamind_session::WeekFigure;
+use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, rows_of};

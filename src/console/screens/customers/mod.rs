@@ -29,7 +29,7 @@ use crate::context::Look;
 use super::ScreenState;
 use crate::action::Action;
 use crate::effect::Effect;
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_session::{Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_tools::ToolId;
 use novamind_session::identifiers::{Channel, Group, Plan};
 
@@ -209,7 +209,7 @@ impl MarketRows {
         }
     }
 
-    fn take_held(&mut self, row: &[novamind_session::Cell], take: impl Fn(&mut Held, &[novamind_session::Cell])) {
+    fn take_held(&mut self, row: &[novamind_database::Cell], take: impl Fn(&mut Held, &[novamind_database::Cell])) {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
             let facts = self.groups.entry(group).or_default();
@@ -217,7 +217,7 @@ impl MarketRows {
         }
     }
 
-    fn take_arrivals(&mut self, row: &[novamind_session::Cell]) {
+    fn take_arrivals(&mut self, row: &[novamind_database::Cell]) {
         let Some(group) = Group::parse(text_at(row, 1)) else { return };
         let (leads, signed) = (number_at(row, 3), number_at(row, 4));
         let facts = self.groups.entry(group).or_default();

@@ -2,7 +2,8 @@ use super::model::*;
 use super::*;
 use crate::screens::Screen;
 use crate::test_kit::{act, drawn, on_screen, sweep};
-use novamind_session::{Cell as Value, Session};
+use novamind_database::Cell as Value;
+use novamind_session::Session;
 use novamind_tools::ToolId;
 use novamind_session::identifiers::Channel;
 
@@ -103,7 +104,7 @@ fn a_group_opens_and_leads_to_its_tools() {
 fn made(session: &mut Session, sql: &str, what: &str) -> f64 {
     let sql = format!("SELECT coalesce({what}, 0) FROM ({sql})");
     let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-    novamind_session::number_at(&rows.rows[0], 0)
+    novamind_database::number_at(&rows.rows[0], 0)
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat, draw_framed};
 use crate::context::{Figure, Look};
 use novamind_base::notation::{compact, grouped};
-use novamind_session::WeekFigure;
+use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::{arrow, count};

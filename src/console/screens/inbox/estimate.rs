@@ -71,7 +71,7 @@ fn unit_cost(company: &Company, plan: Plan) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::test_kit::company;
-    use novamind_session::{Cell, Rows};
+    use novamind_database::{Cell, Rows};
 
     #[test]
     fn compute_is_what_the_group_uses_at_the_cost_of_the_model() {

@@ -30,7 +30,7 @@ use crate::action::Action;
 use crate::effect::Effect;
 use novamind_base::notation::parse_number;
 use novamind_rules::{AskingThread, SeatUsage};
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use novamind_worker::readings::Reading;
 use novamind_rules::{AskingThread, offer_of, plan_in};
-use novamind_session::{CompanyNames, Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
+use novamind_session::CompanyNames;
 use novamind_session::identifiers::Plan;
 
 /// One row of a thread.
@@ -271,7 +272,7 @@ fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
 }
 
 fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
-    let firm = |row: &Vec<novamind_session::Cell>| {
+    let firm = |row: &Vec<novamind_database::Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
         let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
         let firm = Firm {

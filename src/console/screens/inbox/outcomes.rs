@@ -8,7 +8,7 @@ use crate::effect::Effect;
 use crate::screens::panes::{Border, Pane, Seat};
 use crate::context::{Figure, Look};
 use novamind_base::notation::grouped;
-use novamind_session::{Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
@@ -62,7 +62,7 @@ impl Outcomes {
     }
 }
 
-fn outcome_of(row: &[novamind_session::Cell]) -> FirstOffers {
+fn outcome_of(row: &[novamind_database::Cell]) -> FirstOffers {
     let number = |at| number_at(row, at);
     FirstOffers {
         group: text_at(row, 0).to_owned(),

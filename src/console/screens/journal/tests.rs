@@ -4,7 +4,7 @@ use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{company, picture, session, sweep};
-use novamind_session::Via;
+use novamind_record::trajectory::record::Via;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use serde_json::json;
 
@@ -72,7 +72,7 @@ fn every_row_names_what_it_is_about_and_its_rows() {
         if let Some(sql) = &figure.sql {
             let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
             if figure.term == "cash-change" {
-                let sum: f64 = rows.iter().map(|row| novamind_session::number_at(row, 1)).sum();
+                let sum: f64 = rows.iter().map(|row| novamind_database::number_at(row, 1)).sum();
                 let week = company.weeks.iter().find(|week| (week.cash_change - sum).abs() < 0.01);
                 assert!(week.is_some(), "{sql}: {sum}");
             }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
-use novamind_session::{Cell, Rows, RunningStudy, number_at, text_at};
+use novamind_database::{Cell, Rows, number_at, text_at};
+use novamind_session::RunningStudy;
 use novamind_session::identifiers::Group;
 
 /// Since when a group is known.

@@ -5,7 +5,8 @@ use crate::keys::Keys;
 use novamind_worker::posts::PostKind;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown};
-use novamind_session::{Session, Via};
+use novamind_record::trajectory::record::Via;
+use novamind_session::Session;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -193,7 +194,7 @@ fn what_is_not_told_yet_is_shaded_and_rivals_are_marked_by_day() {
     let figure = screen.figure(&look).expect("a figure");
     assert_eq!(figure.title, "PMI of day 1");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(novamind_session::number_at(&rows[0], 1), screen.facts.economy[0].value);
+    assert_eq!(novamind_database::number_at(&rows[0], 1), screen.facts.economy[0].value);
     for focus in 0..Screen::panes(&screen) {
         screen.set_focus(focus);
         if let Some(figure) = screen.figure(&look) {

@@ -5,7 +5,9 @@ use ratatui::layout::Rect;
 
 use crate::effect::Effect;
 use novamind_base::notation::{dollars, parse_number};
-use novamind_session::{Configuration, DEFAULT_SCENARIO, Mode, NewRun};
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
+use novamind_record::mode::Mode;
+use novamind_session::NewRun;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

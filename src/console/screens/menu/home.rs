@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use super::runs::{draw_preview, facts, state};
 use super::{Menu, Previews};
 use novamind_base::notation::dollars;
-use novamind_session::RunSummary;
+use novamind_record::folder::runs::RunSummary;
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

@@ -6,8 +6,10 @@ use ratatui::layout::Rect;
 
 use crate::effect::Effect;
 use novamind_course::Lesson;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
 use novamind_report::count;
-use novamind_session::{Configuration, LessonEntry, Mode, NewRun};
+use novamind_session::{LessonEntry, NewRun};
 use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

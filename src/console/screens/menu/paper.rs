@@ -4,9 +4,11 @@ use ratatui::layout::Rect;
 
 use super::Menu;
 use novamind_base::notation::{compact, dollars};
+use novamind_record::folder::runs::RunSummary;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Ended;
 use novamind_report::comparable::{Obstacle, RunTerms, not_ranked_in_words};
 use novamind_report::ranking::{published, published_terms};
-use novamind_session::{Ended, Mode, RunSummary};
 use novamind_tui::canvas::{Align, Canvas, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;

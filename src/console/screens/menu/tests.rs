@@ -4,7 +4,9 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
 use crate::test_kit::{asked, painted};
-use novamind_session::{Access, Ended, Goal, Mode};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Ended;
+use novamind_session::{Access, Goal};
 use novamind_worker::request::{Recorded, Request};
 
 /// An unfinished run.

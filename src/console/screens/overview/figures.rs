@@ -2,7 +2,8 @@
 
 use crate::context::Figure;
 use novamind_base::notation::{dollars, grouped, percent};
-use novamind_session::{WEEK_OF_ENTRY, WeekFigure, WeekFigures, entries_of_weeks};
+use novamind_record::figures::{WeekFigure, WeekFigures};
+use novamind_session::{WEEK_OF_ENTRY, entries_of_weeks};
 use novamind_insight::WeekQuantity;
 use novamind_tui::text::arrow;
 use novamind_tui::theme::Role;

@@ -21,7 +21,7 @@ use super::product::model::{Day, projects, service};
 use crate::context::Look;
 use super::ScreenState;
 use crate::action::Action;
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::Company;

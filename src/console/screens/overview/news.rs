@@ -10,7 +10,7 @@ use crate::screens::panes::{Border, Pane, Seat};
 use crate::screens::product::model::Project;
 use crate::context::{Figure, Look, ScreenId};
 use novamind_base::notation::grouped;
-use novamind_session::{Rows, text_at};
+use novamind_database::{Rows, text_at};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;

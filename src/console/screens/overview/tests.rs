@@ -4,7 +4,8 @@ use crate::context::ScreenId;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, courted, drawn, on_screen, played, shown};
 use novamind_report::needs::{Place, Problem};
-use novamind_session::{Cell as Value, Session};
+use novamind_database::Cell as Value;
+use novamind_session::Session;
 use novamind_worker::questions::CallCheck;
 use news::NewsKind;
 
@@ -143,7 +144,7 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
     let effects = tools.prefill(tool, &arguments, &company);
     let checked = asked::<CallCheck>(&effects);
     assert_eq!((checked.tool, &checked.arguments), (tool, &arguments));
-    session.call(tool, &arguments, novamind_session::Via::Form).expect("the proposal is accepted");
+    session.call(tool, &arguments, novamind_record::trajectory::record::Via::Form).expect("the proposal is accepted");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::context::Figure;
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, dollars, percent};
 use novamind_report::peak::PeakProjection;
-use novamind_session::WeekFigure;
+use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};

@@ -12,7 +12,7 @@ use crate::context::Figure;
 use crate::screens::panes::Seat;
 use novamind_base::notation::grouped;
 use novamind_session::identifiers::Group;
-use novamind_session::WeekFigure;
+use novamind_record::figures::WeekFigure;
 use novamind_insight::WeekQuantity;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, rows_of};

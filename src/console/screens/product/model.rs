@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use novamind_worker::company::Company;
 use novamind_report::plan_margins::{PlanUse, Sales};
-use novamind_session::{Category, ResearchMeans, Rows, WeekFigures, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
+use novamind_record::figures::WeekFigures;
+use novamind_session::{Category, ResearchMeans};
 use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
 use novamind_session::identifiers::Plan;
 
@@ -101,7 +103,7 @@ impl Day {
 
 /// The service, day by day.
 pub fn service(rows: &Rows) -> Vec<Day> {
-    let day = |row: &Vec<novamind_session::Cell>| Day {
+    let day = |row: &Vec<novamind_database::Cell>| Day {
         day: number_at(row, 0) as u32,
         usage: number_at(row, 1),
         capacity: number_at(row, 2),
@@ -125,7 +127,7 @@ pub type Ages = [f64; 4];
 
 /// Open issues by group.
 pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
-    let ages = |row: &Vec<novamind_session::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
+    let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
 
@@ -148,7 +150,7 @@ pub struct Project {
 
 /// The projects, the newest first.
 pub fn projects(rows: &Rows) -> Vec<Project> {
-    let project = |row: &Vec<novamind_session::Cell>| Project {
+    let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
         tier: number_at(row, 1) as u32,
         done: text_at(row, 2) == "completed",

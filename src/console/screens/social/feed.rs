@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use novamind_worker::posts::{PostKind, Post};
-use novamind_session::{Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
 
 /// Our posts as the database tells them.
 pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
-    let own = |row: &Vec<novamind_session::Cell>| {
+    let own = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
         Arc::new(Post {

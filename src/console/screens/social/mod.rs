@@ -22,7 +22,7 @@ use crate::action::Action;
 use crate::effect::Effect;
 use novamind_base::notation::grouped;
 use novamind_report::post_leads::leads_around;
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, fit};
 use novamind_tui::theme::Role;

@@ -8,7 +8,9 @@ use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, drawn, on_screen, played, shown, sweep};
-use novamind_session::{Refusal, Session, Via};
+use novamind_record::trajectory::record::Via;
+use novamind_tools::Refusal;
+use novamind_session::Session;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();
@@ -46,7 +48,7 @@ fn the_feed_holds_what_the_tools_and_the_database_tell() {
     let comments = screen.others.iter().filter(|post| post.kind == PostKind::Comments).count();
     assert_eq!(comments as u32, screen.own[0].comments);
     let rows = session.query("SELECT count(*) FROM social_media_posts").expect("rows");
-    assert_eq!(novamind_session::number_at(&rows.rows[0], 0) as u64, total);
+    assert_eq!(novamind_database::number_at(&rows.rows[0], 0) as u64, total);
 }
 
 #[test]
@@ -129,9 +131,9 @@ fn figures_are_made_of_their_rows() {
         session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
     };
     let number = screen.post().expect("a post").number;
-    assert_eq!(rows(&screen)[0][0], novamind_session::Cell::Integer(i64::from(number)));
+    assert_eq!(rows(&screen)[0][0], novamind_database::Cell::Integer(i64::from(number)));
     screen.focus_on(SocialPane::Own);
-    assert_eq!(rows(&screen)[0][2], novamind_session::Cell::Integer(i64::from(screen.own[0].views)));
+    assert_eq!(rows(&screen)[0][2], novamind_database::Cell::Integer(i64::from(screen.own[0].views)));
     act(&mut screen, Action::Right, &company);
     act(&mut screen, Action::Right, &company);
     assert_eq!(rows(&screen).len() as u32, screen.own[0].comments);

@@ -1,7 +1,7 @@
 //! Statements asked before and texts that were replaced in the editor, the newest first, to choose from.
 
 use super::picker::{ListedQuery, Picker, in_a_line};
-use novamind_session::library::{Head, body};
+use novamind_record::folder::library::{Head, body};
 
 /// Statements of this screen.
 #[derive(Default)]

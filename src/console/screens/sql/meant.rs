@@ -2,7 +2,7 @@
 //! as far as SQL chooses the same ones.
 
 use super::picker::in_a_line;
-use novamind_session::{Cell, Rows};
+use novamind_database::{Cell, Rows};
 
 /// The rows that are meant.
 #[derive(Debug, Clone, PartialEq, Eq)]

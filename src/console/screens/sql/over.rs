@@ -11,7 +11,7 @@ use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::context::Look;
 use crate::screens::panes::{Pane, Seat};
-use novamind_session::library::NamedQuery;
+use novamind_record::folder::library::NamedQuery;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Field;
 

@@ -11,7 +11,7 @@ use crate::action::{Action, Scope};
 use crate::effect::Effect;
 use crate::context::Look;
 use crate::screens::panes::{Border, Pane, Seat};
-use novamind_session::library::Head;
+use novamind_record::folder::library::Head;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::{Field, Table};
 

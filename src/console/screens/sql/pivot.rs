@@ -7,7 +7,7 @@ use super::summary::{Aggregate, Distinct, MOST_ACROSS, PivotShape, pivot};
 use super::values::is_numeric;
 use crate::action::Action;
 use crate::context::Look;
-use novamind_session::{Cell, Rows};
+use novamind_database::{Cell, Rows};
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::theme::Role;
 

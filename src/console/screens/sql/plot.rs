@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use super::values::{decimals_shown, is_numeric};
 use crate::screens::panes::Seat;
 use novamind_base::notation::{compact, grouped};
-use novamind_session::library::{ChartKind, ChartLine};
-use novamind_session::{Cell, Rows};
+use novamind_record::folder::library::{ChartKind, ChartLine};
+use novamind_database::{Cell, Rows};
 use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
 use novamind_tui::text::{arrow, number};
 use novamind_tui::theme::Role;
@@ -308,7 +308,7 @@ fn axis_number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::library::Head;
+    use novamind_record::folder::library::Head;
 
     fn result(columns: &[&str], rows: Vec<Vec<Cell>>) -> Rows {
         Rows { columns: columns.iter().map(|name| (*name).to_owned()).collect(), rows, ..Rows::default() }

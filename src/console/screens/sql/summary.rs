@@ -5,8 +5,8 @@
 use super::meant::RowsMeant;
 use super::picker::in_a_line;
 use super::values::whole;
-use novamind_session::library::body;
-use novamind_session::{Cell, Rows};
+use novamind_record::folder::library::body;
+use novamind_database::{Cell, Rows};
 use novamind_tui::sql::{KEYWORDS, tokens};
 
 /// Columns that a pivot has for values, at most; all others are in one more.

@@ -7,9 +7,9 @@ use unicode_width::UnicodeWidthStr;
 use super::picker::in_a_line;
 use super::results::Results;
 use std::time::Duration;
-use novamind_database::table;
-use novamind_session::library::{Head, body};
-use novamind_session::{Refusal, Rows};
+use novamind_database::{table, Rows};
+use novamind_record::folder::library::{Head, body};
+use novamind_tools::Refusal;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokens;
 use novamind_tui::theme::Role;
@@ -195,7 +195,7 @@ fn title(sql: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Cell;
+    use novamind_database::Cell;
 
     fn rows(number: i64) -> Result<Rows, Refusal> {
         let columns = vec!["n".to_owned()];

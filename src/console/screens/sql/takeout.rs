@@ -7,7 +7,7 @@ use crate::action::Action;
 use crate::effect::Effect;
 use crate::context::Look;
 use novamind_base::notation::grouped;
-use novamind_session::Rows;
+use novamind_database::Rows;
 use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
 use novamind_tui::theme::Role;
 
@@ -101,7 +101,7 @@ pub fn count(rows: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Cell;
+    use novamind_database::Cell;
 
     fn result(length: usize, rows: usize) -> Rows {
         let row = vec![Cell::Text("x".repeat(length))];

@@ -10,7 +10,8 @@ use novamind_worker::company::Company;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{asked, company, picture, session, sweep};
-use novamind_session::{Cell, Refusal, Rows};
+use novamind_database::{Cell, Rows};
+use novamind_tools::Refusal;
 
 fn with_look<T>(company: &Company, work: impl FnOnce(&Look<'_>) -> T) -> T {
     let keys = Keys::shipped();

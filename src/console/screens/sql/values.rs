@@ -5,7 +5,8 @@ use serde_json::Value;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell as Shown, Column};
 use novamind_base::notation::{csv_cell, grouped, printable};
-use novamind_session::{Cell, Rows, rows_as_json};
+use novamind_database::{Cell, Rows};
+use novamind_session::rows_as_json;
 
 /// Widest column on the screen; longer values can be opened.
 const WIDEST: u16 = 48;

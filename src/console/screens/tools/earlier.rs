@@ -42,7 +42,7 @@ mod tests {
         let mut session = played(1);
         for price in [14, 14] {
             let arguments = serde_json::json!({ "A": price });
-            session.call("set_prices", &arguments, novamind_session::Via::Form).expect("a price");
+            session.call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form).expect("a price");
         }
         let company = Company::of(&session);
         assert_eq!(

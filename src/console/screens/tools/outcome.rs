@@ -14,7 +14,7 @@ use novamind_base::notation::{dollars, grouped};
 use novamind_report::plan_margins::Sales;
 use novamind_report::research::outlook_lines;
 use novamind_report::review::terms_line;
-use novamind_session::{Rows, number_at, text_at};
+use novamind_database::{Rows, number_at, text_at};
 use novamind_tools::{ArgumentKind, Key};
 use novamind_tui::text::{count, number, wrapped};
 use novamind_tui::theme::Role;
@@ -26,7 +26,7 @@ pub(super) struct Leads(BTreeMap<(String, String), (f64, f64)>);
 impl Leads {
     /// Reads them.
     pub fn read(rows: &Rows) -> Leads {
-        let own = |row: &Vec<novamind_session::Cell>| {
+        let own = |row: &Vec<novamind_database::Cell>| {
             let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
             (pair, (number_at(row, 2), number_at(row, 3)))
         };
@@ -190,7 +190,7 @@ fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
     format!("{draft}{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
 }
 
-fn answer_lines(answer: &Result<Value, novamind_session::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
+fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
     match answer {
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
@@ -251,7 +251,7 @@ fn readable(value: &Value, depth: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_session::Cell;
+    use novamind_database::Cell;
 
     #[test]
     fn a_channel_is_known_by_what_it_brought_for_the_money() {

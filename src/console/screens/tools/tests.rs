@@ -6,8 +6,8 @@ use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
 use novamind_session::identifiers::Plan;
-use novamind_session::{Refusal, Via};
-use novamind_tools::ToolId;
+use novamind_record::trajectory::record::Via;
+use novamind_tools::{Refusal, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
@@ -249,8 +249,8 @@ fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
         .query("SELECT sum(leads_generated), sum(spend) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND day > 7")
         .expect("rows")
         .rows;
-    let leads = novamind_session::number_at(&rows[0], 0);
-    let spend = novamind_session::number_at(&rows[0], 1);
+    let leads = novamind_database::number_at(&rows[0], 0);
+    let spend = novamind_database::number_at(&rows[0], 1);
     let leads_in_words = novamind_base::notation::grouped(leads, 0);
     let words = format!("content_marketing × S1, last four weeks: {leads_in_words} leads for");
     let text = drawn(&tools, &company, 200, 57);
@@ -319,7 +319,7 @@ fn a_field_names_its_term_and_its_history() {
     let figure = tools.figure(&look).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
-    assert_eq!(novamind_session::number_at(rows.last().expect("a row"), 1), 12.0);
+    assert_eq!(novamind_database::number_at(rows.last().expect("a row"), 1), 12.0);
 }
 
 #[test]

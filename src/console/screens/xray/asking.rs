@@ -3,7 +3,7 @@
 use super::{Seen, Xray};
 use crate::effect::Effect;
 use novamind_worker::look_inside::{BreakpointWork, LookFound, LookQuestion};
-use novamind_session::Refusal;
+use novamind_tools::Refusal;
 
 impl Xray {
     pub(super) fn send(&mut self, question: LookQuestion) -> Vec<Effect> {

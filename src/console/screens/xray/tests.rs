@@ -3,7 +3,11 @@ use crate::headless::Headless;
 use crate::keys::Keys;
 use crate::screens::Screen;
 use crate::test_kit::{act, asked, company, drawn, on_screen, played, settings, shown, sweep};
-use novamind_session::{Configuration, Mode, NewRun, Refusal, Session, Storage, Via};
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_tools::Refusal;
+use novamind_session::{NewRun, Session, Storage};
 use novamind_worker::queries::{QueriedTables, Query};
 
 fn open(company: Company) -> Company {

@@ -16,8 +16,8 @@ use novamind_report::xray::{
     drift_in_words, quality_in_words, reputation_in_words, rivals_in_words, satisfaction_in_words,
     spillover_in_words, streams_in_words,
 };
-use novamind_session::Refusal;
 use novamind_session::identifiers::Group;
+use novamind_tools::Refusal;
 
 /// What a view answers, or why it cannot be asked.
 type Viewed = Result<Result<Answer, Refusal>, Problem>;

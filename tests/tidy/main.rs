@@ -1,4 +1,4 @@
-//! Rules of the source text: crates import what the architecture names, cycles of modules that only shrink, nothing unfinished, no clock
+//! Rules of the source text: crates import what the architecture names, no cycle of more than three modules, nothing unfinished, no clock
 //! and no order of chance in the simulator, configuration that can be read.
 
 mod cycles;

@@ -94,8 +94,11 @@ impl FrozenHome {
     /// Appends what a file, a folder or an archive contains.
     fn write_file(&mut self, path: &Path, output: &mut String) {
         if path.is_dir() {
-            for inner in sorted(path) {
-                self.write_file(&inner, output);
+            // New runs have random ids: the order of the masked names is the same in every execution.
+            let mut inner = sorted(path);
+            inner.sort_by_key(|path| self.masks.apply(&path.display().to_string()));
+            for path in inner {
+                self.write_file(&path, output);
             }
             return;
         }

@@ -163,8 +163,9 @@ impl AskedWords {
     ///
     /// # Errors
     /// Those of [`Inspector::find_days`], [`Inspector::who_writes`], [`Inspector::difference_of_days`],
-    /// [`Session::parameter`] and [`Session::set_parameter`].
+    /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
+    /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
     /// [`Inspector::find_days`]: novamind_insight::Inspector::find_days
     /// [`Inspector::who_writes`]: novamind_insight::Inspector::who_writes
     /// [`Inspector::difference_of_days`]: novamind_insight::Inspector::difference_of_days

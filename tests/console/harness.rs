@@ -117,6 +117,12 @@ impl Console {
         assert!(screen.contains(text), "{text:?} is not on the screen:\n{screen}");
     }
 
+    /// Fails with the whole screen if it shows some text.
+    pub fn hides(&mut self, text: &str) {
+        let screen = self.screen();
+        assert!(!screen.contains(text), "{text:?} is on the screen:\n{screen}");
+    }
+
     /// Lets a week pass with the naive forecasts.
     pub fn week(&mut self) {
         self.press("n enter 'test' enter f enter");

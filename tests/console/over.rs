@@ -85,6 +85,7 @@ fn opponents_play_its_world_and_rank_it() {
     // The page closes to the final page, and can be asked again.
     console.press("esc");
     console.shows("You end with");
+    console.hides("enterprise-led");
     console.press("o");
     console.shows("▌ You");
 }

@@ -183,6 +183,8 @@ impl<'a> Plain<'a> {
     }
 }
 
+/// Milliseconds since a moment, rounded up: the record subtracts moments that are cut to milliseconds, and such a difference can be
+/// the next larger number.
 fn ms(since: Instant) -> u64 {
-    u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
+    u64::try_from(since.elapsed().as_micros().div_ceil(1000)).unwrap_or(u64::MAX)
 }

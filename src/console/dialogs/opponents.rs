@@ -47,11 +47,11 @@ impl Dialog for OpponentsPage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        vec![Action::Close]
+        vec![Action::Cancel]
     }
 
     fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
-        if action == Action::Close { Outcome::close() } else { Outcome::stay() }
+        if action == Action::Cancel { Outcome::close() } else { Outcome::stay() }
     }
 
     fn take_answers(&mut self) {

@@ -90,6 +90,7 @@ impl Session {
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         integrity.check(&path, &trajectory)?;
+        let is_ahead = integrity.is_ahead_of(&trajectory);
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
@@ -125,8 +126,14 @@ impl Session {
         }
         if trajectory.unfinished > 0 {
             let bytes = trajectory.unfinished;
+            let reason = match is_ahead {
+                true => {
+                    ". world.db was made from the complete line: a power cut or an edit removed the end of the line."
+                }
+                false => ": it was never confirmed.",
+            };
             session.remarks.push(format!(
-                "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped: it was never confirmed."
+                "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped{reason}"
             ));
         }
         session.log.read(&trajectory);

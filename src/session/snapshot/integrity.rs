@@ -67,6 +67,12 @@ impl Integrity {
         })
     }
 
+    /// Whether the database was made from more lines than the trajectory has.
+    pub(crate) fn is_ahead_of(&self, trajectory: &Trajectory) -> bool {
+        let last = trajectory.lines.last().map(|line| line.seq);
+        self.database.as_ref().is_some_and(|position| Some(position.seq) > last)
+    }
+
     /// Whether the database's file is the one that an orderly end left; none where no end tells.
     fn is_as_closed(&self, folder: &Path) -> Option<bool> {
         let position = self.database.as_ref()?;

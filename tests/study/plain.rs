@@ -111,7 +111,7 @@ impl<'a> Plain<'a> {
         self.wait_for("the clock is stopped");
         let inner = Instant::now();
         std::thread::sleep(std::time::Duration::from_millis(300));
-        let least = ms(inner);
+        let least = u64::try_from(inner.elapsed().as_millis()).unwrap_or(u64::MAX);
         self.say("resume");
         self.wait_for("the clock runs again");
         self.note("clock", "stopped", "");
@@ -167,7 +167,7 @@ impl<'a> Plain<'a> {
         let Plain { lab, machine, diary, .. } = self;
         let inner = Instant::now();
         std::thread::sleep(std::time::Duration::from_millis(300));
-        let least = ms(inner);
+        let least = u64::try_from(inner.elapsed().as_millis()).unwrap_or(u64::MAX);
         let mut back = Plain::start(lab, machine, diary);
         back.opens();
         back.diary.between(Spent::Away, least, ms(before));
@@ -183,7 +183,7 @@ impl<'a> Plain<'a> {
     }
 }
 
-/// Milliseconds since a moment, rounded up: the record subtracts moments that are cut to milliseconds, and such a difference can be
+/// Milliseconds since a moment, rounded up, as an upper bound: the record subtracts moments that are cut to milliseconds, and such a difference can be
 /// the next larger number.
 fn ms(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_micros().div_ceil(1000)).unwrap_or(u64::MAX)

@@ -13,7 +13,7 @@ pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
 pub use class::finding::ClassFinding;
 pub use class::handout::Handout;
 pub use class::reference::{ClassReference, ranked_goal, share_of_good};
-pub use lesson::answers::{guess_in_lesson, lesson_step, measure_over_part, take_hint};
+pub use lesson::answers::{guess_in_lesson, measure_over_part, take_hint};
 pub use lesson::debrief::{
     Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
     PlayedPart, ReferenceCurve,

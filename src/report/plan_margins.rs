@@ -370,13 +370,7 @@ mod tests {
             let expected = 1.0 - units * unit_cost / paid;
             assert!((own.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
         }
-        let models: Vec<(u8, f64)> = session
-            .company()
-            .tool_limits()
-            .models
-            .iter()
-            .map(|model| (model.tier, model.unit_cost))
-            .collect();
+        let models = session.company().tool_limits().unit_costs();
         let now = terms(&session.settings().core);
         let draft = Lever::Tier.apply(now, &json!({"B": 3}));
         let lines = margin_lines(&sales, &draft, Lever::Tier, &models, 42);

@@ -66,6 +66,7 @@ pub use permission::{REFUSED_LOOK, may_look_inside};
 pub use play::act::Preview;
 pub use play::companion::Companion;
 pub use play::drafts::{Drafts, UnsentTexts};
+pub use play::lesson::conduct::{lesson_step, weeks_passed};
 pub use play::lesson::judging::measure;
 pub use play::lesson::reference::{PartPlay, play_part, play_part_watched};
 pub use play::once::WeekRequest;
@@ -105,7 +106,8 @@ pub mod engine {
     pub use crate::company::facts_chain::StateHash;
     pub use crate::company::feed::Feed;
     pub use crate::company::overrides::{
-        Overrides, ParameterChange, Taken, Unfit, json_of_value, not_allowed, unknown, value_of_json,
+        Overrides, ParameterChange, Taken, Unfit, json_of_value, not_allowed, refuse_outside_debug, unknown,
+        value_of_json,
     };
     pub use crate::company::simulation::Simulation;
     pub use crate::database::{Entries, RunDatabase};

@@ -7,14 +7,14 @@ use std::sync::Arc;
 
 use novamind::course::{
     Class, ClassCollection, ClassFinding, ClassSources, Handout, Lesson, RunVerdict, ToHandOut,
-    guess_in_lesson, lesson_step, try_step_again,
+    guess_in_lesson, try_step_again,
 };
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::derived::manifest_of;
 use novamind::record::trajectory::record::Via;
 use novamind::report::class::{ClassView, Shown, as_html, columns_table, rows, shown_in_words};
 use novamind::rules::answers_to_companies;
-use novamind::session::{Access, Export, NewRun, SealKey, Session, Storage};
+use novamind::session::{Access, Export, NewRun, SealKey, Session, Storage, lesson_step};
 use serde_json::json;
 use tempfile::TempDir;
 

@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::course::{Lesson, LessonPage, guess_in_lesson, lesson_step, take_hint, try_step_again};
+use novamind::course::{Lesson, LessonPage, guess_in_lesson, take_hint, try_step_again};
 use novamind::insight::{DecisionEdit, OfRecord, WhatIf, branch_with_decisions};
 use novamind::lab::check_plays;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::{Ended, Via};
-use novamind::session::{Access, Session, verify};
+use novamind::session::{Access, Session, lesson_step, verify};
 use serde_json::json;
 
 use crate::support::lessons::{self, code, lesson_of, week};

@@ -2,19 +2,8 @@
 
 use novamind_record::lesson::{LessonStanding, Measurement};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_session::{Session, measure};
+use novamind_session::{Session, lesson_step, measure};
 use novamind_tools::Refusal;
-
-/// Whole weeks that have passed.
-pub(super) fn weeks_passed(session: &Session) -> u32 {
-    session.day() / session.params().run.days_per_week
-}
-
-/// Returns the step that the next week belongs to, counted from 0; `None` outside lessons and once the part is over.
-pub fn lesson_step(session: &Session) -> Option<usize> {
-    let standing = session.lesson().filter(|_| session.ended().is_none())?;
-    standing.own_part().step_after(weeks_passed(session))
-}
 
 /// Answers the question of the step that has begun: a number, or the number of a choice counted from 1.
 ///

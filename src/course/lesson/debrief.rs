@@ -7,7 +7,6 @@ use serde::{Serialize, Serializer};
 
 use std::thread;
 
-use super::answers::lesson_step;
 use super::decisions::{PartedDecision, WeekDecisions, parted};
 use super::page::{GoalPage, LessonQuestion, pitfalls, question};
 
@@ -16,7 +15,9 @@ use novamind_record::lesson::{
     LessonCall, LessonGoal, LessonStanding, NumberSource, Over, ReferencePlay, ScheduledCalls,
 };
 use novamind_record::trajectory::record::Ended;
-use novamind_session::{AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Session, play_part_watched};
+use novamind_session::{
+    AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Session, lesson_step, play_part_watched,
+};
 use novamind_tools::{Refusal, ToolId, highest_named};
 use novamind_world::params::Params;
 

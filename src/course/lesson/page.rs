@@ -4,10 +4,9 @@ use serde::Serialize;
 
 use super::debrief::{DebriefStep, result_of_step};
 
-use super::answers::{lesson_step, weeks_passed};
 use novamind_record::lesson::{GoalBound, GuessForm, GuessTold, LessonGoal, LessonStanding};
 use novamind_record::trajectory::record::LessonNote;
-use novamind_session::{Session, measure};
+use novamind_session::{Session, lesson_step, measure, weeks_passed};
 use novamind_tools::ToolId;
 
 /// What a student sees of a lesson.

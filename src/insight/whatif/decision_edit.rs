@@ -10,7 +10,7 @@ use crate::counterfactual::kept_state::KeptState;
 use crate::counterfactual::script::{Move, PastCall};
 use novamind_base::notation::json_number;
 use novamind_record::mode::Mode;
-use novamind_session::engine::{UsageRule, unknown, value_of_json};
+use novamind_session::engine::{UsageRule, refuse_outside_debug, unknown, value_of_json};
 use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
@@ -110,9 +110,7 @@ impl Opening<'_> {
 
     /// Refuses a parameter that cannot be set.
     fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Refusal> {
-        if self.mode != Mode::Debug {
-            return Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only"));
-        }
+        refuse_outside_debug(self.mode)?;
         let in_force = self.params.value(key).map_err(unknown)?;
         let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {

@@ -88,14 +88,7 @@ impl Interpreter {
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
         });
-        let models: Vec<(u8, f64)> = self
-            .session
-            .company()
-            .tool_limits()
-            .models
-            .iter()
-            .map(|model| (model.tier, model.unit_cost))
-            .collect();
+        let models = self.session.company().tool_limits().unit_costs();
         match Sales::of(&self.session) {
             Ok(sales) => {
                 margin_sentences(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())

@@ -122,13 +122,7 @@ mod tests {
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
         });
-        let models: Vec<(u8, f64)> = session
-            .company()
-            .tool_limits()
-            .models
-            .iter()
-            .map(|model| (model.tier, model.unit_cost))
-            .collect();
+        let models = session.company().tool_limits().unit_costs();
         let own = sales.of_plan(Plan::B);
         let unit_cost = models.iter().find(|(tier, _)| *tier == now[Plan::B].tier).expect("its model").1;
         let dear = Lever::Price.apply(now, &json!({"B": 250}));

@@ -10,6 +10,7 @@ use toml::{Table, Value};
 use super::simulation::Simulation;
 use novamind_base::notation::json_number;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Line, Record};
 use novamind_tools::{Numbers, Refusal};
@@ -198,6 +199,17 @@ impl DerivedOfParameters {
     pub(crate) fn has_own_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
         let is_other = || simulation.overrides.is_used() || manifest.has_own_parameters();
         *self.are_own.get_or_init(is_other)
+    }
+}
+
+/// Refuses to read or set parameters outside debug runs.
+///
+/// # Errors
+/// `not_in_this_mode`.
+pub fn refuse_outside_debug(mode: Mode) -> Result<(), Refusal> {
+    match mode {
+        Mode::Debug => Ok(()),
+        _ => Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only")),
     }
 }
 

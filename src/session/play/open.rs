@@ -90,7 +90,6 @@ impl Session {
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         integrity.check(&path, &trajectory)?;
-        let is_ahead = integrity.is_ahead_of(&trajectory);
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
@@ -126,7 +125,7 @@ impl Session {
         }
         if trajectory.unfinished > 0 {
             let bytes = trajectory.unfinished;
-            let reason = match is_ahead {
+            let reason = match integrity.is_ahead_of(&trajectory) {
                 true => {
                     ". world.db was made from the complete line: a power cut or an edit removed the end of the line."
                 }

@@ -5,7 +5,8 @@ use serde_json::Value;
 use super::Session;
 use super::act::not_saved;
 use crate::company::overrides::{
-    DerivedOfParameters, ParameterChange, Taken, json_of_value, not_allowed, unknown, value_of_json,
+    DerivedOfParameters, ParameterChange, Taken, json_of_value, not_allowed, refuse_outside_debug, unknown,
+    value_of_json,
 };
 use crate::figures::journal::JournalEntry;
 use crate::view::debug_parameters::ChangedParameter;
@@ -33,7 +34,7 @@ impl Session {
         value: &Value,
         from_day: Option<u32>,
     ) -> Result<ChangedParameter, Refusal> {
-        self.company().debug_parameters()?;
+        refuse_outside_debug(self.manifest.mode)?;
         self.set_parameter_anyway(key, value, from_day)
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::unnamed::{UnnamedBranch, write_branch};
 use crate::play::Session;
+use crate::play::lesson::conduct::weeks_passed;
 use crate::recording::folders::new_id;
 use novamind_record::clock::now;
 use novamind_record::error::RunError;
@@ -38,7 +39,7 @@ impl UnnamedBranch {
             return Err(Refusal::new("not_in_this_mode", message));
         }
         if let Some(lesson) = run.lesson().filter(|_| run.ended().is_none()) {
-            lesson.refuse_before_guess(run.weeks_passed())?;
+            lesson.refuse_before_guess(weeks_passed(run))?;
         }
         let Some(folder) = run.folder() else {
             return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));

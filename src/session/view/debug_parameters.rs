@@ -4,9 +4,8 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::CompanyView;
-use crate::company::overrides::{json_of_value, unknown};
+use crate::company::overrides::{json_of_value, refuse_outside_debug, unknown};
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 use novamind_world::params::Params;
 
@@ -43,10 +42,7 @@ impl<'a> CompanyView<'a> {
     /// # Errors
     /// `not_in_this_mode`.
     pub fn debug_parameters(&self) -> Result<DebugParameters<'a>, Refusal> {
-        if self.manifest.mode == Mode::Debug {
-            return Ok(DebugParameters(*self));
-        }
-        Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only"))
+        refuse_outside_debug(self.manifest.mode).map(|()| DebugParameters(*self))
     }
 }
 

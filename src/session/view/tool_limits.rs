@@ -72,6 +72,11 @@ impl ToolLimits {
     pub fn level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|own| own.level == level)
     }
+
+    /// Returns each model tier with its cost, dollars a unit.
+    pub fn unit_costs(&self) -> Vec<(u8, f64)> {
+        self.models.iter().map(|model| (model.tier, model.unit_cost)).collect()
+    }
 }
 
 /// A study that was ordered and is not finished.

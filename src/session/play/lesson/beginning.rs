@@ -1,6 +1,7 @@
 //! How a lesson and its steps begin: what is played before the student sees the company, and what a program that ended on the
 //! way has left to do.
 
+use super::conduct::{lesson_step, weeks_passed};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -42,7 +43,7 @@ impl Session {
         let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
         let (lesson, part) = (standing.lesson.clone(), standing.part);
         let start = &lesson.plan.parts[part];
-        let first = self.weeks_passed();
+        let first = weeks_passed(self);
         for week in first..=start.start_weeks {
             let due = start.start.iter().filter(|own| own.week == week).flat_map(|own| &own.calls);
             for call in due.skip(if week == first { made } else { 0 }) {
@@ -124,7 +125,7 @@ impl Session {
     pub(crate) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
         let is_open = self.log().is_written() && self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
-        let Some(step) = self.lesson_step().filter(|step| !standing.has_begun(*step)) else { return Ok(()) };
+        let Some(step) = lesson_step(self).filter(|step| !standing.has_begun(*step)) else { return Ok(()) };
         if is_try_to_begin(lines) {
             let number = self.tries_of_parent(step) + 1;
             return self

@@ -9,21 +9,21 @@ use novamind_record::trajectory::record::{Activity, Ended, LessonNote, Via};
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Refusal, ToolId};
 
+/// Returns the whole weeks that have passed.
+pub fn weeks_passed(session: &Session) -> u32 {
+    session.day() / session.params().run.days_per_week
+}
+
+/// Returns the step that the next week belongs to, counted from 0; `None` outside lessons and once the part has ended.
+pub fn lesson_step(session: &Session) -> Option<usize> {
+    let standing = session.lesson().filter(|_| session.ended().is_none())?;
+    standing.own_part().step_after(weeks_passed(session))
+}
+
 impl Session {
     /// The position of the student in the lesson of this run; `None` outside lessons.
     pub fn lesson(&self) -> Option<&LessonStanding> {
         self.lesson.as_deref()
-    }
-
-    /// The step that the next week belongs to, counted from 0; `None` outside lessons and once the part is over.
-    pub(crate) fn lesson_step(&self) -> Option<usize> {
-        let standing = self.lesson.as_deref()?;
-        standing.own_part().step_after(self.weeks_passed()).filter(|_| self.ended().is_none())
-    }
-
-    /// Whole weeks that have passed.
-    pub(crate) fn weeks_passed(&self) -> u32 {
-        self.day() / self.params().run.days_per_week
     }
 
     /// Refuses a tool that the lesson does not have.
@@ -35,11 +35,11 @@ impl Session {
     /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
     pub(crate) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
-        let Some(step) = self.lesson_step() else {
+        let Some(step) = lesson_step(self) else {
             return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
         };
         if standing.has_begun(step) {
-            return standing.refuse_before_guess(self.weeks_passed());
+            return standing.refuse_before_guess(weeks_passed(self));
         }
         let message =
             "the goals of the step before are not judged yet; close the run and open it again to go on";

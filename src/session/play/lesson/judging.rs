@@ -1,5 +1,6 @@
 //! Judging a step: what goals, guesses and pitfalls measure, and the good play that goals are compared with.
 
+use super::conduct::weeks_passed;
 use super::reference::{PartPlay, answers_companies, play_part};
 use crate::play::{AnswersCompanies, Session};
 use novamind_database::Cell;
@@ -51,7 +52,7 @@ impl Session {
         let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
             return false;
         };
-        let (part, weeks) = (standing.own_part(), self.weeks_passed());
+        let (part, weeks) = (standing.own_part(), weeks_passed(self));
         let step = weeks.checked_sub(1).and_then(|before| part.step_after(before));
         step.is_some_and(|step| {
             standing.has_begun(step) && !standing.has_begun(step + 1) && weeks == part.weeks_of(step).1

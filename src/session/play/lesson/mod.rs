@@ -4,6 +4,6 @@
 //! in `novamind-course`.
 
 mod beginning;
-mod conduct;
+pub(crate) mod conduct;
 pub(crate) mod judging;
 pub(crate) mod reference;

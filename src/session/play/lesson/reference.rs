@@ -1,5 +1,6 @@
 //! Reference plays: a part of a lesson played by its file, in memory.
 
+use super::conduct::lesson_step;
 use std::sync::Arc;
 
 use crate::create::NewRun;
@@ -105,7 +106,7 @@ fn play_week(
     }
     before_week(session);
     let awaits = |step: &usize| session.lesson().is_some_and(|own| own.awaits_guess(*step));
-    if let Some(step) = session.lesson_step().filter(awaits) {
+    if let Some(step) = lesson_step(session).filter(awaits) {
         let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
         session.note_lesson(LessonNote { value: Some(1.0), ..about })?;
     }

@@ -67,7 +67,16 @@ pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option
     }
     let screen = TerminalScreen::take()?;
     listen(sender.clone());
-    let mut console = Console { app, workers, screen, messages, sender, again };
+    let mut console = Console {
+        app,
+        workers,
+        screen,
+        messages,
+        sender,
+        again,
+        #[cfg(unix)]
+        has_resumed: false,
+    };
     let end = console.run();
     let Console { screen, workers, .. } = console;
     drop(screen);
@@ -83,6 +92,9 @@ struct Console {
     sender: Sender<Message>,
     /// Command that resumes the newest run.
     again: String,
+    /// The program went on after a suspension, and the message of the signal that continued it is still to come.
+    #[cfg(unix)]
+    has_resumed: bool,
 }
 
 impl Console {
@@ -124,10 +136,15 @@ impl Console {
                 }
                 self.workers.settle(BEFORE_SUSPENSION);
                 self.screen.suspend(self.app.mouse)?;
+                // Recorded here: a key that ends the program may arrive before the message of the signal.
+                self.app.resume();
+                self.has_resumed = true;
             }
             #[cfg(unix)]
             Message::Signal(signal_hook::consts::SIGCONT) => {
-                self.app.resume();
+                if !std::mem::take(&mut self.has_resumed) {
+                    self.app.resume();
+                }
                 self.screen.resume(self.app.mouse)?;
             }
             message => self.app.update(message),

@@ -1,4 +1,4 @@
-//! Making an archive.
+//! Creates archives.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -24,25 +24,25 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 use novamind_record::trajectory::{Line, Trajectory};
 
-/// A run that was read, simulated again and found whole: ready to be sealed, and to be looked at.
+/// A verified copy of a run, ready to be inspected and archived.
 ///
-/// It is the run as it was on the disk at one moment; whoever plays it on meanwhile is not disturbed.
+/// The copy is the run on disk at the time of the call. A program that plays the run is not disturbed.
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
     afterwards: Vec<Line>,
-    /// Copies of the files, in a folder that must outlive the session.
+    /// Folder with copies of the files; must outlive the session.
     copies: PathBuf,
     _workshop: Workshop,
 }
 
 impl Export {
-    /// Reads the run in a folder and simulates it again. The files are put together in a hidden folder in `beside`,
-    /// which should be on the disk that the archive goes to. The key is that of the run's snapshots.
+    /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `beside`, which
+    /// should be on the disk of the archive. `key` is the key of the run's snapshots.
     ///
     /// # Errors
-    /// The run is damaged or of another version; the error names the place and what is safe. Or `beside` cannot be
-    /// written.
+    /// [`RunError::Damaged`] if the run is damaged, with the file, the line and what is safe. Other errors if the run
+    /// has another version, or if `beside` cannot be written.
     pub fn prepare(folder: &Path, beside: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = Derived::of(folder)?;
         let manifest = derived.manifest.clone();
@@ -61,7 +61,7 @@ impl Export {
             }
             Some(_) => manifest.write(own)?,
         }
-        // A line without its end was never confirmed: it may be in the middle of being written.
+        // A line without a line end was never confirmed: another program may be writing it.
         put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
         trajectory.unfinished = 0;
         let after = lines_afterwards(folder, &trajectory)?;
@@ -84,32 +84,32 @@ impl Export {
         Ok(Export { session, trajectory, afterwards: after.lines, copies: own.clone(), _workshop: workshop })
     }
 
-    /// The run, open to read.
+    /// Returns the run, open for reading.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// Its lines.
+    /// Returns the lines of the trajectory.
     pub fn trajectory(&self) -> &Trajectory {
         &self.trajectory
     }
 
-    /// Lines of what was done after its end.
+    /// Returns the lines recorded after the end of the run.
     pub fn afterwards(&self) -> &[Line] {
         &self.afterwards
     }
 
-    /// Writes the archive, signed if there is a key: whole or not at all.
+    /// Writes the archive atomically. Signs it if `key` is given.
     ///
     /// # Errors
-    /// [`RunError::Exists`] when the file is there and may not be replaced; the disk refuses.
+    /// [`RunError::Exists`] if the file exists and `replace` is false. [`RunError::Io`] if the disk fails.
     pub fn write(&self, archive: &Path, replace: bool, key: Option<&LabKey>) -> Result<Seal, RunError> {
         if !replace && archive.exists() {
             let message = format!("{} already exists: choose another name, or remove it", archive.display());
             return Err(RunError::Exists(message));
         }
         let database = self.copies.join(DATABASE);
-        // An archive may be written twice; the database is made for each.
+        // The archive can be written twice. The database is copied for each.
         let _ = std::fs::remove_file(&database);
         self.session.database().copy_to(&database)?;
         let seal = self.seal()?;
@@ -133,7 +133,7 @@ impl Export {
         let seal = Seal {
             format: SEAL_FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            // Not the moment of the export: an unchanged run has one seal, whenever it is handed over.
+            // Not the time of the export: an unchanged run always has the same seal.
             created: last.map(|line| line.at.clone()).unwrap_or_default(),
             run: self.session.manifest().id.clone(),
             last_seq: last.map_or(0, |line| line.seq),
@@ -170,8 +170,8 @@ impl Export {
     }
 }
 
-/// Reads a trajectory that somebody may be writing, and checks it against manifest and integrity. They are asked first:
-/// whatever they remember is then in what is read.
+/// Reads a trajectory that another program may be writing, and checks it against manifest and integrity. Reads these
+/// two first, so that the trajectory is at least as new as they are.
 fn read_settled(
     folder: &Path,
     manifest: &Manifest,
@@ -186,7 +186,7 @@ fn read_settled(
     Ok((bytes, trajectory))
 }
 
-/// What stands before a file. Nothing of the machine is in it: no owner, no moment.
+/// Returns a tar header without owner and time, so that it does not depend on the machine.
 fn header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
     let mut header = tar::Header::new_ustar();
     header.set_path(format!("{run}/{name}"))?;
@@ -197,7 +197,7 @@ fn header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
     Ok(header)
 }
 
-/// An error of the copies, told of the files they were made from.
+/// Replaces paths of the copies in an error by the original paths.
 fn moved(error: RunError, copies: &Path, folder: &Path) -> RunError {
     let original = |path: PathBuf| match path.strip_prefix(copies) {
         Ok(name) => folder.join(name),

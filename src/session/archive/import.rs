@@ -1,4 +1,4 @@
-//! Taking an archive in.
+//! Imports archives.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -18,32 +18,36 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 
-/// What became of an archive.
+/// The result of importing an archive.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Imported {
-    /// The run is there now, in this folder.
+    /// The run was imported into this folder.
     New(PathBuf),
-    /// The same run, line for line, was there already; nothing was changed.
+    /// An identical run exists already; nothing was changed.
     Same {
-        /// The notes that came with the archive differ from those that are there.
+        /// The notes in the archive differ from those of the existing run.
         other_memo: bool,
     },
 }
 
-/// The seal of an archive, who signed it, and what became of its run.
+/// The seal of an archive, its signer and the result of the import.
 pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
 
-/// Takes the run of an archive into a folder of runs; tells whose signature it has, if it has one. Everything is checked
-/// before anything is there: the seal, the hash of every file, the chain of the trajectory, and that nothing else is in the
-/// archive. Under a name of its own it stands beside another record of the same run; its lines keep saying which run it is.
+/// Imports the run of an archive into a folder of runs and returns the signer, if the archive is signed. Checks
+/// everything before it creates the run: the seal, the hash of every file, the hash chain of the trajectory, and that
+/// the archive has no other files.
+///
+/// With `name`, the run is imported under that name, next to another record of the same run. Its lines keep the
+/// original identifier.
 ///
 /// # Errors
-/// [`RunError::Archive`] for what is damaged, foreign or dangerous, naming the file; [`RunError::Exists`] when another
-/// state of the run is there, or the name is taken; [`RunError::NotPossible`] for what is no name. Nothing has changed then.
+/// [`RunError::Archive`] if the archive is damaged, foreign or unsafe; names the file. [`RunError::Exists`] if
+/// another state of the run exists, or the name is taken. [`RunError::NotPossible`] if `name` is invalid. Nothing has
+/// changed then.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
     if let Some(name) = name.filter(|name| !is_folder_name(name)) {
         let message =
-            format!("{name} is no name for a run: up to 40 letters, digits, - and _. Nothing was imported");
+            format!("{name} is not a valid run name: use 1 to 40 letters, digits, - and _. Nothing was imported");
         return Err(RunError::NotPossible(message));
     }
     let workshop = Workshop::within(runs)?;
@@ -55,7 +59,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
     let folder = folder_for(runs, &draft, &seal)?;
-    // A name is on a machine once, whoever's folder it is in.
+    // A name must be unique on a machine, across all participants.
     let own_name = name.unwrap_or(&seal.run);
     let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(own_name));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
@@ -63,7 +67,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
             None => compare(&draft, &place, &seal)?,
             Some(name) => {
                 let message =
-                    format!("there is a run {name} in {} already. Nothing was imported", place.display());
+                    format!("run {name} already exists in {}. Nothing was imported", place.display());
                 return Err(RunError::Exists(message));
             }
         };
@@ -76,7 +80,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     Ok((seal, signer, Imported::New(place)))
 }
 
-/// The folder of runs that a run belongs in: that of its participant where they have one on this machine.
+/// Returns the folder of runs for a run: that of its participant, if it exists on this machine.
 fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunError> {
     let whose = Manifest::read(draft)?.participant;
     match (label_of(runs), whose) {
@@ -92,7 +96,7 @@ fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunErro
     }
 }
 
-/// What was found in an archive.
+/// The contents of an archive.
 struct Unpacked {
     run: String,
     files: Vec<SealedFile>,
@@ -100,14 +104,14 @@ struct Unpacked {
     signature: Option<String>,
 }
 
-/// Copies the files of an archive into `workshop/<run>/`, but for the database, which is only measured.
+/// Copies the files of an archive into `workshop/<run>/`. The database is hashed, but not copied.
 fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
     let broken = |error: io::Error| {
-        refused(archive, format!("this is not an archive of a run, or it is cut short ({error})"))
+        refused(archive, format!("this is not an archive of a run, or it is truncated ({error})"))
     };
     let mut tar = tar::Archive::new(open(archive)?);
     let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new(), signature: None };
-    // Raw: extensions that rename or enlarge the next file are not followed but refused.
+    // Raw mode rejects extensions that rename or enlarge the next file.
     for entry in tar.entries().map_err(broken)?.raw(true) {
         let mut entry = entry.map_err(broken)?;
         let name = String::from_utf8_lossy(&entry.path_bytes()).into_owned();
@@ -119,13 +123,13 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             return Err(refused(archive, format!("{name} is not an ordinary file")));
         }
         let (run, file) =
-            parts(&name).ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
+            parts(&name).ok_or_else(|| refused(archive, format!("{name} is not a file of a run")))?;
         let (file, most) = *FILES
             .iter()
             .find(|(known, _)| *known == file)
-            .ok_or_else(|| refused(archive, format!("{name} does not belong to a run")))?;
+            .ok_or_else(|| refused(archive, format!("{name} is not a file of a run")))?;
         if !found.run.is_empty() && found.run != run {
-            return Err(refused(archive, format!("{name} belongs to another run than {}", found.run)));
+            return Err(refused(archive, format!("{name} belongs to a different run than {}", found.run)));
         }
         if found.files.iter().any(|known| known.name == file) {
             return Err(refused(archive, format!("{name} occurs twice")));
@@ -134,14 +138,14 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
         if size > most {
             return Err(refused(
                 archive,
-                format!("{name} is too large: {size} bytes, but at most {most} are expected"),
+                format!("{name} is too large: {size} bytes; the limit is {most} bytes"),
             ));
         }
         found.run = run.to_owned();
         let path = workshop.join(run).join(file);
         let measured = store(&mut entry, &path, file).map_err(|error| match error {
             CopyError::Read(error) => broken_file(archive, &name, &error),
-            // The archive is as good as it was: there is no room for it here.
+            // The archive is intact; the disk has no space.
             CopyError::Write(error) => RunError::Io { path, error },
         })?;
         if file == SEAL || file == SIGNATURE {
@@ -152,12 +156,11 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
         }
         found.files.push(measured);
     }
-    // The end of a compressed file vouches for all of it.
+    // The checksum at the end of a compressed file covers all of it.
     io::copy(&mut tar.into_inner().take(1 << 20), &mut io::sink()).map_err(broken)?;
     Ok(found)
 }
 
-/// Opens an archive, compressed or not.
 fn open(archive: &Path) -> Result<Box<dyn Read>, RunError> {
     let mut file = File::open(archive).map_err(RunError::io(archive))?;
     let mut start = [0u8; 2];
@@ -168,7 +171,7 @@ fn open(archive: &Path) -> Result<Box<dyn Read>, RunError> {
     Ok(if compressed { Box::new(MultiGzDecoder::new(reader)) } else { Box::new(reader) })
 }
 
-/// Run and file of a name, if it has exactly this form.
+/// Splits an entry name into run and file, if it has exactly that form.
 fn parts(name: &str) -> Option<(&str, &str)> {
     let (run, file) = name.strip_prefix("./").unwrap_or(name).split_once('/')?;
     is_run_name(run).then_some((run, file))
@@ -181,7 +184,6 @@ fn broken_file(archive: &Path, name: &str, error: &io::Error) -> RunError {
 fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, CopyError> {
     let name = file.to_owned();
     if file == DATABASE {
-        // A projection: it is made anew from the trajectory, but its hash counts.
         let (bytes, blake3) = copy_hashed(entry, &mut io::sink())?;
         return Ok(SealedFile { name, bytes, blake3 });
     }
@@ -192,7 +194,7 @@ fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, Co
     Ok(SealedFile { name, bytes, blake3 })
 }
 
-/// Reads the seal and compares it with what was found.
+/// Parses the seal and compares it with the contents.
 fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     if found.seal.is_empty() {
         return Err(refused(archive, "seal.toml is missing: this is not an archive of a run"));
@@ -201,7 +203,7 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
         .map_err(|error| refused(archive, format!("seal.toml cannot be read ({})", error.message())))?;
     if seal.format > SEAL_FORMAT {
         let problem = format!(
-            "version {} made it in format {}, but this program reads format {SEAL_FORMAT}: use that version",
+            "version {} created it in format {}; this program reads format {SEAL_FORMAT}. Use that version",
             seal.program, seal.format
         );
         return Err(refused(archive, problem));
@@ -231,7 +233,7 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     }
 }
 
-/// Checks the run itself: manifest, chain of the trajectory, and that they belong together.
+/// Checks that manifest and trajectory are valid and belong together.
 fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> {
     for name in [MANIFEST, TRAJECTORY] {
         if !draft.join(name).exists() {
@@ -254,7 +256,7 @@ fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> 
     Ok(())
 }
 
-/// An error of the copies in words that do not name their places.
+/// Describes an error of the copies without their paths.
 fn problem_inside(error: RunError) -> String {
     match error {
         RunError::Damaged { path, line, problem, .. } => {
@@ -265,7 +267,7 @@ fn problem_inside(error: RunError) -> String {
     }
 }
 
-/// Whether the run that is there is the one of the archive.
+/// Compares the existing run with that of the archive.
 fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError> {
     let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
     let (own, there) = (read(draft, TRAJECTORY), read(place, TRAJECTORY));
@@ -273,27 +275,27 @@ fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError
         return Ok(Imported::Same { other_memo: read(draft, MEMO) != read(place, MEMO) });
     }
     let how = if there.starts_with(&own) {
-        "it is the same run, played further since the archive was made".to_owned()
+        "it is the same run and was continued after the export".to_owned()
     } else if own.starts_with(&there) {
-        "the archive holds a later state of it; delete or move the older one to import it".to_owned()
+        "the archive has a later state of it; delete or move the older run to import it".to_owned()
     } else {
         difference(draft, place)
     };
     Err(RunError::Exists(format!(
-        "run {} already exists in {}: {how}. Nothing was changed; --under NAME imports the record beside it, under another name",
+        "run {} already exists in {}: {how}. Nothing was changed; to import under another name, use --under NAME",
         seal.run,
         place.display()
     )))
 }
 
-/// In what two records of a run differ.
+/// Describes the difference between two records of a run.
 fn difference(draft: &Path, place: &Path) -> String {
     let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY)).map(|read| read.lines);
     let own = lines(draft).unwrap_or_default();
     let there = match lines(place) {
         Ok(lines) if !lines.is_empty() => lines,
-        Ok(_) => return "the record there has no line".to_owned(),
-        Err(problem) => return format!("the record there cannot be compared ({problem})"),
+        Ok(_) => return "the existing record has no lines".to_owned(),
+        Err(problem) => return format!("the existing record cannot be compared ({problem})"),
     };
     let same = own.iter().zip(&there).take_while(|(own, there)| own.hash == there.hash).count();
     let reach = |lines: &[Line]| {
@@ -302,10 +304,11 @@ fn difference(draft: &Path, place: &Path) -> String {
     };
     let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), line_in_words);
     if own.len() == there.len() && same == own.len() {
-        return "the lines are the same, and run.toml is another one".to_owned();
+        return "the lines are the same, but run.toml differs".to_owned();
     }
     format!(
-        "the records differ from line {} on: there it is {}, in the archive {}; there are {}, in the archive {}",
+        "the records differ from line {}: the existing record has {}, the archive has {}; the existing record has {}, \
+         the archive has {}",
         same + 1,
         line(&there),
         line(&own),
@@ -314,7 +317,7 @@ fn difference(draft: &Path, place: &Path) -> String {
     )
 }
 
-/// A line in few words: its kind, the tool of a call, the day and the moment.
+/// Describes a line: its kind, the tool of a call, the day and the time.
 fn line_in_words(line: &Line) -> String {
     let what = match &line.record {
         Record::Call(call) => format!("a call of {}", call.tool),
@@ -323,7 +326,7 @@ fn line_in_words(line: &Line) -> String {
     format!("{what} on day {}, written {}", line.day, line.at)
 }
 
-/// Whether a folder of runs can hold a run under a name.
+/// Whether a folder of runs can contain a run with this name.
 fn is_folder_name(name: &str) -> bool {
     let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'-' | b'_');
     (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS

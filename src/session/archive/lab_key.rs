@@ -1,4 +1,5 @@
-//! The key of a lab: archives that it signs come from whoever holds it, unchanged (docs/formats/archive.md#signature).
+//! Signing keys of a laboratory. A signed archive comes from the holder of the key and is unchanged
+//! (docs/formats/archive.md#signature).
 
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -10,15 +11,15 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::files::{folder_of, sync_folder};
 
-/// First line of the file of a private key.
+/// First line of a private key file.
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
-/// First line of the file of a public key.
+/// First line of a public key file.
 const PUBLIC: &str = "novamind lab public key 1";
-/// First line of the file of a key that seals snapshots.
+/// First line of a snapshot key file.
 const SEAL: &str = "novamind seal key 1: keep it secret";
-/// Separates the key that seals from every other use of the same hash.
+/// Separates the snapshot key from other uses of the same hash.
 const SEAL_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
-/// What is signed begins with this, so that no signature can stand for anything else.
+/// Prefix of every signed message, so that a signature is valid for archives only.
 const PURPOSE: &[u8] = b"novamind seal of an archive 1\n";
 
 /// A private key.
@@ -28,25 +29,25 @@ pub struct LabKey(SigningKey);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabPublicKey(VerifyingKey);
 
-/// `seal.sig`: who signed, and the signature.
+/// Contents of `seal.sig`: signer and signature.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SignatureFile {
     algorithm: String,
-    /// Public key.
+    /// Public key of the signer, hexadecimal.
     key: String,
     signature: String,
 }
 
 impl LabKey {
-    /// A new key.
+    /// Generates a key.
     ///
     /// # Errors
-    /// The system gives no random numbers.
+    /// The system provides no random numbers.
     pub fn generate() -> Result<LabKey, RunError> {
         let mut secret = [0; 32];
         getrandom::fill(&mut secret).map_err(|error| {
-            RunError::NotPossible(format!("no key can be made: the system gives no random numbers ({error})"))
+            RunError::NotPossible(format!("cannot create a key: the system provides no random numbers ({error})"))
         })?;
         Ok(LabKey(SigningKey::from_bytes(&secret)))
     }
@@ -54,7 +55,7 @@ impl LabKey {
     /// Reads `lab.key`.
     ///
     /// # Errors
-    /// It cannot be read, or is no key.
+    /// The file cannot be read, or is not a private key.
     pub fn read(file: &Path) -> Result<LabKey, RunError> {
         Ok(LabKey(SigningKey::from_bytes(&read_key(file, PRIVATE)?)))
     }
@@ -62,22 +63,22 @@ impl LabKey {
     /// Writes the key into a new file that only its owner can read.
     ///
     /// # Errors
-    /// It is there already, or cannot be written.
+    /// The file exists, or cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), RunError> {
         write_secret(file, &key_text(PRIVATE, &self.0.to_bytes()))
     }
 
-    /// The secret that seals the snapshots of a study; it does not lead back to the key.
+    /// Returns the secret that seals the snapshots of a study. The key cannot be derived from it.
     pub fn seal_secret(&self) -> [u8; 32] {
         blake3::derive_key(SEAL_CONTEXT, &self.0.to_bytes())
     }
 
-    /// The public key.
+    /// Returns the public key.
     pub fn public(&self) -> LabPublicKey {
         LabPublicKey(self.0.verifying_key())
     }
 
-    /// Signs the text of a seal; returns what `seal.sig` holds.
+    /// Signs the text of a seal. Returns the contents of `seal.sig`.
     pub(super) fn sign(&self, seal: &str) -> String {
         let file = SignatureFile {
             algorithm: "ed25519".to_owned(),
@@ -92,7 +93,7 @@ impl LabPublicKey {
     /// Reads `lab.pub`.
     ///
     /// # Errors
-    /// It cannot be read, or is no key.
+    /// The file cannot be read, or is not a public key.
     pub fn read(file: &Path) -> Result<LabPublicKey, RunError> {
         let bytes = read_key(file, PUBLIC)?;
         VerifyingKey::from_bytes(&bytes).map(LabPublicKey).map_err(|_| no_key(file))
@@ -101,31 +102,31 @@ impl LabPublicKey {
     /// Writes the key into a new file.
     ///
     /// # Errors
-    /// It is there already, or cannot be written.
+    /// The file exists, or cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), RunError> {
         let text = key_text(PUBLIC, self.0.as_bytes());
         let written = File::create_new(file).and_then(|mut out| out.write_all(text.as_bytes()));
         written.map_err(RunError::io(file))
     }
 
-    /// Sixteen digits that stand for the key, to be compared by eye.
+    /// Returns 16 hexadecimal digits that identify the key, for comparison by eye.
     pub fn fingerprint(&self) -> String {
         let digits = blake3::hash(self.0.as_bytes()).to_hex();
         [&digits[..4], &digits[4..8], &digits[8..12], &digits[12..16]].join("-")
     }
 }
 
-/// Whose signature of a seal `seal.sig` holds.
+/// Returns the signer of a seal, given the contents of `seal.sig`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A description of the problem if the signature is not valid for the seal.
 pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, String> {
     let file: SignatureFile = toml::from_str(signature)
         .map_err(|error| format!("seal.sig cannot be read ({})", error.message()))?;
     if file.algorithm != "ed25519" {
-        return Err(format!("seal.sig is of another kind: {}", file.algorithm));
+        return Err(format!("seal.sig uses an unknown algorithm: {}", file.algorithm));
     }
-    let odd = || "seal.sig is no signature".to_owned();
+    let odd = || "seal.sig is not a valid signature".to_owned();
     let key = VerifyingKey::from_bytes(&bytes(&file.key).ok_or_else(odd)?).map_err(|_| odd())?;
     let signature = Signature::from_bytes(&bytes(&file.signature).ok_or_else(odd)?);
     key.verify_strict(&purposeful(seal), &signature)
@@ -143,7 +144,6 @@ pub fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
     write_secret(file, &key_text(SEAL, secret))
 }
 
-/// Writes a text into a new file that only its owner can read.
 fn write_secret(file: &Path, text: &str) -> Result<(), RunError> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
@@ -170,14 +170,14 @@ fn read_key(file: &Path, title: &str) -> Result<[u8; 32], RunError> {
 }
 
 fn no_key(file: &Path) -> RunError {
-    RunError::NotPossible(format!("{} is no key of this kind; nothing was done", file.display()))
+    RunError::NotPossible(format!("{} is not a key of this kind; nothing was changed", file.display()))
 }
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// So many bytes, from exactly as many pairs of digits.
+/// Parses exactly `COUNT` bytes in hexadecimal.
 fn bytes<const COUNT: usize>(hex: &str) -> Option<[u8; COUNT]> {
     let fits = hex.len() == 2 * COUNT && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
     let mut bytes = [0; COUNT];
@@ -211,7 +211,7 @@ mod tests {
         for text in ["", "novamind lab key 1", &std::fs::read_to_string(&public).expect("text")] {
             std::fs::write(&own, text).expect("written");
             let problem = LabKey::read(&own).err().expect("no key").to_string();
-            assert!(problem.contains("is no key of this kind"), "{problem}");
+            assert!(problem.contains("is not a key of this kind"), "{problem}");
         }
     }
 
@@ -225,9 +225,9 @@ mod tests {
             let other = if letter == '1' { "2" } else { "1" };
             let mut changed = signature.clone();
             changed.replace_range(at..=at, other);
-            assert!(signer_of(seal, &changed).is_err(), "character {at} was changed unseen");
+            assert!(signer_of(seal, &changed).is_err(), "the change of character {at} was not detected");
         }
-        // Somebody else's signature is theirs, and says so.
+        // A signature with another key is valid and names its signer.
         let other = LabKey::generate().expect("a key");
         assert_eq!(signer_of(seal, &other.sign(seal)), Ok(other.public()));
     }

@@ -1,22 +1,21 @@
-//! A run as one file, to be handed over: sealed on the way out, checked on the way in.
+//! Archives: a run as one file, sealed on export and checked on import.
 //!
-//! An archive is a tar file, compressed with gzip when its name ends in `.gz` or `.tgz`. It holds one folder with the
-//! name of the run, and in it
-//!
+//! An archive is a tar file, compressed with gzip if its name ends in `.gz` or `.tgz`. It contains one folder, named
+//! after the run, with these files:
 //! | file | |
 //! |---|---|
-//! | `seal.toml` | what the archive holds: length and BLAKE3 hash of every file, last line of the trajectory, a checksum over it all |
+//! | `seal.toml` | length and BLAKE3 hash of every file, last line of the trajectory, a checksum of all this |
 //! | `seal.sig` | the signature of the seal, if a lab signed it |
-//! | `run.toml` | what the run is |
-//! | `trajectory.jsonl` | the truth, up to its last confirmed line |
-//! | `afterwards.jsonl` | what was done after the end, if anything was |
+//! | `run.toml` | the manifest |
+//! | `trajectory.jsonl` | the trajectory, up to its last confirmed line |
+//! | `afterwards.jsonl` | lines recorded after the end of the run, if there are any |
 //! | `lesson.toml`, `lesson.md` | the lesson, if the run belongs to one |
 //! | `memo.md` | the player's notes, if there are any |
-//! | `world.db` | the observable company, with ordinary tables only, for any SQLite tool |
+//! | `world.db` | the observable company in ordinary tables, for any SQLite tool |
 //!
-//! There is nothing else in it, whatever lies in the folder of the run: no snapshot, so no hidden state. The database is
-//! made from the trajectory while the run is simulated again, so an archive that exists has been verified. Who imports
-//! it gets these files but the seal; the database is a projection and is made anew.
+//! It contains no other files of the run's folder. In particular it has no snapshot, so no hidden state. The export
+//! simulates the run again to create the database, so every archive is verified. The import writes all files but the
+//! seal, the signature and the database, which is rebuilt.
 
 mod export;
 mod import;
@@ -37,7 +36,7 @@ use crate::recording::recorder::AFTERWARDS;
 use novamind_record::error::RunError;
 use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 
-/// Files an archive may hold and the most bytes each may have: enough for any run, too few to fill a disk by surprise.
+/// Files that an archive can contain, with their maximum sizes in bytes: enough for any run, too few to fill a disk.
 const FILES: [(&str, u64); 9] = [
     (SEAL, 1 << 20),
     (SIGNATURE, 1 << 10),
@@ -57,23 +56,22 @@ const TRAJECTORY: &str = "trajectory.jsonl";
 const MEMO: &str = "memo.md";
 const DATABASE: &str = "world.db";
 
-/// Whether an archive with this name is compressed.
 fn is_compressed(archive: &Path) -> bool {
     let ending = archive.extension().map(|ending| ending.to_ascii_lowercase());
     ending.is_some_and(|ending| ending == "gz" || ending == "tgz")
 }
 
-/// Whether a file with this name is taken for an archive.
+/// Whether the name is that of an archive.
 pub fn is_archive_name(name: &str) -> bool {
     [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
 }
 
-/// Whether this can be the name of a run: eight hexadecimal digits.
+/// Whether the name is a run identifier: eight hexadecimal digits.
 pub fn is_run_name(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// An archive that cannot be used; nothing was changed by looking at it.
+/// Returns the error for an unusable archive. Nothing was changed.
 fn refused(archive: &Path, problem: impl AsRef<str>) -> RunError {
     RunError::Archive {
         path: archive.to_owned(),
@@ -84,8 +82,8 @@ fn refused(archive: &Path, problem: impl AsRef<str>) -> RunError {
     }
 }
 
-/// A text that may quote bytes of a foreign file, as one line that cannot steer a terminal: control characters are
-/// written out, and what is long is cut.
+/// Makes a text that can quote bytes of a foreign file safe to print on one line: escapes control characters and
+/// truncates it.
 fn printable(text: &str) -> String {
     const MOST: usize = 400;
     let mut line = String::new();

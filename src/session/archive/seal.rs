@@ -1,4 +1,4 @@
-//! `seal.toml`: what an archive holds.
+//! `seal.toml`: the list of an archive's files.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -11,25 +11,25 @@ use novamind_record::error::RunError;
 /// Format of seals that this program writes.
 pub const SEAL_FORMAT: u32 = 1;
 
-/// What an archive holds.
+/// The seal of an archive.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seal {
     /// Format of the archive.
     pub format: u32,
-    /// Version of the program that made it.
+    /// Version of the program that created it.
     pub program: String,
-    /// When the last line of the trajectory was written, RFC 3339.
+    /// Time of the last line of the trajectory, RFC 3339.
     pub created: String,
-    /// Run.
+    /// Identifier of the run.
     pub run: String,
     /// Number of the last line of the trajectory.
     pub last_seq: u64,
     /// Hash of the last line of the trajectory.
     pub last_hash: String,
-    /// Hash of the seal with this field empty: it vouches for everything.
+    /// Hash of the seal with this field empty.
     pub checksum: String,
-    /// The files beside the seal.
+    /// The other files of the archive.
     pub file: Vec<SealedFile>,
 }
 
@@ -37,19 +37,19 @@ pub struct Seal {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SealedFile {
-    /// Name.
+    /// File name.
     pub name: String,
-    /// Length.
+    /// Length in bytes.
     pub bytes: u64,
     /// BLAKE3 hash in hexadecimal digits.
     pub blake3: String,
 }
 
 impl SealedFile {
-    /// Measures a file.
+    /// Reads a file and returns its length and hash.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The file cannot be read.
     pub fn of(folder: &Path, name: &str) -> Result<SealedFile, RunError> {
         let path = folder.join(name);
         let mut file = File::open(&path).map_err(RunError::io(&path))?;
@@ -60,17 +60,17 @@ impl SealedFile {
 }
 
 impl Seal {
-    /// The seal with the checksum that belongs to it.
+    /// Returns the seal with its checksum.
     pub fn signed(self) -> Seal {
         Seal { checksum: self.own_checksum(), ..self }
     }
 
-    /// Whether the checksum is the one that belongs to it.
+    /// Whether the checksum is correct.
     pub fn is_intact(&self) -> bool {
         self.checksum == self.own_checksum()
     }
 
-    /// The seal as the file holds it.
+    /// Returns the seal as TOML.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("a seal holds plain values")
     }
@@ -81,12 +81,12 @@ impl Seal {
     }
 }
 
-/// Which side failed while something was copied.
+/// The side that failed in a copy.
 #[derive(Debug)]
 pub enum CopyError {
-    /// What is copied cannot be read.
+    /// The source cannot be read.
     Read(io::Error),
-    /// It cannot be written where it should go.
+    /// The destination cannot be written.
     Write(io::Error),
 }
 
@@ -98,7 +98,7 @@ impl From<CopyError> for io::Error {
     }
 }
 
-/// Copies everything; returns how much it was and its hash.
+/// Copies everything and returns the length and the BLAKE3 hash.
 pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> Result<(u64, String), CopyError> {
     let (mut hasher, mut length) = (blake3::Hasher::new(), 0u64);
     let mut buffer = vec![0u8; 1 << 16];
@@ -142,7 +142,7 @@ mod tests {
             changed[at] = if byte == b'1' { b'2' } else { b'1' };
             let changed = String::from_utf8(changed).expect("ASCII");
             let accepted = toml::from_str::<Seal>(&changed).is_ok_and(|seal| seal.is_intact());
-            assert!(!accepted, "character {at} was changed unseen");
+            assert!(!accepted, "the change of character {at} was not detected");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A folder to work in, that is gone afterwards.
+//! Temporary folders.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard};
@@ -7,11 +7,10 @@ use crate::recording::folders::new_id;
 use novamind_record::error::RunError;
 use novamind_record::files::create_folder;
 
-/// A folder of its own beside what is being made. It is hidden, holds nothing that is listed as a run, and is removed
-/// when the work is done or has failed.
+/// A hidden temporary folder next to the final files. It is never listed as a run and is removed on drop.
 pub struct Workshop(PathBuf);
 
-/// The workshops that are open, and whether the program is about to end.
+/// The open temporary folders, and whether the program is about to end.
 struct Open {
     folders: Vec<PathBuf>,
     closed: bool,
@@ -24,7 +23,7 @@ fn open() -> MutexGuard<'static, Open> {
 }
 
 impl Workshop {
-    /// Makes one in a folder.
+    /// Creates a temporary folder in `folder`.
     ///
     /// # Errors
     /// The folder cannot be written, or the program is about to end.
@@ -40,7 +39,7 @@ impl Workshop {
         Ok(Workshop(own))
     }
 
-    /// Its path.
+    /// Returns its path.
     pub fn path(&self) -> &Path {
         &self.0
     }
@@ -49,15 +48,15 @@ impl Workshop {
 impl Drop for Workshop {
     fn drop(&mut self) {
         open().folders.retain(|folder| *folder != self.0);
-        // What cannot be removed is only in the way of whoever looks for hidden folders.
+        // A hidden folder that cannot be removed does no harm.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
-/// Tries to remove a workshop that somebody may still be writing into.
+/// Attempts to remove a temporary folder that another thread may still be writing.
 const TRIES: usize = 100;
 
-/// Removes every open workshop and makes no new ones: for a program that a signal is about to end.
+/// Removes all temporary folders and prevents new ones. Called when a signal is about to end the program.
 pub fn close_workshops() {
     let folders = {
         let mut open = open();
@@ -65,7 +64,7 @@ pub fn close_workshops() {
         std::mem::take(&mut open.folders)
     };
     for folder in folders {
-        // A file that is made between the look into the folder and its removal asks for another look.
+        // A file created while the folder is being removed makes the removal fail; try again.
         let _ = (0..TRIES).find(|_| std::fs::remove_dir_all(&folder).is_ok() || !folder.exists());
     }
 }

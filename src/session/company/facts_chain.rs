@@ -1,4 +1,4 @@
-//! The state hash of a week: the parts of the world, and everything that happened.
+//! The state hash: a hash of the world's parts and of the week's facts.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use novamind_world::canonical::hash_of;
 use novamind_world::events::Facts;
 use novamind_world::state::{PartHash, combined_hash};
 
-/// Hash of the state and of the week's facts, with the hash of each part by its name.
+/// Hash of the state and of the week's facts, and the short hash of each part by name.
 pub type StateHash = (String, BTreeMap<String, String>);
 
-/// Hash of a state with these parts and of the week's facts.
+/// Returns the hash of a state with these parts and of the week's facts.
 pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
     parts.push(PartHash { part: "facts", hash: facts });
     let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
@@ -17,10 +17,10 @@ pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> State
     (combined_hash(&parts).to_hex().to_string(), by_name)
 }
 
-/// The facts of a week, day by day and call by call, as one hash.
+/// A hash chain over the facts of a week, one link per day and call.
 pub(crate) struct FactsChain {
     hash: blake3::Hash,
-    /// The week is over: what comes next begins a new chain.
+    /// The week has ended: the next facts start a new chain.
     closed: bool,
 }
 
@@ -42,12 +42,12 @@ impl FactsChain {
         self.hash = hasher.finalize();
     }
 
-    /// The chain with this hash, of a week that is over or still runs.
+    /// Restores a chain from its hash.
     pub(crate) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
         FactsChain { hash, closed }
     }
 
-    /// Whether the week is over.
+    /// Whether the week has ended.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
@@ -57,7 +57,7 @@ impl FactsChain {
         self.closed = true;
     }
 
-    /// Hash of the week so far, or of the one that just ended.
+    /// Returns the hash of the current week, or of the last one if none has started since.
     pub(crate) fn hash(&self) -> blake3::Hash {
         self.hash
     }

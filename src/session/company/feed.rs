@@ -1,7 +1,7 @@
-//! The public conversation as the session keeps it: every post in words, and how the player's posts were taken.
+//! The social feed of a session: all posts as text, and the judgements of the player's posts.
 //!
-//! Words belong to no state: they are made anew, the same, whenever a run is simulated again. Those of a language model are
-//! taken from the record.
+//! Texts are not part of the state. A replay of the run produces the same texts; those of a language model come from
+//! the record.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -19,23 +19,23 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 
-/// Everything that was written so far, and why the player's posts were taken as they were.
+/// All posts so far, and the judgements of the player's posts.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Feed {
     writer: Writer,
-    /// Posts of others as the player sees them, in the order of their numbers.
+    /// Posts of other authors as the player sees them, ordered by number.
     #[serde(with = "kept_posts")]
     pub posts: Vec<PublicPost>,
-    /// What the built-in voice said where a language model has put it into other words, by number of the post.
+    /// Texts of the built-in voice that a language model has reworded, by post number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     built_in: BTreeMap<u32, String>,
-    /// Whether each of them complains.
+    /// Whether each post is a complaint.
     complains: Vec<bool>,
-    /// Judgements of the player's posts, by their position; empty until they were judged.
+    /// Judgements of the player's posts, in the order of the posts. Empty for posts that are not judged yet.
     pub judgements: Vec<Vec<Judgement>>,
 }
 
-/// Posts with everything the session knows of them; what tools show of them leaves some of it out.
+/// Serializes posts with all fields, including those that tools do not return.
 mod kept_posts {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -76,7 +76,7 @@ impl Feed {
         of_post.iter().find(|judgement| judgement.group == group)
     }
 
-    /// Puts a day's posts into words and keeps them.
+    /// Adds the posts of a day with their texts.
     pub(crate) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
         for post in &facts.posts {
             let judgement = match post.matter {
@@ -89,13 +89,13 @@ impl Feed {
         }
     }
 
-    /// Text of each post of these facts, the last ones that were put into words.
+    /// Returns the texts of the posts in `facts`, which must be the newest ones.
     pub(crate) fn words_of(&self, facts: &Facts) -> Vec<String> {
         let first = self.posts.len().saturating_sub(facts.posts.len());
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
     }
 
-    /// Shows a post in other words; one that is not there stays so.
+    /// Replaces the text of a post. Does nothing if the post does not exist.
     pub(crate) fn reword(&mut self, post: u32, text: &str) {
         let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
         let Some(own) = own else { return };
@@ -103,8 +103,8 @@ impl Feed {
         self.built_in.entry(post).or_insert(before);
     }
 
-    /// The post with this number, as one that is answered: in the words of the built-in voice, whatever is shown, for what
-    /// readers make of an answer is a fact of the world.
+    /// Returns the post with this number as the original of a reply. Always uses the text of the built-in voice,
+    /// because the effect of a reply is part of the world's state.
     pub(crate) fn original(&self, post: u32) -> Option<Original<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
@@ -129,7 +129,7 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
     }
 }
 
-/// The facts of a day or call with the words that belong to them.
+/// Returns the database entry for the facts of a day or call, with their texts.
 pub(crate) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, params: &Params) -> Entry {
     let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
     let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);

@@ -1,4 +1,4 @@
-//! What has happened in a run, as far as screens, dashboard and report look back: figures of weeks, decisions, journal.
+//! The history of a run for screens, dashboard and reports: figures of weeks, decisions, journal.
 
 use super::first_answers::FirstAnswers;
 use super::irrevocable::Irrevocable;
@@ -13,42 +13,42 @@ use novamind_world::events::{DayFigures, LedgerEntry, Notice};
 use novamind_world::identifiers::ByGroup;
 use novamind_world::state::World;
 
-/// What has happened so far.
+/// The history of a run.
 pub(crate) struct History {
     /// Cash at the end of each day, day 0 first.
     pub(crate) cash_by_day: Vec<f64>,
-    /// Every full or shortened week that ran.
+    /// Figures of every completed week, including a shortened last one.
     pub(crate) weeks: Vec<WeekFigures>,
-    /// The week that has begun with single steps.
+    /// Figures of a week that was started with single days.
     pub(crate) running_week: WeekFigures,
-    /// What every week that ran brought of each group.
+    /// Group figures of every completed week.
     pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,
-    /// The same of the week that has begun.
+    /// Group figures of a week that was started with single days.
     pub(crate) running_groups: ByGroup<GroupWeek>,
-    /// What was decided before each of them, or before single steps.
+    /// Decisions before each week, or before single days.
     pub(crate) decisions: Vec<Decisions>,
-    /// What the last days put into the inbox: day and text.
+    /// Notices of the last simulated days: day and text.
     pub(crate) notices: Vec<(u32, String)>,
-    /// What has been set since the last week.
+    /// Actions since the last week.
     pub(crate) this_week: ThisWeek,
-    /// Everything that was done, in order.
+    /// All confirmed actions and weeks, in order.
     pub(crate) journal: Vec<JournalEntry>,
-    /// Statements the database was asked in this run, each once, the newest last.
+    /// Distinct SQL statements of this run, newest last.
     pub(crate) asked: Vec<String>,
-    /// What the calculations said before the last week.
+    /// Outputs of the calculations before the last week.
     pub(crate) calculated: Vec<Calculated>,
-    /// The dashboard as it was when the last days had run; none before the first.
+    /// The dashboard after the last simulated days; `None` before the first.
     pub(crate) last_dashboard: Option<String>,
-    /// Money that calls moved since the last day.
+    /// Ledger entries of calls since the last day.
     pub(crate) called: Vec<LedgerEntry>,
-    /// How the run ended, if it did.
+    /// How the run ended.
     pub(crate) ended: Option<Ended>,
-    /// First answers to requests that carried an id.
+    /// Responses to requests with an id.
     pub(crate) first_answers: FirstAnswers,
 }
 
 impl History {
-    /// Nothing has happened yet in this world.
+    /// Creates the history of a run on day 0.
     pub(crate) fn begin(world: &World) -> History {
         let settings = world.settings.clone();
         History {
@@ -70,12 +70,12 @@ impl History {
         }
     }
 
-    /// Settings changed since the last week, old -> new.
+    /// Returns the settings changed since the last week, with old and new values.
     pub(crate) fn changes(&self, world: &World) -> Vec<Change> {
         changes(&self.this_week.settings, &world.settings)
     }
 
-    /// Counts a day that was just simulated, with its notices.
+    /// Records a simulated day with its notices.
     pub(crate) fn count_day(&mut self, figures: &DayFigures, simulation: &Simulation, notices: &[String]) {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);
@@ -86,7 +86,7 @@ impl History {
         self.running_week.count(figures, facts, &self.called, params);
     }
 
-    /// Ends the figures of the days that ran, and the week if it is complete.
+    /// Completes the figures of the simulated days, and of the week if it has ended.
     pub(crate) fn settle(
         &mut self,
         simulation: &Simulation,
@@ -116,7 +116,7 @@ impl History {
         figures
     }
 
-    /// Figures of the week that runs, or of the last one that ran.
+    /// Returns the figures of the current week, or of the last one if no day of the current week has run.
     pub(crate) fn latest_week(&self) -> WeekFigures {
         match self.running_week.days_run {
             0 => self.weeks.last().copied().unwrap_or_default(),

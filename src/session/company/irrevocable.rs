@@ -1,5 +1,5 @@
-//! What was done that cannot be taken back: purchases, posts, offers, threads that end. Many like ones are one, whether one
-//! call did them or several of a week.
+//! Irrevocable actions: purchases, posts, offers, ended threads. Similar actions are merged, within a call and within
+//! a week.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -13,27 +13,27 @@ use novamind_world::enterprise::letters::Letter;
 use novamind_world::events::Offering;
 use novamind_world::identifiers::{Group, Plan};
 
-/// Offers or threads of one call that are named one by one.
+/// Offers or threads of one call that are listed one by one.
 const NAMED: usize = 5;
 
-/// What cannot be taken back.
+/// An irrevocable action.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Irrevocable {
-    /// Something single.
+    /// A single action, as text.
     Single(String),
-    /// Offers of the same plans to companies of a group.
+    /// Offers of the same plans to enterprises of a group.
     Offered {
         group: Option<Group>,
         /// Plan, lowest and highest price.
         offerings: Vec<(Plan, f64, f64)>,
         companies: u32,
     },
-    /// Threads with companies of a group that were ended.
+    /// Ended threads with enterprises of a group.
     Ended { group: Group, companies: u32 },
 }
 
 impl Irrevocable {
-    /// Adds what was done to what was done before it.
+    /// Adds actions, merging them with similar earlier ones.
     pub(crate) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
         for own in more {
             if !done.iter_mut().any(|before| before.takes_in(&own)) {
@@ -42,7 +42,7 @@ impl Irrevocable {
         }
     }
 
-    /// Joins another of its kind; false where it is of another kind.
+    /// Merges another action into this one. Returns false if they are of different kinds.
     fn takes_in(&mut self, other: &Irrevocable) -> bool {
         use Irrevocable::{Ended, Offered};
         match (self, other) {
@@ -85,7 +85,7 @@ impl Display for Irrevocable {
 }
 
 impl Simulation {
-    /// What cannot be taken back of a command that is about to be applied.
+    /// Returns the irrevocable actions of a command that is about to be applied.
     pub(crate) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
         let single = |words: String| vec![Irrevocable::Single(words)];
         match resolved {
@@ -163,7 +163,7 @@ fn counted(count: u32, group: Option<Group>) -> String {
     format!("{} {noun}{of}", grouped(f64::from(count), 0))
 }
 
-/// Plan, lowest and highest price of the offerings at a place of letters with the same plans.
+/// Returns the plan and the lowest and highest price of the offering at position `at` of all letters.
 fn offering_of_all(letters: &[&Letter], at: usize) -> (Plan, f64, f64) {
     let prices = letters.iter().map(|letter| letter.offerings[at].price);
     let (least, most) =

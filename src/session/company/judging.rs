@@ -1,4 +1,4 @@
-//! What readers make of the player's posts, and what a language model made of them as far as the record tells.
+//! Judgements of the player's posts, by the built-in judge or from recorded scores of a language model.
 
 use super::simulation::Simulation;
 use crate::database::Entries;
@@ -10,7 +10,7 @@ use novamind_world::market::social::reach::{self, Verdict};
 use novamind_world::params::PostJudge;
 
 impl Simulation {
-    /// Lets the readers judge what the player posted before today.
+    /// Judges the player's posts of earlier days that are not judged yet.
     pub fn judge_own_posts(&mut self, entries: Entries<'_>) {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;
@@ -42,30 +42,29 @@ impl Simulation {
     }
 }
 
-/// Scores by post. A post is known by its day, its text and what it answers, so that scores belong to it in a branch, too,
-/// where posts have other numbers.
+/// Recorded scores by post. A post is identified by its day, its text and the post it replies to, because post
+/// numbers differ in branches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RecordedScores(Vec<JudgedPost>);
 
 impl RecordedScores {
-    /// Takes in what a line says.
     pub(crate) fn take_in(&mut self, judged: JudgedPost) {
         self.0.push(judged);
     }
 
-    /// What was said of a post last.
+    /// Returns the newest recorded scores of a post.
     fn of(&self, post: &OwnPost) -> Option<&JudgedPost> {
         self.0.iter().rev().find(|judged| is_of(judged, post))
     }
 
-    /// Whether there is a score of a post for each of these groups.
+    /// Whether a post has a recorded score for each of these groups.
     pub(crate) fn cover(&self, post: &OwnPost, groups: &[Group]) -> bool {
         self.of(post).is_some_and(|judged| {
             groups.iter().all(|group| judged.scores.iter().any(|score| score.group == *group))
         })
     }
 
-    /// Judgements of a post, with the scores that were recorded in place of those of the built-in judge.
+    /// Returns the judgements of a post, with recorded scores in place of those of the built-in judge.
     pub(crate) fn over(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
         let Some(judged) = self.of(post) else { return judgements };
         let scored = |own: Judgement| match judged.scores.iter().find(|score| score.group == own.group) {
@@ -76,7 +75,7 @@ impl RecordedScores {
     }
 }
 
-/// Whether something was said of a post.
+/// Whether the scores are those of this post.
 pub(crate) fn is_of(judged: &JudgedPost, post: &OwnPost) -> bool {
     judged.posted == post.day && judged.reply_to == post.reply_to && judged.content == post.content
 }

@@ -1,4 +1,4 @@
-//! The company of a run in memory: the simulation, what has happened so far, and its words. No files, no lines, no permission.
+//! The company of a run in memory: simulation, history and texts. This layer knows no files, records or permissions.
 
 pub(crate) mod facts_chain;
 pub(crate) mod feed;

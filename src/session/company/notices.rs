@@ -1,4 +1,4 @@
-//! The inbox in words: each notice names its company where the day's facts tell which it is.
+//! Texts of notices. A notice names its enterprise if the day's facts identify it.
 
 use super::feed::entry_of;
 use super::simulation::Simulation;
@@ -7,13 +7,13 @@ use novamind_voice::notices::Party;
 use novamind_world::events::{EndCause, Notice, SubscriptionStatus};
 
 impl Simulation {
-    /// The facts of the last day or call with the words that belong to them.
+    /// Returns the database entry for the facts of the last day or call.
     pub(crate) fn entry(&self) -> Entry {
         entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
     }
 
-    /// Texts of the notices of the last day, or of the last call; empty ones for losses that are only repeated: the
-    /// database keeps those as one fact.
+    /// Returns the texts of the notices of the last day or call. Texts of repeated lead losses are empty, because the
+    /// database stores them as one fact.
     pub(crate) fn notice_texts(&self) -> Vec<String> {
         let mut parties = Parties::of(self);
         self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next(notice))).collect()
@@ -29,7 +29,7 @@ impl Simulation {
     }
 }
 
-/// Companies of a day's notices, kind by kind in the order of the notices.
+/// The enterprises of a day's notices, by kind, in the order of the notices.
 struct Parties {
     asking: std::vec::IntoIter<Party>,
     silent: std::vec::IntoIter<Party>,
@@ -41,7 +41,7 @@ impl Parties {
     fn of(simulation: &Simulation) -> Parties {
         let Simulation { facts, world, .. } = simulation;
         let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
-        // A list that is not one to one with its notices names nobody.
+        // Without a one-to-one match, no enterprise is named.
         let only = |parties: Vec<Party>, count: usize| {
             if parties.len() == count { parties.into_iter() } else { Vec::new().into_iter() }
         };
@@ -76,7 +76,7 @@ impl Parties {
         }
     }
 
-    /// The company of the next notice.
+    /// Returns the enterprise of the next notice of this kind.
     fn next(&mut self, notice: &Notice) -> Option<Party> {
         match notice {
             Notice::EnterpriseLead => self.asking.next(),

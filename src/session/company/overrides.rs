@@ -1,5 +1,4 @@
-//! Parameters that a debug run changes while it goes on, those changes that wait for their day, and facts that follow from the
-//! parameters in force.
+//! Parameter changes during a debug run, including scheduled ones, and values derived from the parameters in force.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
@@ -16,28 +15,28 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_tools::{Numbers, Refusal};
 use novamind_world::params::{ParameterError, Params};
 
-/// A parameter that is set to another value.
+/// A parameter change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterChange {
-    /// Line that sets it.
+    /// Line that records the change.
     pub seq: u64,
-    /// Full key.
+    /// Full key of the parameter.
     pub key: String,
-    /// Value from then on.
+    /// New value.
     pub value: Value,
-    /// First day that is simulated with it; none: it acts at once.
+    /// First simulated day with the new value; `None` if the change takes effect immediately.
     pub from_day: Option<u32>,
 }
 
 impl ParameterChange {
-    /// The change that a line tells; none if its value is nothing that a parameter can be.
+    /// Reads the change from a recorded line. Returns `None` if the value is not a valid type for a parameter.
     pub fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
         let value = value_of_json(&line.new)?;
         Some(ParameterChange { seq, key: line.key.clone(), value, from_day: line.from_day })
     }
 }
 
-/// A change that waits, with the parameters that are in force once it acts.
+/// A scheduled change, with the parameters in force after it.
 #[derive(Debug, Clone)]
 struct WaitingChange {
     day: u32,
@@ -45,47 +44,47 @@ struct WaitingChange {
     params: Arc<Params>,
 }
 
-/// What has become of the parameters of a run since it began.
+/// The parameter changes of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
-    /// Whether any was set.
+    /// Whether any parameter was changed.
     is_used: bool,
-    /// Changes that wait, by their day, those of a day in the order of their lines.
+    /// Scheduled changes by day; changes of one day in the order of their lines.
     waiting: Vec<WaitingChange>,
 }
 
-/// Parameters after a change was taken in.
+/// Parameters after a change was added.
 pub struct Taken {
-    /// Those in force now.
+    /// Parameters in force now.
     pub now: Arc<Params>,
-    /// Those in force once the change acts.
+    /// Parameters in force once the change takes effect.
     pub changed: Arc<Params>,
 }
 
-/// Why a change is not possible.
+/// The reason why a change is not allowed.
 #[derive(Debug)]
 pub struct Unfit {
-    /// The later day on which values would contradict each other; none: it is the change itself.
+    /// The later day on which values would contradict each other; `None` if the change itself is invalid.
     pub day: Option<u32>,
-    /// What is wrong.
+    /// The error.
     pub error: ParameterError,
 }
 
 impl Overrides {
-    /// Whether any parameter was set since the run began.
+    /// Whether any parameter was changed since the start of the run.
     pub(crate) fn is_used(&self) -> bool {
         self.is_used
     }
 
-    /// Changes that wait for their day.
+    /// Returns the scheduled changes.
     pub fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
         self.waiting.iter().map(|own| &own.change)
     }
 
-    /// Takes a change in. Every change that waits still has to fit afterwards: when its day has come nothing can fail.
+    /// Adds a change. Checks that all scheduled changes remain valid, so that none can fail on its day.
     ///
     /// # Errors
-    /// The value is not allowed, or contradicts another now or on a later day. Nothing has changed then.
+    /// The value is not allowed, or contradicts another value now or on a later day. Nothing has changed then.
     pub fn take(&mut self, now: &Arc<Params>, change: ParameterChange) -> Result<Taken, Unfit> {
         let (mut now, mut later): (_, Vec<ParameterChange>) =
             (now.clone(), self.waiting().cloned().collect());
@@ -110,19 +109,20 @@ impl Overrides {
         Ok(taken)
     }
 
-    /// The parameters with which a day will be simulated, if they change with it.
+    /// Returns the parameters for a day, if they change on it.
     pub(crate) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting[..count].last().map(|own| &own.params)
     }
 
-    /// The parameters with which a day is simulated, if they change with it: they wait no longer.
+    /// Returns the parameters for a day, if they change on it, and removes the changes from the schedule.
     pub(crate) fn due(&mut self, day: u32) -> Option<Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting.drain(..count).next_back().map(|own| own.params)
     }
 
-    /// The same changes over other parameters, but for some lines; what does not fit them is left out.
+    /// Returns the scheduled changes applied to other parameters, without those of the lines in `dropped`. Omits
+    /// changes that are not valid for these parameters.
     pub fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
         let mut own = Overrides { is_used: self.is_used, waiting: Vec::new() };
         for change in self.waiting().filter(|change| !dropped.contains(&change.seq)) {
@@ -131,8 +131,8 @@ impl Overrides {
         own
     }
 
-    /// What some lines of a run have made of the parameters with which it began, at the end of a day. None if a line does
-    /// not fit.
+    /// Replays the parameter changes in `lines` up to the end of a day, starting with the parameters `opening`.
+    /// Returns `None` if a change is not valid.
     pub(crate) fn after(opening: &Arc<Params>, lines: &[Line], day: u32) -> Option<(Arc<Params>, Overrides)> {
         let (mut now, mut own) = (opening.clone(), Overrides::default());
         for line in lines {
@@ -149,7 +149,7 @@ fn with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, Parame
     params.with(&change.key, change.value.clone()).map(Arc::new)
 }
 
-/// A value of JSON as parameters have it; none where they have nothing like it.
+/// Converts a JSON value to a parameter value. Returns `None` if there is no equivalent.
 pub fn value_of_json(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
@@ -167,7 +167,7 @@ pub fn value_of_json(value: &Json) -> Option<Value> {
     })
 }
 
-/// A value of a parameter as JSON, whole numbers without a decimal point.
+/// Converts a parameter value to JSON. Whole numbers have no decimal point.
 pub fn json_of_value(value: &Value) -> Json {
     match value {
         Value::String(text) => Json::from(text.as_str()),
@@ -182,7 +182,7 @@ pub fn json_of_value(value: &Value) -> Json {
     }
 }
 
-/// What follows from the parameters in force; replaced when they change.
+/// Values derived from the parameters in force; reset when a parameter changes.
 #[derive(Default)]
 pub(crate) struct DerivedOfParameters {
     numbers: OnceLock<Arc<Numbers>>,
@@ -190,19 +190,19 @@ pub(crate) struct DerivedOfParameters {
 }
 
 impl DerivedOfParameters {
-    /// The numbers that documentation names.
+    /// Returns the numbers that the documentation of the tools quotes.
     pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<Numbers> {
         self.numbers.get_or_init(|| Numbers::of(&simulation.params).into()).clone()
     }
 
-    /// Whether the parameters are, or were, others than those of the shipped scenario.
+    /// Whether the parameters differ, or differed at some time, from those of the bundled scenario.
     pub(crate) fn has_own_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
         let is_other = || simulation.overrides.is_used() || manifest.has_own_parameters();
         *self.are_own.get_or_init(is_other)
     }
 }
 
-/// Refuses to read or set parameters outside debug runs.
+/// Rejects reading or setting parameters unless the run is a debug run.
 ///
 /// # Errors
 /// `not_in_this_mode`.
@@ -213,16 +213,16 @@ pub fn refuse_outside_debug(mode: Mode) -> Result<(), Refusal> {
     }
 }
 
-/// The refusal for a parameter that does not exist.
+/// Returns the rejection for an unknown parameter.
 pub fn unknown(error: ParameterError) -> Refusal {
     Refusal::at(error.key, "parameter_unknown", error.problem)
 }
 
-/// The refusal for a value that a parameter cannot have.
+/// Returns the rejection for a value that is not allowed.
 pub fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
     let message = match day {
         None => error.problem,
-        Some(day) => format!("{}, from day {day} on, for which it was set before", error.problem),
+        Some(day) => format!("{} from day {day}, because of a change scheduled for that day", error.problem),
     };
     Refusal::at(error.key, "parameter_not_allowed", message)
 }
@@ -261,10 +261,10 @@ mod tests {
         let (now, mut own) = (Arc::new(Params::shipped()), Overrides::default());
         let most = now.competitor.competitor_feedback_u_max;
         own.take(&now, change(1, LEAST, most - 0.01, Some(30))).expect("it fits");
-        let unfit = own.take(&now, change(2, MOST, most - 0.02, None)).err().expect("on day 30 it does not");
+        let unfit = own.take(&now, change(2, MOST, most - 0.02, None)).err().expect("the values contradict each other on day 30");
         assert_eq!(unfit.day, Some(30));
-        assert_eq!(own.waiting().count(), 1, "nothing has changed");
-        own.take(&now, change(3, LEAST, most - 0.05, Some(30))).expect("the later line of a day counts");
+        assert_eq!(own.waiting().count(), 1, "the schedule is unchanged");
+        own.take(&now, change(3, LEAST, most - 0.05, Some(30))).expect("the later of two changes on a day applies");
         assert_eq!(own.over(&now, &BTreeSet::from([3])).waiting().count(), 1);
     }
 

@@ -1,4 +1,4 @@
-//! A day and a week that were simulated, as they are reported.
+//! Reports on simulated days and weeks.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -9,35 +9,34 @@ use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Ended;
 use novamind_world::events::DayFigures;
 
-/// A day that was just simulated.
+/// A simulated day.
 pub struct DayReport<'a> {
     /// Its figures.
     pub figures: &'a DayFigures,
-    /// Day on which the week will end, unless cash runs out.
+    /// Decision day at the end of the week, unless the company goes bankrupt before.
     pub week_end: u32,
-    /// The hidden state, in debug runs.
+    /// The hidden state; debug runs only.
     pub xray: Option<Xray<'a>>,
 }
 
-/// A week, or the rest of one, that was simulated.
+/// A simulated week, or part of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Week {
     /// Its figures.
     pub figures: WeekFigures,
     /// The dashboard.
     pub dashboard: String,
-    /// What was put into the inbox: day and text.
+    /// Notices: day and text.
     pub notices: Vec<(u32, String)>,
-    /// How the run ended with it, if it did.
+    /// How the run ended with this week.
     pub ended: Option<Ended>,
-    /// What the player should know: the disk did not take the closing line, the next day has no room for its leads, the database
-    /// could not be written, or the
-    /// language model did not answer.
+    /// Problems that the player should know: the closing line is not saved, the next day would exceed the limit of
+    /// leads, the database is not written, or the language model did not answer.
     pub remark: Option<String>,
 }
 
 impl Week {
-    /// The week as programs get it.
+    /// Returns the week as JSON, for programs.
     pub fn as_json(&self) -> Value {
         let notices: Vec<Value> =
             self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();

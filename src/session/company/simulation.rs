@@ -1,8 +1,8 @@
-//! What is simulated: the company and what people write about it, under the parameters and the seed of the run. Together
-//! with its [`History`](super::history::History) this is what a snapshot keeps.
+//! The simulated company and its texts, with parameters and seed. A snapshot stores it with the
+//! [`History`](super::history::History).
 //!
-//! What follows from a day or a call (words of posts, the hash of the facts, rows for the database) changes nothing of
-//! the company, so the day after is simulated meanwhile.
+//! Texts, the hash of the facts and database rows of a day do not affect the company. They are produced while the
+//! next day is simulated.
 
 use std::sync::Arc;
 
@@ -31,43 +31,43 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// The company, its words, and how far it has come.
+/// The company, its texts and its progress.
 pub struct Simulation {
     /// Parameters in force.
     pub params: Arc<Params>,
-    /// What was set of them since the run began.
+    /// Parameter changes since the start of the run.
     pub overrides: Overrides,
-    /// The streams of chance.
+    /// Streams of random numbers.
     pub streams: Streams,
     /// The company and its market.
     pub world: World,
     /// Facts of the last day or call.
     pub facts: Arc<Facts>,
-    /// Those of the day before it, which are filled again once nobody reads them.
+    /// Facts of the day before; reused once nothing refers to them.
     facts_before: Arc<Facts>,
-    /// How the leads of the last day came about.
+    /// Details of the leads of the last day.
     pub(crate) trace: DayTrace,
-    /// What companies are called.
+    /// Names of enterprises.
     pub names: CompanyNames,
-    /// What people wrote in public, in words.
+    /// Posts of the social feed.
     pub feed: Feed,
-    /// What a language model made of the player's posts.
+    /// Recorded scores of the player's posts.
     pub(crate) scores: RecordedScores,
-    /// Hashes of this week's facts.
+    /// Hash chain of this week's facts.
     pub(crate) facts_chain: FactsChain,
-    /// Who looks into the days that are simulated: nobody, but for the x-ray.
+    /// Observer of the simulated days; does nothing except for inspections.
     pub(crate) watch: Arc<dyn DayWatch>,
 }
 
 impl Simulation {
-    /// The company of a run on day 0.
+    /// Creates the company of a run on day 0.
     pub fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
         let mut facts = Facts::default();
         let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
         Simulation::of(manifest, params, (world, facts))
     }
 
-    /// A company of a run that has come somewhere, with the facts of its last day or call.
+    /// Creates the company of a run from a world and the facts of its last day or call.
     pub(crate) fn of(manifest: &Manifest, params: Arc<Params>, (world, facts): (World, Facts)) -> Simulation {
         Simulation {
             names: CompanyNames::new(manifest.seed, &params.personas.email),
@@ -85,7 +85,7 @@ impl Simulation {
         }
     }
 
-    /// A company at some moment of a run, and what was written in public until then.
+    /// Creates a company from a state of a run and the posts so far.
     pub fn at(
         (params, overrides): (Arc<Params>, Overrides),
         (streams, names): (Streams, CompanyNames),
@@ -113,27 +113,28 @@ impl Simulation {
         judged.iter().for_each(|own| self.scores.take_in(own.clone()));
     }
 
-    /// Ends the chain of facts of a week.
+    /// Ends the hash chain of a week's facts.
     pub fn close_facts(&mut self) {
         self.facts_chain.close();
     }
 
-    /// Active subscribers with an open issue.
+    /// Returns the number of active subscribers with an open issue.
     pub fn open_issues(&self) -> u32 {
         self.world.customers.blocks().map(|(_, block)| block.open_issues()).sum()
     }
 
-    /// Hash of the whole state with one hash per part, by name.
+    /// Returns the hash of the complete state, and the hash of each part by name.
     pub fn state_hash(&self) -> StateHash {
         state_hash(self.world.part_hashes(), self.facts_chain.hash())
     }
 
-    /// A command with its draws made; nothing happens.
+    /// Resolves a command, including its random draws, without applying it.
     pub fn resolve(&self, command: Command) -> ResolvedCommand {
         self.world.resolve(command, &self.params, &self.streams)
     }
 
-    /// Least and greatest mean floor of a group behind its estimate; none while it is unknown.
+    /// Returns the range of a group's mean required quality according to the estimate; `None` while the group is
+    /// unknown.
     pub(crate) fn estimated_floor(&self, group: Group) -> Option<(f64, f64)> {
         match self.resolve(Command::ReadInsights(group)) {
             ResolvedCommand::ReadInsights(Some(insights)) => {
@@ -143,13 +144,13 @@ impl Simulation {
         }
     }
 
-    /// Does what a command does.
+    /// Applies a command.
     pub fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
         self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
         self.watch.called(&self.facts);
     }
 
-    /// The world, and facts to be filled, for what happens between two days.
+    /// Returns the world and facts to fill, for changes between two days.
     pub(crate) fn between_days(
         &mut self,
         entries: Entries<'_>,
@@ -157,7 +158,7 @@ impl Simulation {
         (&mut self.world, to_fill(&mut self.facts, entries), &self.params, &self.streams)
     }
 
-    /// Goes on with other parameters.
+    /// Replaces the parameters.
     pub fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
         if !Arc::ptr_eq(&self.params, &params) {
             entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
@@ -165,7 +166,7 @@ impl Simulation {
         }
     }
 
-    /// Refuses the next day where more people would come than memory holds.
+    /// Checks that the leads and customers of the next day are within the program's limits.
     ///
     /// # Errors
     /// `too_many_leads`.
@@ -182,15 +183,15 @@ impl Simulation {
             Some(NoRoom::Numbers) => "more leads than there are numbers for customers".to_owned(),
         };
         let message = format!(
-            "day {day} would bring {told}, and memory does not hold them; nothing after day {} is simulated. Spend less on \
-             advertising, or take back the parameter that multiplies leads",
+            "day {day} would bring {told}, which exceeds the limits of the program. Nothing after day {} is simulated. \
+             Spend less on advertising, or revert the parameter that multiplies leads",
             world.day
         );
         Err(Refusal::new("too_many_leads", message))
     }
 
-    /// Simulates a day with what is held of its inputs, and meanwhile what follows from the day before, if that is left,
-    /// with its notices.
+    /// Simulates a day with the given held inputs. At the same time, processes the facts of the day before, if its
+    /// notices are given in `day_before`.
     pub fn simulate_day(
         &mut self,
         held: &Held,
@@ -198,7 +199,7 @@ impl Simulation {
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
         std::mem::swap(&mut self.facts, &mut self.facts_before);
-        // The day before is told with the parameters it ran with.
+        // The facts of the day before are processed with the parameters of that day.
         let due = self.overrides.due(self.world.day + 1).unwrap_or_else(|| self.params.clone());
         let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, watch, .. } = self;
         let today = to_fill(facts, entries);
@@ -212,19 +213,19 @@ impl Simulation {
         figures
     }
 
-    /// What follows from a call, with its notices and the settings family that it left if it set one.
+    /// Processes the facts of a call: its notices, and the settings family if the call changed settings.
     pub fn follow_call(&mut self, entries: Entries<'_>, notices: Vec<String>, settings: Option<Value>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, Some(notices), settings);
     }
 
-    /// What follows from the last day of some, if there was any, with its notices.
+    /// Processes the facts of the last day, if its notices are given.
     pub fn follow_last_day(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, last_day, None);
     }
 
-    /// The same; meanwhile the state is hashed.
+    /// Like [`Simulation::follow_last_day`], and hashes the state at the same time.
     pub fn end_days(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
@@ -233,8 +234,8 @@ impl Simulation {
     }
 }
 
-/// Facts to be filled: these if nobody reads them any more, else some that the writer of the database has done with, or
-/// new ones. The facts of a day that is not handed over yet stay.
+/// Returns facts to fill: the given ones if nothing else refers to them, otherwise spare ones of the database writer
+/// or new ones. Facts that the writer still uses are kept.
 fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts {
     if Arc::strong_count(facts) > 1 {
         *facts = entries.spare_facts().unwrap_or_default();
@@ -242,7 +243,7 @@ fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts
     Arc::make_mut(facts)
 }
 
-/// The parts that a day leaves its traces in.
+/// The data that processing a day's facts needs.
 struct FollowUp<'a> {
     feed: &'a mut Feed,
     facts_chain: &'a mut FactsChain,
@@ -252,9 +253,8 @@ struct FollowUp<'a> {
 }
 
 impl FollowUp<'_> {
-    /// Facts are not copied for the database: the writer reads what the session still shows, and the session fills new
-    /// ones while the writer needs these.
-    /// Nothing follows where there are no notices: nothing is left to be followed.
+    /// Adds the facts to feed, hash chain and database. The facts are shared with the database writer, not copied.
+    /// Does nothing without `notices`.
     fn follow(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
         let Some(notices) = notices else { return };
         self.feed.word(facts, self.params, self.streams);

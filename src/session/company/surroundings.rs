@@ -1,14 +1,14 @@
-//! What tools find around the company: words, the documents of the tables, and what is kept with the run.
+//! The context that tools read: texts, table documentation and the notebook.
 
 use novamind_tools::{ColumnDocument, Notebook, Surroundings, TableDocument};
 use novamind_world::events::Reading;
 
-/// What a session has around its company.
+/// The context of a session's company.
 #[derive(Debug, Default)]
 pub(crate) struct RunSurroundings {
-    /// Calculations and scripts.
+    /// Calculations and scripts of the run.
     pub notebook: Notebook,
-    /// Nobody plays: what is called was decided elsewhere, and starts no programs.
+    /// Python must not be started, because the calls were decided elsewhere.
     pub keeps_python_out: bool,
 }
 

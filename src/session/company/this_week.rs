@@ -1,24 +1,24 @@
-//! What was done since the last week ran, so that settings can be taken back.
+//! Actions since the last week, for undo and redo.
 
 use super::irrevocable::Irrevocable;
 use novamind_record::trajectory::record::Reversal;
 use novamind_tools::ToolId;
 use novamind_world::settings::Settings;
 
-/// What happened since the last week ran.
+/// Actions since the last week.
 #[derive(Debug, Clone)]
 pub(crate) struct ThisWeek {
-    /// Settings before the first call.
+    /// Settings at the end of the last week.
     pub(crate) settings: Settings,
-    /// Setting calls that can be taken back, newest last.
+    /// Setting calls that can be undone, newest last.
     pub(crate) undo: Vec<Step>,
-    /// Calls that took settings back and can be reversed themselves, newest last.
+    /// Undo calls that can be redone, newest last.
     pub(crate) redo: Vec<Step>,
-    /// Purchases and the like, in words.
+    /// Purchases and other irrevocable actions.
     pub(crate) done: Vec<Irrevocable>,
 }
 
-/// A call that changed settings, and the settings that reversing it restores.
+/// A call that changed settings, and the settings that reverting it restores.
 #[derive(Debug, Clone)]
 pub(crate) struct Step {
     /// Line of the call.
@@ -28,12 +28,12 @@ pub(crate) struct Step {
 }
 
 impl ThisWeek {
-    /// Nothing has happened since these settings were in force.
+    /// Starts a new week with these settings.
     pub(crate) fn begin(&mut self, settings: Settings) {
         *self = ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() };
     }
 
-    /// Keeps what a setting call did, so that it can be reversed.
+    /// Records a setting call, so that it can be reverted.
     pub(crate) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
         if let Some(Reversal::Undoes(seq)) = reversal {
             self.undo.retain(|step| step.seq < seq);

@@ -1,4 +1,4 @@
-//! The hidden state after the last day, as it stands: for policies and figures of debug runs.
+//! The hidden state after the last day, for policies and the figures of debug runs.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// A look behind the curtain, as of the last day.
+/// A read-only view of the hidden state after the last day.
 #[derive(Clone, Copy)]
 pub struct Xray<'a> {
     world: &'a World,
@@ -34,80 +34,80 @@ impl<'a> Xray<'a> {
         Xray { world, params, streams, facts, trace, called: &history.called, judgements: &feed.judgements }
     }
 
-    /// Money that calls moved between the day before and the last day.
+    /// Returns the ledger entries of calls between the two last days.
     pub fn called(&self) -> &'a [LedgerEntry] {
         self.called
     }
 
-    /// The state.
+    /// Returns the world.
     pub fn world(&self) -> &'a World {
         self.world
     }
 
-    /// The facts of the last day.
+    /// Returns the facts of the last day.
     pub fn facts(&self) -> &'a Facts {
         self.facts
     }
 
-    /// Parameters.
+    /// Returns the parameters in force.
     pub fn params(&self) -> &'a Arc<Params> {
         self.params
     }
 
-    /// The streams of chance.
+    /// Returns the streams of random numbers.
     pub fn streams(&self) -> &'a Streams {
         self.streams
     }
 
-    /// Factors of the last day's leads.
+    /// Returns the factors of a group's leads on the last day.
     pub fn lead_factors(&self, group: Group) -> &'a LeadFactors {
         &self.trace.leads[group]
     }
 
-    /// Reputation of a group.
+    /// Returns the reputation in a group.
     pub fn reputation(&self, group: Group) -> f64 {
         self.world.market.reputation.of(group)
     }
 
-    /// Macro multiplier of a group.
+    /// Returns the macroeconomic multiplier of a group.
     pub fn macro_multiplier(&self, group: Group, dimension: Dimension) -> f64 {
         self.world.market.economy.multiplier(group, dimension, self.params)
     }
 
-    /// Yield of a channel for a group: leads a day for 1,000 dollars a day.
+    /// Returns the yield of a channel for a group: leads a day per 1,000 dollars a day.
     pub fn channel_yield(&self, channel: Channel, group: Group) -> f64 {
         self.world.market.yields[channel][group]
     }
 
-    /// Mean satisfaction and relationship of a group's active subscribers; none without any.
+    /// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are none.
     pub fn mood(&self, group: Group) -> Option<(f64, f64)> {
         mood_of(self.world, group)
     }
 
-    /// Active subscriptions of a group.
+    /// Returns the number of active subscriptions of a group.
     pub fn subscribers(&self, group: Group) -> u32 {
         self.world.customers.groups[group].active()
     }
 
-    /// Active individual subscriptions on a plan.
+    /// Returns the number of active individual subscriptions of a plan.
     pub fn on_plan(&self, plan: Plan) -> u32 {
         let individuals = self.world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
         individuals.map(|(_, block)| block.plan.iter().filter(|own| **own == plan).count() as u32).sum()
     }
 
-    /// Blocks of a group.
+    /// Returns the blocks of a group's customers.
     pub fn blocks(&self, group: Group) -> impl Iterator<Item = &'a Block> + Clone + use<'a> {
         self.world.customers.groups[group].blocks.iter()
     }
 
-    /// Why the groups took a post of the player as they did, one judgement per group that was known; empty until the
-    /// post was judged.
+    /// Returns the judgements of a post of the player, one per group known at the time; empty if it is not judged
+    /// yet. `own_post` counts from 1.
     pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
         let at = (own_post as usize).checked_sub(1);
         at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)
     }
 
-    /// Notices of the last day.
+    /// Returns the notices of the last day.
     pub fn notices(&self) -> &'a [Notice] {
         &self.facts.notices
     }

@@ -1,4 +1,4 @@
-//! Starting a run.
+//! Creation of runs.
 
 pub(crate) mod agreement;
 pub(crate) mod baseline;
@@ -31,62 +31,62 @@ use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
 use novamind_world::params::Params;
 
-/// What a new run is to be. What is left out comes from the scenario, then from the defaults.
+/// The options of a new run. Defaults come from the scenario, then from the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewRun {
-    /// Seed of all chance; 42 if left out.
+    /// Seed of all random draws; 42 by default.
     pub seed: Option<u64>,
-    /// Last day, at least 7; 500 if left out.
+    /// Last day, at least 7; 500 by default.
     pub days: Option<u32>,
-    /// Cash on day 0, dollars above 0; a million if left out.
+    /// Cash on day 0, dollars above 0; 1,000,000 by default.
     pub cash: Option<f64>,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Single parameters, `(table.key, value)`; debug runs only.
+    /// Single parameters, `(table.key, value)`; debug and lesson runs only.
     pub overrides: Vec<(String, String)>,
-    /// The mechanism that is to be wrong; debug runs only.
+    /// Seeded fault of a mechanism; debug runs only.
     pub fault: Option<Fault>,
     /// Mode.
     pub mode: Mode,
-    /// Who plays, as the experimenter names them; if left out, whoever the folder of runs belongs to.
+    /// Label of the participant; by default the one that the folder of runs belongs to.
     pub participant: Option<String>,
-    /// How and when the person has agreed to the text that the experimenter asks for; baseline runs only.
+    /// How and when the participant agreed to the consent text; baseline runs only.
     pub agreed: Option<Agreed>,
-    /// The study it belongs to, and what that lays down.
+    /// The study of the run and its rules.
     pub study: Option<StudyEntry>,
-    /// The lesson it is a part of; lesson runs only.
+    /// The lesson of the run; lesson runs only.
     pub lesson: Option<LessonEntry>,
-    /// The hand-out of a class that it begins with, and its name where that hand-out names it.
+    /// The handout that the run starts from, and the run's identifier if the handout defines it.
     pub handout: Option<HandoutEntry>,
-    /// Where the run is kept.
+    /// Storage of the run.
     pub storage: Storage,
-    /// Whether the database is kept up to date; without it queries are refused.
+    /// Whether the database is maintained; without it queries are rejected.
     pub projection: bool,
-    /// Whether every call is on the disk before it is confirmed; otherwise once a week.
+    /// Whether every call is synced before it is confirmed; otherwise calls are synced once a week.
     pub sync_calls: bool,
-    /// What seals its snapshots.
+    /// Key that seals the snapshots.
     pub seal_key: SealKey,
 }
 
-/// What a study lays down for a new run.
+/// The definitions of a study for a new run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyEntry {
-    /// The study, and the place of the person in it.
+    /// The study and the participant's assignment.
     pub stamp: StudyStamp,
-    /// By which rules it is played.
+    /// Rules of the session.
     pub rules: SessionRules,
-    /// The text that participants agree to; none if none is asked for.
+    /// Text that participants agree to; `None` if the study asks for no consent.
     pub consent: Option<ConsentText>,
-    /// The language model that lends its voice, if the study has one.
+    /// Language model of the study, if it has one.
     pub voice: Option<ModelSettings>,
 }
 
-/// Where a run is kept.
+/// Storage of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Storage {
-    /// In a folder of its own below this one.
+    /// A new folder in this folder of runs.
     Runs(PathBuf),
-    /// In memory: it is gone with the session.
+    /// In memory; lost when the session is dropped.
     Memory,
 }
 
@@ -114,19 +114,18 @@ impl Default for NewRun {
 }
 
 impl Session {
-    /// Starts a run.
+    /// Creates a run.
     ///
     /// # Errors
-    /// The scenario, the parameters or the values do not allow it, or the folder cannot be written. Then there
-    /// is no run.
+    /// Scenario, parameters or options are not allowed, or the folder cannot be written. Then no run exists.
     pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
         Session::create_telling(new, configuration, &mut |_| {})
     }
 
-    /// The same, and tells each day of the weeks that a lesson plays before the student sees the company.
+    /// Like [`Session::create`]; calls `tell` for each day that the start of a lesson simulates.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Session::create`].
     pub fn create_telling(
         new: NewRun,
         configuration: &Configuration,
@@ -134,9 +133,9 @@ impl Session {
     ) -> Result<Session, RunError> {
         let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.terms_of(new.clone()));
         let shipped = Configuration::shipped();
-        // A lesson is the same on every machine.
+        // Lessons do not depend on the configuration of the machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
-        // A hand-out is the same on every machine.
+        // Handouts do not depend on the configuration of the machine.
         let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
         let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
         let model = model_of(new.mode, laid_down, named)?;
@@ -148,7 +147,7 @@ impl Session {
         Ok(begun)
     }
 
-    /// Begins a run where it is to be kept.
+    /// Creates the run in its storage.
     fn begin_stored(
         manifest: Manifest,
         params: Params,
@@ -163,7 +162,7 @@ impl Session {
                 create_folder(&folder)?;
                 let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
                 if begun.is_err() {
-                    // A run that did not begin leaves nothing behind.
+                    // Remove the folder of a run that could not be created.
                     let _ = std::fs::remove_dir_all(&folder);
                 }
                 begun
@@ -171,10 +170,10 @@ impl Session {
         }
     }
 
-    /// Begins the run of a manifest in memory, without a database.
+    /// Creates the run of a manifest in memory, without a database.
     ///
     /// # Errors
-    /// The program cannot use the parameters of the manifest.
+    /// The program does not support the parameters of the manifest.
     pub fn begin_in_memory(manifest: Manifest) -> Result<Session, RunError> {
         let params = manifest.params()?;
         let new = NewRun { projection: false, sync_calls: false, ..NewRun::default() };
@@ -190,7 +189,7 @@ impl Session {
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
         if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
-            // Before the first line: a run never lacks its lesson.
+            // Written before the first line, so that a run always has its lesson.
             entry.lesson.keep_with(folder)?;
         }
         let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
@@ -222,19 +221,19 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     let scenario = configuration.scenario(&new.scenario)?;
     if new.mode == Mode::Baseline && !scenario.shipped {
         let message =
-            format!("a baseline run needs a shipped scenario; {} is a file of your own", scenario.name);
+            format!("a baseline run needs a bundled scenario; {} is your own file", scenario.name);
         return Err(RunError::NotPossible(message));
     }
     if new.lesson.is_some() && new.mode != Mode::Lesson {
-        let message = format!("a lesson is played in a lesson run; this one would be {}", new.mode);
+        let message = format!("a lesson needs mode lesson; the mode is {}", new.mode);
         return Err(RunError::NotPossible(message));
     }
     if !new.overrides.is_empty() && !matches!(new.mode, Mode::Debug | Mode::Lesson) {
-        let message = format!("parameters can be set in debug runs only; this one would be {}", new.mode);
+        let message = format!("parameters can be set in debug runs only; the mode is {}", new.mode);
         return Err(RunError::NotPossible(message));
     }
     if new.fault.is_some() && new.mode != Mode::Debug {
-        let message = format!("a fault can be planted in debug runs only; this one would be {}", new.mode);
+        let message = format!("a fault can be seeded in debug runs only; the mode is {}", new.mode);
         return Err(RunError::NotPossible(message));
     }
     let sound = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
@@ -246,7 +245,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     check_cash(cash).map_err(RunError::NotPossible)?;
     let seed = new.seed.unwrap_or(params.run.seed);
     if seed > i64::MAX as u64 {
-        return Err(RunError::NotPossible(format!("a seed is at most {}, not {seed}", i64::MAX)));
+        return Err(RunError::NotPossible(format!("a seed can be at most {}, not {seed}", i64::MAX)));
     }
     let of_folder = match &new.storage {
         Storage::Runs(runs) => label_of(runs),
@@ -291,10 +290,10 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     Ok((manifest, params))
 }
 
-/// A language model that was named and cannot speak.
+/// Returns the error for a language model that cannot be used.
 fn no_model(problem: String) -> RunError {
     RunError::NotPossible(format!(
-        "the language model cannot lend its voice: {problem}. Nothing was recorded"
+        "the language model cannot be used: {problem}. Nothing was recorded"
     ))
 }
 
@@ -319,12 +318,12 @@ mod tests {
         assert_eq!(
             (last.participant.as_deref(), last.earlier_runs),
             (Some("P02"), 0),
-            "others' runs are not this person's"
+            "runs of other participants do not count"
         );
         assert_eq!(play(&second).earlier_runs, 1);
         delete_run(&second, &last.id).expect("deleted");
         for folder in [&base, &first, &second] {
-            assert_eq!(list_runs(folder).expect("a list").len(), 1, "nobody sees the others' runs");
+            assert_eq!(list_runs(folder).expect("a list").len(), 1, "each folder lists its own runs only");
             assert_eq!(all_run_folders(folder), [base.clone(), first.clone(), second.clone()]);
         }
         for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {

@@ -1,5 +1,4 @@
-//! The database of a run as its session sees it: entries go to a writer in the background, statements to a connection; and
-//! what is answered to programs.
+//! The database of a run: a background writer for entries, a connection for queries, and query results as JSON.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,49 +15,48 @@ use novamind_record::error::RunError;
 use novamind_tools::Refusal;
 use novamind_world::events::Facts;
 
-/// The rows that follow from what has happened. A run that is played without a database has none: then nothing is
-/// written, and statements are refused.
+/// The database of a run. A run without a database discards entries and rejects queries.
 #[derive(Default)]
 pub struct RunDatabase {
     projector: Option<Projector>,
-    /// The database of a run that has ended, as it stands on the disk: nothing is written any more.
+    /// The complete database file of an ended run; nothing is written any more.
     finished: Option<Location>,
-    /// For statements of this thread; opened with the first of them.
+    /// Connection of this thread; opened with the first query.
     connection: Option<QueryConnection>,
-    /// Number of times that it was replaced since the run was opened.
+    /// Number of replacements since the run was opened.
     replaced: u32,
 }
 
 impl RunDatabase {
-    /// A database with this writer, if it has one.
+    /// Creates a database with this writer, if there is one.
     pub(crate) fn of(projector: Option<Projector>) -> RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
 
-    /// The database of a run that has ended, on the disk.
+    /// Opens the database file of an ended run.
     pub(crate) fn finished(location: Location) -> RunDatabase {
         RunDatabase { finished: Some(location), ..RunDatabase::default() }
     }
 
-    /// Where entries go.
+    /// Returns the writer of entries.
     pub fn entries(&self) -> Entries<'_> {
         Entries(self.projector.as_ref())
     }
 
-    /// Makes everything handed over visible, as of a line.
+    /// Makes all entries so far visible, as of a line.
     pub(crate) fn commit(&self, position: &Position) {
         if let Some(projector) = &self.projector {
             projector.commit(position.clone());
         }
     }
 
-    /// Waits until everything committed is in the database.
+    /// Waits until all committed entries are written.
     pub(crate) fn wait(&self) -> Result<(), ProjectionError> {
         self.projector.as_ref().map_or(Ok(()), Projector::wait)
     }
 
-    /// Does something once everything handed over so far is written, with the digest of the file if it is asked for; at
-    /// once where there is no database.
+    /// Calls `work` once all entries so far are written, with the digest of the file if `digest` is set. Calls it
+    /// immediately if there is no database.
     pub(crate) fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         match &self.projector {
             Some(projector) => projector.then(digest, work),
@@ -66,22 +64,22 @@ impl RunDatabase {
         }
     }
 
-    /// What keeps the database from being written; none where it holds everything, or will soon.
+    /// Returns the problem that prevents writing the database, or `None`.
     pub fn failure(&self) -> Option<ProjectionError> {
         self.projector.as_ref()?.failure()
     }
 
-    /// Takes the place of a database that could not be written.
+    /// Replaces a database that could not be written.
     pub(crate) fn replace(&mut self, made_anew: RunDatabase) {
         *self = RunDatabase { replaced: self.replaced + 1, ..made_anew };
     }
 
-    /// Number of times that the database was replaced since the run was opened. Connections to an earlier database are stale.
+    /// Returns the number of replacements since the run was opened. Connections to an earlier database are stale.
     pub fn replaced(&self) -> u32 {
         self.replaced
     }
 
-    /// A connection of its own, for a thread that asks while the session works. What it asks is recorded with
+    /// Opens a separate connection, for a thread that queries while the session works. Its queries are recorded with
     /// [`Session::note_query`](crate::Session::note_query).
     ///
     /// # Errors
@@ -90,7 +88,7 @@ impl RunDatabase {
         self.open_connection_to(Scope::Visible)
     }
 
-    /// A connection of its own to the tables of a scope.
+    /// Opens a separate connection to the tables of a scope.
     pub(crate) fn open_connection_to(&self, scope: Scope) -> Result<QueryConnection, Refusal> {
         let connection = match (&self.projector, &self.finished) {
             (Some(projector), _) => projector.connection(scope),
@@ -100,7 +98,7 @@ impl RunDatabase {
         connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
     }
 
-    /// The connection of this thread.
+    /// Returns the connection of this thread.
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.
@@ -112,7 +110,7 @@ impl RunDatabase {
         Ok(self.connection.insert(connection))
     }
 
-    /// A handle that stops the running query.
+    /// Returns a handle that stops the running query.
     ///
     /// # Errors
     /// The run has no database.
@@ -120,15 +118,15 @@ impl RunDatabase {
         self.connection().map(QueryConnection::interrupt)
     }
 
-    /// Answers one guarded statement.
+    /// Runs one guarded statement.
     pub(crate) fn answer(&mut self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, Refusal> {
         self.connection()?.ask_as(ticket, sql, limits).map_err(query_refusal)
     }
 
-    /// Writes the rows into a new file that any SQLite tool can open.
+    /// Copies the tables into a new file that any SQLite tool can open.
     ///
     /// # Errors
-    /// The run has no database; the disk refuses.
+    /// The run has no database, or the disk fails.
     pub(crate) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
         match (&self.projector, &self.finished) {
             (Some(projector), _) => Ok(projector.copy_for_other_programs(file)?),
@@ -137,32 +135,32 @@ impl RunDatabase {
         }
     }
 
-    /// Bounds the pages that the database may take beyond those it has.
+    /// Limits the pages that the database can add.
     #[cfg(test)]
     pub(crate) fn bound_pages(&self, more: Option<u32>) {
         self.projector.as_ref().expect("a database").bound_pages(more);
     }
 }
 
-/// Where entries go, for whatever thread makes them.
+/// Writes entries, from any thread.
 #[derive(Clone, Copy)]
 pub struct Entries<'a>(Option<&'a Projector>);
 
 impl Entries<'_> {
-    /// Hands an entry over; it is made only if there is a database.
+    /// Sends an entry to the database; creates it only if there is one.
     pub(crate) fn write(self, entry: impl FnOnce() -> Entry) {
         if let Some(projector) = self.0 {
             projector.write(entry());
         }
     }
 
-    /// Facts that the writer has done with, to be filled again.
+    /// Returns facts that the writer no longer needs, for reuse.
     pub(crate) fn spare_facts(self) -> Option<Arc<Facts>> {
         self.0?.spare_facts()
     }
 }
 
-/// Converts the error of a query into the refusal that the caller of a tool receives.
+/// Converts the error of a query into the rejection that the caller of a tool receives.
 pub fn query_refusal(error: QueryError) -> Refusal {
     let message = match error.position {
         Some(at) => format!("{} (at character {})", error.message, at + 1),
@@ -171,12 +169,12 @@ pub fn query_refusal(error: QueryError) -> Refusal {
     Refusal::new(error.code, message)
 }
 
-/// The refusal for a record that cannot be read.
+/// Returns the rejection for a record that cannot be read.
 pub fn not_readable(error: &RunError) -> Refusal {
     Refusal::new("not_readable", error.to_string())
 }
 
-/// Names of columns, each once: the second `n` is `n:2`.
+/// Makes column names unique: the second `n` becomes `n:2`.
 fn unique_names(columns: &[String]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(columns.len());
     for column in columns {
@@ -187,7 +185,7 @@ fn unique_names(columns: &[String]) -> Vec<String> {
     names
 }
 
-/// A result as programs get it: rows as objects; of equal column names the second is `name:2`.
+/// Converts a result to JSON for programs: rows as objects, columns with unique names.
 pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
     let columns = unique_names(&rows.columns);
     let object = |row: &Vec<Cell>| {
@@ -211,7 +209,7 @@ pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
     data
 }
 
-/// A value as JSON; numbers that JSON cannot hold become null.
+/// Converts a value to JSON; non-finite numbers become null.
 fn cell_as_json(cell: &Cell) -> Value {
     match cell {
         Cell::Null => Value::Null,
@@ -222,14 +220,14 @@ fn cell_as_json(cell: &Cell) -> Value {
     }
 }
 
-/// What is said of a hidden table where the run may be looked into: it is there, and asked otherwise. Elsewhere nobody learns
-/// that there is such a table.
+/// Adds to the rejection of a query that hidden tables can be queried otherwise. Used only if the run can be
+/// inspected: elsewhere the message must not reveal that the table exists.
 pub fn with_the_way_to_hidden_tables(refusal: Refusal) -> Refusal {
     let named = refusal.message.strip_prefix("there is no table hidden.");
     let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };
     let message = format!(
-        "hidden.{name} is not among the visible tables; hidden tables are asked with novamind query --xray, and with \
-         xray sql in plain mode"
+        "hidden.{name} is not a visible table; query hidden tables with novamind query --xray, or with xray sql in \
+         plain mode"
     );
     Refusal { message, ..refusal }
 }

@@ -1,4 +1,4 @@
-//! Who may look inside a run.
+//! Permission to inspect a run.
 
 use std::path::Path;
 
@@ -8,22 +8,22 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Ended;
 use novamind_tools::Refusal;
 
-/// Said where hidden state is not shown.
+/// Message if hidden state is not shown.
 pub const REFUSED_LOOK: &str = "the x-ray works in debug runs and in runs that are over";
 
-/// Said where a lesson goes on.
+/// Message for an unfinished lesson.
 const REFUSED_IN_LESSON: &str =
-    "hidden state of a lesson is shown once its last part is over: the next part may have the same luck";
+    "hidden state of a lesson is shown after its last part: the next part can have the same random draws";
 
-/// Whether hidden state of a run may be shown: of debug runs, and of runs that are over. Not where a study shows no results, as
-/// none does of its practice: its session is still to come. Not where parts of a lesson are to come; the folder of the run
-/// tells that.
+/// Whether hidden state of a run may be shown: in debug runs, and in runs that have ended. Not if the study withholds
+/// results, as every study does for practice runs. Not before the last part of a lesson has ended, which the folder
+/// of the run records.
 pub fn may_look_inside(manifest: &Manifest, ended: Option<Ended>, folder: Option<&Path>) -> bool {
     let is_open = manifest.mode == Mode::Debug || (ended.is_some() && is_lesson_over(folder, manifest));
     is_open && !manifest.session_rules().hide_result(ended.is_some())
 }
 
-/// Refuses to look where hidden state stays hidden.
+/// Rejects the inspection of a run whose hidden state must not be shown.
 ///
 /// # Errors
 /// `not_in_this_mode`.

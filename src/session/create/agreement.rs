@@ -1,4 +1,4 @@
-//! Whether a participant has agreed to what a baseline session asks.
+//! Consent of a participant to the text of a baseline session.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::derived::Derived;
 use novamind_record::folder::runs::all_run_folders;
 
-/// The agreement that a new baseline run records: given now, or by the same participant for an earlier run here.
+/// Returns the consent that a new baseline run records: given now, or by the same participant for an earlier run.
 ///
 /// # Errors
-/// `ConsentNeeded` with the text, if neither is the case; the file cannot be read.
+/// [`RunError::ConsentNeeded`] with the text if there is no consent. Other errors if the file cannot be read.
 pub fn agreed(
     new: &NewRun,
     participant: Option<&str>,
     configuration: &Configuration,
 ) -> Result<Option<Consent>, RunError> {
     let text = match &new.study {
-        // A study has a text of its own, or none.
+        // A study defines its own text, or none.
         Some(study) => study.consent.clone(),
         None => configuration.consent()?,
     };
@@ -76,13 +76,13 @@ mod tests {
         assert_eq!(
             consent(start(Some("P01"), false, Mode::Baseline)),
             None,
-            "nothing is asked without a text"
+            "no text, no consent"
         );
         std::fs::write(place.path().join(CONSENT_FILE), "We keep what you do for a year.").expect("written");
-        assert_eq!(consent(start(Some("P01"), false, Mode::Sandbox)), None, "only baseline sessions ask");
+        assert_eq!(consent(start(Some("P01"), false, Mode::Sandbox)), None, "only baseline sessions need consent");
         let count = || std::fs::read_dir(&runs).expect("a folder").count();
         let before = count();
-        let error = start(Some("P01"), false, Mode::Baseline).err().expect("nobody has agreed");
+        let error = start(Some("P01"), false, Mode::Baseline).err().expect("no consent was given");
         assert!(
             matches!(&error, RunError::ConsentNeeded(text) if text.text.contains("for a year")),
             "{error}"
@@ -91,19 +91,19 @@ mod tests {
             error.to_string().contains("consent.md") && error.to_string().contains("--consent"),
             "{error}"
         );
-        assert_eq!(count(), before, "no run begins without agreement");
+        assert_eq!(count(), before, "no run is created without consent");
 
         let given = consent(start(Some("P01"), true, Mode::Baseline)).expect("it was given");
         let again = start(Some("P01"), false, Mode::Baseline).expect("a run");
-        assert_eq!(again.manifest().consent.as_ref(), Some(&given), "once is enough");
+        assert_eq!(again.manifest().consent.as_ref(), Some(&given), "the earlier consent counts");
         let folder = again.folder().expect("a folder").to_owned();
         drop(again);
         let opened = Session::open(&folder, Access::Write, false).expect("it opens");
         assert_eq!(opened.manifest().consent, Some(given));
-        assert!(start(Some("P02"), false, Mode::Baseline).is_err(), "somebody else has not");
-        assert!(start(None, false, Mode::Baseline).is_err(), "nor has a run without a participant");
+        assert!(start(Some("P02"), false, Mode::Baseline).is_err(), "another participant has not agreed");
+        assert!(start(None, false, Mode::Baseline).is_err(), "a run without a participant has no consent");
         std::fs::write(place.path().join(CONSENT_FILE), "We keep what you do for two years.")
             .expect("written");
-        assert!(start(Some("P01"), false, Mode::Baseline).is_err(), "another text is another question");
+        assert!(start(Some("P01"), false, Mode::Baseline).is_err(), "a new text needs new consent");
     }
 }

@@ -1,4 +1,4 @@
-//! What a new baseline run outside of a study keeps to: a label, and the terms by which results can be compared.
+//! Conditions of a baseline run outside of studies: a participant label, and terms that make results comparable.
 
 use super::{NewRun, Storage};
 use novamind_base::notation::{dollars, grouped};
@@ -8,11 +8,11 @@ use novamind_record::folder::runs::label_of;
 use novamind_record::mode::Mode;
 
 impl NewRun {
-    /// Checks that a person's baseline run has a label, and scenario, days and cash of the defaults. A study lays down its
-    /// own; other modes are free.
+    /// Checks that a baseline run has a label, and scenario, days and cash of the defaults. Runs of studies and other
+    /// modes are not restricted.
     ///
     /// # Errors
-    /// `NotPossible`, which says what to do instead; the scenario cannot be read.
+    /// [`RunError::NotPossible`] with the next step, or the scenario cannot be read.
     pub fn check_baseline(&self, configuration: &Configuration) -> Result<(), RunError> {
         if self.mode != Mode::Baseline || self.study.is_some() {
             return Ok(());
@@ -34,14 +34,14 @@ impl NewRun {
             return Ok(());
         }
         Err(RunError::NotPossible(format!(
-            "a baseline run is played with {}, so that it can be compared; {} needs a study, or another mode. \
+            "a baseline run is played with {}, so that results can be compared; {} needs a study, or another mode. \
              Nothing was recorded",
             baseline_terms(configuration)?,
             other.join(", ")
         )))
     }
 
-    /// Returns scenario, days and cash of the run where they differ from those of every baseline run outside of a study.
+    /// Returns the scenario, days and cash of the run that differ from those of baseline runs outside of studies.
     ///
     /// # Errors
     /// The scenario cannot be read.
@@ -56,7 +56,7 @@ impl NewRun {
     }
 }
 
-/// Returns scenario, days and cash of every baseline run outside of a study, in words.
+/// Describes scenario, days and cash of baseline runs outside of studies.
 ///
 /// # Errors
 /// The scenario cannot be read.
@@ -94,7 +94,7 @@ mod tests {
         ] {
             let words = refusal(&new).expect(part);
             assert!(words.contains(part), "{words}");
-            assert_eq!(refusal(&NewRun { mode: Mode::Sandbox, ..new }), None, "other modes are free");
+            assert_eq!(refusal(&NewRun { mode: Mode::Sandbox, ..new }), None, "other modes are not restricted");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The lesson that a new run is a part of.
+//! The lesson of a new run.
 
 use std::sync::Arc;
 
@@ -6,25 +6,25 @@ use super::NewRun;
 use novamind_record::lesson::Lesson;
 use novamind_record::stamp::LessonStamp;
 
-/// Which lesson a new run is to be a part of.
+/// The lesson of a new run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonEntry {
     /// The lesson.
     pub lesson: Arc<Lesson>,
-    /// The part, counted from 0.
+    /// Index of the part, from 0.
     pub part: usize,
-    /// Whether goals and pitfalls are looked at; not in plays that others are held against.
+    /// Whether goals and pitfalls are checked; false for reference plays.
     pub is_judged: bool,
 }
 
 impl LessonEntry {
-    /// What the first line says of it.
+    /// Returns the lesson as the first line records it.
     pub(crate) fn stamp(&self) -> LessonStamp {
         let (name, digest) = (self.lesson.name.clone(), self.lesson.digest.clone());
         LessonStamp { name, digest, part: self.part as u32 + 1 }
     }
 
-    /// A new run with the company of the lesson.
+    /// Applies the terms of the lesson's part to a new run.
     pub(crate) fn terms_of(&self, new: NewRun) -> NewRun {
         let part = &self.lesson.plan.parts[self.part];
         let quiet = (!part.surges).then(|| ("demand_surge.probability".to_owned(), "0.0".to_owned()));

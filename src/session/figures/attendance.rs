@@ -1,36 +1,34 @@
-//! Where the time of a run went: active, idle, away. The one definition, for tables and for time limits.
+//! Time of a run by kind: active, idle, away. Tables and time limits use this definition.
 //!
-//! Time is what passes between two lines. Where `session` and `clock` lines say who was there, they decide; before the
-//! first of them, and in runs that have none, a gap of more than ten minutes is a break. The days that the program
-//! simulates are nobody's time, nor is waiting for a language model. Everything is counted in whole nanoseconds, so that
-//! whoever adds it up again gets the same.
+//! Time passes between two lines. `session` and `clock` lines define its kind. Before the first of them, and in runs
+//! without them, a gap of more than ten minutes is a break. Time in which the program simulates days or waits for a
+//! language model does not count. All times are whole nanoseconds, so that sums are exact.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
 use novamind_record::trajectory::{Line, Record};
 
-/// Seconds without a line that are a break where nothing else tells whether somebody was there: ten minutes.
+/// Without `session` lines, a gap of more than this many seconds is a break: ten minutes.
 pub const BREAK_SECONDS: f64 = 600.0;
 
 const BREAK: i64 = BREAK_SECONDS as i64 * SECOND;
 const SECOND: i64 = 1_000_000_000;
 const MILLISECOND: i64 = 1_000_000;
 
-/// The interface that watches every key and records when there was none for a while.
+/// The interface that watches every key and records idle times.
 pub(super) const WATCHES_KEYS: &str = "console";
 
-/// What a person did with a stretch of time.
+/// How a participant spent a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attention {
-    /// They played.
+    /// Playing.
     Active,
-    /// They answered questions of the study.
+    /// Answering questions of the study.
     Answering,
-    /// They were there, without a key since before the program found them idle; or, where keys are not watched, without
-    /// a line for more than ten minutes.
+    /// Idle: no key was pressed, or, if keys are not watched, no line was written for more than ten minutes.
     Idle,
-    /// The run was not open, or suspended, or another window had the focus.
+    /// Away: the run was not open or was suspended, or another window had the focus.
     Away,
     /// The clock was stopped.
     Paused,
@@ -38,53 +36,53 @@ pub enum Attention {
     Simulating,
 }
 
-/// Seconds by what they were spent on.
+/// Time by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TimeSpent {
-    /// Nanoseconds played.
+    /// Nanoseconds of playing.
     active: i64,
-    /// Nanoseconds with questions of the study.
+    /// Nanoseconds of answering questions.
     answering: i64,
     /// Nanoseconds idle.
     idle: i64,
-    /// Nanoseconds away, the stopped clock among them.
+    /// Nanoseconds away, including those with a stopped clock.
     away: i64,
-    /// Nanoseconds with the clock stopped.
+    /// Nanoseconds with a stopped clock.
     paused: i64,
 }
 
 impl TimeSpent {
-    /// Seconds played, to the millisecond.
+    /// Returns the seconds of playing, to the millisecond.
     pub fn active_seconds(&self) -> f64 {
         to_seconds(self.active)
     }
 
-    /// Seconds with questions of the study, to the millisecond.
+    /// Returns the seconds of answering questions, to the millisecond.
     pub fn answering_seconds(&self) -> f64 {
         to_seconds(self.answering)
     }
 
-    /// Seconds idle, to the millisecond.
+    /// Returns the idle seconds, to the millisecond.
     pub fn idle_seconds(&self) -> f64 {
         to_seconds(self.idle)
     }
 
-    /// Seconds away, those with the clock stopped among them, to the millisecond.
+    /// Returns the seconds away, including those with a stopped clock, to the millisecond.
     pub fn away_seconds(&self) -> f64 {
         to_seconds(self.away)
     }
 
-    /// Seconds with the clock stopped, to the millisecond.
+    /// Returns the seconds with a stopped clock, to the millisecond.
     pub fn paused_seconds(&self) -> f64 {
         to_seconds(self.paused)
     }
 
-    /// Seconds of all kinds, to the millisecond.
+    /// Returns the seconds of all kinds, to the millisecond.
     pub fn elapsed_seconds(&self) -> f64 {
         to_seconds(self.active + self.answering + self.idle + self.away)
     }
 
-    /// Milliseconds played, as time limits count them.
+    /// Returns the milliseconds of playing, as time limits count them.
     pub fn active_ms(&self) -> u64 {
         (self.active / MILLISECOND).max(0) as u64
     }
@@ -104,7 +102,7 @@ impl TimeSpent {
     }
 }
 
-/// Its seconds by kind.
+/// Serializes the seconds by kind.
 impl Serialize for TimeSpent {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("TimeSpent", 6)?;
@@ -128,53 +126,53 @@ impl std::ops::AddAssign for TimeSpent {
     }
 }
 
-/// Nanoseconds as seconds with three decimals, halves up.
+/// Converts nanoseconds to seconds with three decimals, rounding half up.
 fn to_seconds(nanoseconds: i64) -> f64 {
     ((nanoseconds + MILLISECOND / 2) / MILLISECOND) as f64 / 1e3
 }
 
-/// A time of one kind, from and to on the axis of the run.
+/// A span of time of one kind. Times are nanoseconds since the first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AttendedTime {
-    /// Where it begins, nanoseconds.
+    /// Start, nanoseconds.
     pub from: i64,
-    /// Where it ends, nanoseconds.
+    /// End, nanoseconds.
     pub to: i64,
-    /// What was done with it.
+    /// How the time was spent.
     pub attention: Attention,
 }
 
-/// Whether the run is open, as far as lines tell.
+/// Whether the run is open, according to its lines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Openness {
-    /// No line has told it: time is told by its gaps.
+    /// No `session` line so far: gaps determine breaks.
     #[default]
     Untold,
-    /// The program has left the run.
+    /// The program has closed the run.
     Left,
-    /// The program has the run.
+    /// The program has opened the run.
     Open {
-        /// It records when there was no key for a while.
+        /// The program records idle times.
         watches_keys: bool,
     },
 }
 
-/// The time of a run, line after line.
+/// The times of a run, line by line.
 ///
-/// Places on its axis are nanoseconds since the first line. A wall clock that was set back takes none of it away.
+/// Times are nanoseconds since the first line. If the wall clock was set back, no time passes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Attendance {
     times: Vec<AttendedTime>,
-    /// Where the last line stands.
+    /// Time of the last line.
     place: i64,
-    /// Its moment, nanoseconds since 1970.
+    /// Wall-clock time of the last line, nanoseconds since 1970.
     moment: Option<i64>,
     sitting: Openness,
     is_paused: bool,
     is_idle: bool,
     is_suspended: bool,
     has_focus_elsewhere: bool,
-    /// Questions that were asked in this sitting and have no answer yet.
+    /// Questions of this session without an answer.
     open_questions: u32,
     clock_set_back: u32,
     weeks: Vec<AttendedWeek>,
@@ -183,14 +181,14 @@ pub struct Attendance {
 }
 
 impl Attendance {
-    /// The time of lines in their order.
+    /// Computes the times of lines.
     pub fn of(lines: &[Line]) -> Attendance {
         let mut attendance = Attendance::default();
         lines.iter().for_each(|line| attendance.note(line.nanoseconds(), &line.record));
         attendance
     }
 
-    /// Takes the line that follows, written at a moment in nanoseconds since 1970.
+    /// Adds the next line, written at `moment` in nanoseconds since 1970.
     pub fn note(&mut self, moment: i64, record: &Record) {
         let passed = moment - self.moment.unwrap_or(moment);
         if passed < 0 {
@@ -203,7 +201,7 @@ impl Attendance {
             Record::Activity(Activity::Session(presence)) => self.take_presence(presence),
             Record::Activity(Activity::Question(_)) => self.open_questions += 1,
             Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
-            // What a branch took over was played in another run, at another time.
+            // The inherited lines of a branch were played in another run, at another time.
             Record::Branch(_) => {
                 self.times.clear();
                 self.weeks.iter_mut().for_each(|week| week.inherited = true);
@@ -221,32 +219,32 @@ impl Attendance {
         }
     }
 
-    /// Where the last line stands.
+    /// Returns the time of the last line.
     pub fn place(&self) -> i64 {
         self.place
     }
 
-    /// How often the wall clock was set back between two lines.
+    /// Returns how often the wall clock was set back between two lines.
     pub fn clock_set_back(&self) -> u32 {
         self.clock_set_back
     }
 
-    /// The weeks, or single days, that ran, in order.
+    /// Returns the weeks, or single days, in order.
     pub fn weeks(&self) -> &[AttendedWeek] {
         &self.weeks
     }
 
-    /// Where the week that has not run yet begins.
+    /// Returns the time at which the current week starts.
     pub fn week_from(&self) -> i64 {
         self.week_from
     }
 
-    /// Its times in order, without gaps but for what was taken over from another run.
+    /// Returns the spans in order. They have no gaps, except for lines inherited from another run.
     pub fn times(&self) -> &[AttendedTime] {
         &self.times
     }
 
-    /// What the time between two places was spent on.
+    /// Returns the time between two points, by kind.
     pub fn between(&self, from: i64, to: i64) -> TimeSpent {
         let mut spent = TimeSpent::default();
         let first = self.times.partition_point(|time| time.to <= from);
@@ -256,8 +254,8 @@ impl Attendance {
         spent
     }
 
-    /// What was spent so far of what a limit is on, at a moment in nanoseconds since 1970 at which no line is written.
-    /// Time without a key counts as active until the program finds the person idle.
+    /// Returns the time so far in the scope of a limit, at `moment` in nanoseconds since 1970. Time without a key
+    /// counts as active until the program records the idle time.
     pub fn so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
         let from = match scope {
             LimitScope::Week => self.week_from,
@@ -270,7 +268,7 @@ impl Attendance {
         spent
     }
 
-    /// What the time since the last line was, given the line that ends it.
+    /// Returns the kind of the time since the last line. `record` is the line that ends it.
     fn attention(&self, passed: i64, record: Option<&Record>) -> Attention {
         let long = passed > BREAK;
         let simulates = |record: &Record| record.closing().is_some() || matches!(record, Record::Voice(_));
@@ -285,7 +283,7 @@ impl Attendance {
             Openness::Untold if long => Attention::Away,
             Openness::Untold => Attention::Active,
             Openness::Left => Attention::Away,
-            // It was not closed: nobody knows when the program was stopped.
+            // The run was not closed: it is unknown when the program stopped.
             Openness::Open { .. } if is_opened_again => Attention::Away,
             Openness::Open { .. } if self.is_suspended || self.has_focus_elsewhere => Attention::Away,
             Openness::Open { .. } if self.is_idle => Attention::Idle,
@@ -311,7 +309,7 @@ impl Attendance {
                 let watches_keys = presence.interface.as_deref() == Some(WATCHES_KEYS);
                 self.sitting = Openness::Open { watches_keys };
                 self.sitting_from = self.place;
-                // Whoever left before a page was sent is asked again.
+                // Questions without an answer are asked again.
                 self.open_questions = 0;
                 (self.is_idle, self.is_suspended, self.has_focus_elsewhere) = (false, false, false);
             }
@@ -330,7 +328,7 @@ impl Attendance {
         }
     }
 
-    /// Whoever is found idle has been since the last key.
+    /// Changes active time since `since` to idle.
     fn was_idle_since(&mut self, since: i64) {
         let first = self.times.partition_point(|time| time.to <= since);
         let found = self.times.split_off(first);
@@ -350,7 +348,7 @@ impl Attendance {
         }
     }
 
-    /// Weeks that were decided implausibly fast.
+    /// Returns the number of weeks that were decided implausibly fast.
     pub fn fast_weeks(&self) -> u32 {
         let is_fast = |week: &&AttendedWeek| week.is_implausibly_fast(&self.between(week.from, week.to));
         self.weeks().iter().filter(is_fast).count() as u32
@@ -364,7 +362,7 @@ fn presence_of(record: &Record) -> Option<PresenceEvent> {
     }
 }
 
-/// Whether a line can only come of a person who is there. A week may be filed by a time limit.
+/// Whether only a present user can cause this line. Weeks do not count, because a time limit can submit them.
 fn is_act(record: &Record) -> bool {
     match record {
         Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,
@@ -380,22 +378,22 @@ fn is_act(record: &Record) -> bool {
     }
 }
 
-/// Active seconds below which a week was decided implausibly fast: nobody reads a week in them.
+/// A week with fewer active seconds was decided implausibly fast.
 pub const FAST_WEEK_SECONDS: f64 = 10.0;
 
-/// What came before the end of a week, or of single days, on the axis of the run.
+/// The span of a week, or of single days.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct AttendedWeek {
-    /// Where the week before it ended, nanoseconds.
+    /// End of the week before, nanoseconds.
     pub from: i64,
-    /// Where it ended, nanoseconds.
+    /// End of the week, nanoseconds.
     pub to: i64,
-    /// It was taken over from the run that this one branched from: nobody played it here.
+    /// The week was inherited from the parent run.
     pub inherited: bool,
 }
 
 impl AttendedWeek {
-    /// Whether it was decided here, in less than [`FAST_WEEK_SECONDS`] active seconds.
+    /// Whether it was decided in this run, in less than [`FAST_WEEK_SECONDS`] active seconds.
     pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
         !self.inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }
@@ -408,7 +406,7 @@ mod tests {
         Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View,
     };
 
-    /// Notes records at seconds.
+    /// Creates the attendance of records at seconds.
     fn attendance(lines: &[(i64, Record)]) -> Attendance {
         let mut attendance = Attendance::default();
         lines.iter().for_each(|(seconds, record)| attendance.note(seconds * SECOND, record));
@@ -455,7 +453,7 @@ mod tests {
         Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
     }
 
-    /// Active, idle, away, paused.
+    /// Active, idle, away and paused seconds.
     fn all(attendance: &Attendance) -> [f64; 4] {
         let spent = attendance.between(0, attendance.place());
         [spent.active_seconds(), spent.idle_seconds(), spent.away_seconds(), spent.paused_seconds()]
@@ -479,7 +477,7 @@ mod tests {
         ]);
         assert_eq!(all(&run), [650.0, 360.0, 0.0, 0.0]);
         let plain = attendance(&[(0, opened("plain")), (660, help()), (700, help())]);
-        assert_eq!(all(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode watches no keys");
+        assert_eq!(all(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode does not watch keys");
     }
 
     #[test]
@@ -495,7 +493,7 @@ mod tests {
             (335, on(PresenceEvent::Closed)),
             (1335, opened("console")),
             (1340, look()),
-            // Killed.
+            // The program was killed.
             (1400, opened("console")),
             (1401, on(PresenceEvent::FocusLost)),
             (1403, help()),

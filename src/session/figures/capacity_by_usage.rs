@@ -1,24 +1,24 @@
-//! Rules by which the capacity follows usage: what is set at the start of a week.
+//! Rules that set the capacity from usage at the start of a week.
 
 use novamind_record::figures::WeekFigures;
 use novamind_world::params::{CapacityTier, Params};
 
-/// Share of the capacity that mean use is to take.
+/// Target utilization by mean usage.
 const UTILISATION: f64 = 0.8;
 
-/// A rule by which the capacity follows usage.
+/// A rule that sets the capacity from usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UsageRule {
-    /// The smallest tier that serves the busiest day of the week before without overload; the largest where none does. Nothing
-    /// moves before the first week.
+    /// The smallest tier that serves the busiest day of the week before without overload, or the largest tier. No
+    /// change before the first week.
     BusiestDay,
-    /// One tier a week towards the smallest that holds the mean use of the week before at 80 %, as the routine of the paper and
-    /// lessons have it.
+    /// One tier a week toward the smallest that serves the mean usage of the week before at 80 % utilization, as in
+    /// the routine of the paper and in lessons.
     StepByStep,
 }
 
 impl UsageRule {
-    /// The tier that the rule sets after a week, given the one in force.
+    /// Returns the tier for the next week, given the current one and the figures of the last week.
     pub fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
         match self {
             UsageRule::BusiestDay => {
@@ -33,7 +33,7 @@ impl UsageRule {
     }
 }
 
-/// The smallest tier that serves so many units a day; the largest where none does.
+/// Returns the smallest tier that serves `units` a day, or the largest tier.
 fn covering(units: f64, now: u8, params: &Params) -> u8 {
     let tiers = &params.capacity_tier;
     let holds = |tier: &&CapacityTier| f64::from(tier.capacity_units) >= units;

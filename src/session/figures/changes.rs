@@ -1,4 +1,4 @@
-//! What differs between two states of the settings: old -> new.
+//! Differences between two states of the settings.
 
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
@@ -9,7 +9,7 @@ use novamind_world::settings::Settings;
 /// A setting that differs between two states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
-    /// Which one.
+    /// Setting.
     pub setting: SettingId,
     /// Value before.
     pub old: f64,
@@ -17,7 +17,7 @@ pub struct Change {
     pub new: f64,
 }
 
-/// As programs read it: tool and unit beside the name of the setting.
+/// Serializes the change for programs, with tool and unit.
 impl Serialize for Change {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Change", 5)?;
@@ -30,21 +30,21 @@ impl Serialize for Change {
     }
 }
 
-/// What was decided between two weeks.
+/// Decisions between two weeks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decisions {
     /// Decision day.
     pub day: u32,
-    /// Last day of the days that ran after it.
+    /// Last of the days simulated after it.
     pub until: u32,
-    /// Settings that differ from those of the days before.
+    /// Changed settings.
     #[serde(with = "kept")]
     pub changes: Vec<Change>,
-    /// Purchases, posts and offers, in words.
+    /// Purchases, posts and offers, as text.
     pub purchases: Vec<String>,
 }
 
-/// Changes as snapshots keep them.
+/// The format of changes in snapshots.
 mod kept {
     use serde::{Deserialize, Deserializer, Serializer};
 
@@ -60,7 +60,8 @@ mod kept {
     }
 }
 
-/// What differs, in the order of the tools; settings that exist in one state only count as 0 in the other.
+/// Returns the changed settings, in the order of the tools. A setting that is in one state only has value 0 in the
+/// other.
 pub fn changes(old: &Settings, new: &Settings) -> Vec<Change> {
     let (before, after) = (setting_values(old), setting_values(new));
     let value_in = |list: &[(SettingId, f64)], wanted: SettingId| {
@@ -78,7 +79,7 @@ pub fn changes(old: &Settings, new: &Settings) -> Vec<Change> {
     found
 }
 
-/// Running costs that follow from settings alone, dollars a day.
+/// Returns the running costs that follow from settings alone, dollars a day.
 pub fn daily_cost(settings: &Settings, capacity_cost: f64) -> f64 {
     capacity_cost
         + settings.core.operations

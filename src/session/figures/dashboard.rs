@@ -1,4 +1,4 @@
-//! The weekly dashboard as text: the one agents read, with what they can find out by queries.
+//! The weekly dashboard as text, as agents read it.
 
 use std::fmt::Write;
 
@@ -11,18 +11,18 @@ use novamind_world::market::social::own::OwnPost;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// Quality delivered to a known group.
+/// Delivered quality for a known group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeliveredQuality {
     /// Group.
     pub group: Group,
-    /// By plan, with the model in force.
+    /// Quality by plan, with its current model tier.
     pub by_plan: ByPlan<f64>,
-    /// What targeted development has added.
+    /// Bonus from targeted development.
     pub group_bonus: f64,
 }
 
-/// Quality delivered to every known group, in text order of their names.
+/// Returns the delivered quality for every known group, ordered by group identifier.
 pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality> {
     let mut known: Vec<Group> = Group::all().filter(|group| world.market.is_known(*group)).collect();
     known.sort_by_key(|group| group.id());
@@ -39,16 +39,16 @@ pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality
         .collect()
 }
 
-/// Leads that wait for an answer.
+/// Leads that wait for a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Waiting {
-    /// Threads.
+    /// Number of threads.
     pub threads: u32,
-    /// Days left until the first of them dies unless it is answered now.
+    /// Days until the first of them ends without a response.
     pub days_left: u32,
 }
 
-/// Builds the dashboard. `week` holds the figures of the week that just ran, none before the first.
+/// Builds the dashboard. `week` has the figures of the last week; `None` before the first.
 pub fn build(
     world: &World,
     params: &Params,
@@ -177,7 +177,7 @@ fn calculations_block(text: &mut String, calculated: &[Calculated]) {
     }
 }
 
-/// What became of the posts of the week that just ran.
+/// Lists the posts of the last week with their views and comments.
 fn posts_block(text: &mut String, world: &World, params: &Params) {
     let week = params.run.days_per_week;
     let own = world.market.social.own.iter();

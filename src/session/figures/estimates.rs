@@ -1,48 +1,49 @@
-//! What studies say of a group, as numbers: what get_group_insights answers, without its words.
+//! Estimates of a group from studies, as numbers: the values of get_group_insights without its texts.
 
 use novamind_world::identifiers::Group;
 
-/// Estimates of a group. The truth at the time of the study lies within a relative error of each.
+/// Estimates of a group. The true value at the time of the study is within a relative error of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
     /// Group.
     pub group: Group,
-    /// Level of knowledge, 1..=5.
+    /// Study level, 1..=5.
     pub level: u8,
-    /// Day that budget, floor and size of the market are of: that of the last study, or on which the group was found.
+    /// Day of the estimates of budget, required quality and market size: that of the last study, or of the group's
+    /// discovery.
     pub as_of: u32,
     /// Largest relative error, 0..1.
     pub noise: f64,
-    /// Mean budget, dollars a month, of companies per seat.
+    /// Mean budget, dollars a month; for enterprises per seat.
     pub budget: f64,
-    /// Mean use, units a day, of companies per seat.
+    /// Mean usage, units a day; for enterprises per seat.
     pub usage: f64,
-    /// Mean of the least quality a customer accepts.
+    /// Mean required quality.
     pub floor: f64,
-    /// Seats of the smallest and the largest company; one of individuals.
+    /// Seats of the smallest and the largest enterprise; 1 for individuals.
     pub seats: (f64, f64),
 }
 
 impl Estimates {
-    /// Units a day that the smallest account uses: all seats of a company share one quota.
+    /// Returns the usage of the smallest account, units a day. All seats of an enterprise share one quota.
     pub fn account_usage(&self) -> f64 {
         self.usage * self.seats.0
     }
 
-    /// Least and greatest truth behind an estimated value.
+    /// Returns the range of the true value behind an estimate.
     pub fn range(&self, value: f64) -> (f64, f64) {
         truth_behind(value, self.noise)
     }
 
-    /// Least and greatest units a day behind the estimates that the smallest account uses.
+    /// Returns the range of the true usage of the smallest account, units a day.
     pub fn account_range(&self) -> (f64, f64) {
         let ((least, most), (fewest, seats)) = (self.range(self.usage), self.range(self.seats.0));
-        // People have one seat, whatever the error.
+        // Individuals have exactly one seat.
         if self.group.is_enterprise() { (least * fewest, most * seats) } else { (least, most) }
     }
 }
 
-/// Least and greatest truth behind an estimate that is off by at most a share: it is the truth times 1 ± share.
+/// Returns the range of the true value behind an estimate, which is the true value times 1 ± at most `share`.
 pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {
     let from = estimate / (1.0 + share);
     let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };

@@ -1,4 +1,4 @@
-//! What a week brought of each customer group.
+//! Weekly figures of each customer group.
 
 use std::collections::BTreeMap;
 
@@ -11,14 +11,14 @@ use novamind_world::identifiers::{ByChannel, ByGroup, ByPlan, Group};
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// What advertising of a group through a channel brought.
+/// Results of advertising to a group through a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PaidLeads {
-    /// Customers who came through it.
+    /// Leads.
     pub leads: u32,
-    /// Dollars spent on it.
+    /// Dollars spent.
     pub spend: f64,
-    /// Individuals among the customers who were billed: they pay on the day they sign up.
+    /// Individuals among the leads who signed up, and so were billed, on the same day.
     pub billed: u32,
 }
 
@@ -27,31 +27,32 @@ canonical! { PaidLeads { leads, spend, billed } }
 /// Figures of a group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GroupWeek {
-    /// Customers who came.
+    /// Leads.
     pub leads: u32,
-    /// Those of them who came by word of mouth; the others came through channels.
+    /// Leads by word of mouth; the others came through channels.
     pub word_of_mouth: u32,
-    /// What advertising brought, by channel.
+    /// Results of advertising, by channel.
     pub paid: ByChannel<PaidLeads>,
-    /// Companies among them that opened a thread; the others found no plan good enough at any price.
+    /// Enterprises among the leads that opened a thread; the others found no plan good enough at any price.
     pub asked: u32,
-    /// Individuals who signed up, or companies whose first deal was accepted.
+    /// Individuals who signed up, or enterprises with a first accepted deal.
     pub signed: u32,
-    /// Individuals who signed up, by the plan they chose.
+    /// Individuals who signed up, by plan.
     pub chosen: ByPlan<u32>,
-    /// Subscribers who cancelled.
+    /// Cancellations.
     pub left: u32,
-    /// Units used, by the plan they were used on.
+    /// Units used, by plan.
     pub usage: ByPlan<u64>,
-    /// Units used on its last day, by the plan they were used on.
+    /// Units used on the last day of the week, by plan.
     pub last_usage: ByPlan<u64>,
-    /// Individual subscribers at its end.
+    /// Individual subscribers at the end of the week.
     pub subscribers: ByPlan<u32>,
-    /// What they pay at its end, dollars a month.
+    /// Revenue from individual subscribers at the end of the week, dollars a month.
     pub revenue: ByPlan<f64>,
-    /// Quality delivered at its end; none while the group is unknown.
+    /// Delivered quality at the end of the week; `None` while the group is unknown.
     pub quality: Option<ByPlan<f64>>,
-    /// Least and greatest mean floor of the group behind the estimate at its end; none while the group is unknown.
+    /// Range of the group's mean required quality according to the estimate at the end of the week; `None` while the
+    /// group is unknown.
     pub floor: Option<(f64, f64)>,
 }
 
@@ -63,12 +64,12 @@ canonical! {
 }
 
 impl GroupWeek {
-    /// Customers who came through channels.
+    /// Returns the leads through channels.
     pub fn paid_leads(&self) -> u32 {
         self.leads - self.word_of_mouth
     }
 
-    /// Of the leads, those who signed; none without leads.
+    /// Returns the share of leads that signed up; `None` without leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
     }
@@ -122,7 +123,8 @@ pub fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts,
     }
 }
 
-/// Settles what is counted at the end of a week. `floor` returns the range of a group's mean floor, if it is known.
+/// Completes the figures at the end of a week. `floor` returns the range of a group's mean required quality, if the
+/// group is known.
 pub(crate) fn settle(
     week: &mut ByGroup<GroupWeek>,
     world: &World,
@@ -141,7 +143,7 @@ pub(crate) fn settle(
     }
 }
 
-/// Mean satisfaction and relationship of a group's active subscribers; none without any.
+/// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are none.
 pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();
@@ -150,7 +152,7 @@ pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
     (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
 }
 
-/// Figures of a group in a world at the end of days on which `counted` was counted.
+/// Returns the figures of a group at the end of the days that `counted` covers.
 pub fn measured_group(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
     let (satisfaction, relationship) = mood_of(world, group).unzip();
     let own = &world.customers.groups[group];

@@ -1,4 +1,4 @@
-//! What was done and why: every confirmed action, week by week, and how the forecasts turned out.
+//! The journal: all confirmed actions, week by week, with rationales and forecasts.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -11,9 +11,9 @@ use novamind_tools::{Forecast, ToolId};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum JournalEntry {
-    /// A tool was called.
+    /// A tool call.
     Call {
-        /// Its line in the trajectory.
+        /// Line in the trajectory.
         seq: u64,
         /// Decision day.
         day: u32,
@@ -21,13 +21,13 @@ pub enum JournalEntry {
         tool: ToolId,
         /// Arguments.
         args: Value,
-        /// What it did to an earlier call.
+        /// The earlier call that it undid or redid.
         #[serde(flatten)]
         reversal: Option<Reversal>,
     },
-    /// A parameter of a debug run was set.
+    /// A parameter change in a debug run.
     Parameter {
-        /// Its line in the trajectory.
+        /// Line in the trajectory.
         seq: u64,
         /// Decision day.
         day: u32,
@@ -35,23 +35,23 @@ pub enum JournalEntry {
         key: String,
         /// Value before.
         old: Value,
-        /// Value from then on.
+        /// New value.
         new: Value,
-        /// First day that is simulated with it; none: it acted at once.
+        /// First simulated day with the new value; `None` if the change took effect immediately.
         from_day: Option<u32>,
     },
-    /// A week was let pass.
+    /// A submitted week.
     Advance {
         /// Decision day.
         day: u32,
-        /// Why.
+        /// Rationale.
         rationale: String,
         /// Forecasts of cash.
         forecasts: Vec<Forecast>,
-        /// Which of them the naive projection filled in.
+        /// Whether the naive projection filled in each forecast.
         filled_naively: [bool; 4],
     },
-    /// A week, or single days, ran.
+    /// A simulated week, or single days.
     Week {
         /// Its figures.
         figures: WeekFigures,

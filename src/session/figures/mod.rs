@@ -1,5 +1,5 @@
-//! Figures of a company as plain data, and the functions that compute them: weeks, groups, decisions, forecasts, estimates,
-//! presence. Nothing here reads a run or a file.
+//! Figures of a company as plain data, and the functions that compute them: weeks, groups, decisions, forecasts,
+//! estimates, presence. Nothing in this module reads a run or a file.
 
 pub(crate) mod attendance;
 pub(crate) mod capacity_by_usage;

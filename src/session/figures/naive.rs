@@ -1,5 +1,6 @@
-//! Naive forecasts: the pace goes on. Their intervals are those that held for companies in the same stage, measured over the
-//! shipped policies (`novamind lab forecasts`), and wider where the company's own past was harder to forecast.
+//! Naive forecasts: the cash flow of recent weeks continues. Intervals contain the errors measured for companies in
+//! the same stage, with the bundled policies (`novamind lab forecasts`). They are wider for a company with large past
+//! errors.
 
 use std::sync::LazyLock;
 
@@ -11,26 +12,27 @@ use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
-/// Weeks of a young company.
+/// A company is young up to this many weeks.
 const YOUNG: usize = 4;
-/// Income has grown where it is this many times what it was four weeks before, and has shrunk below its inverse.
+/// Income grows if it exceeds that of four weeks before by this factor, and shrinks if it is below the inverse.
 const GROWTH: f64 = 1.3;
-/// Forecasts of a horizon whose errors are remembered.
+/// Number of past errors per horizon that affect the width.
 const REMEMBERED: usize = 8;
-/// An interval is widened where the root mean square of past errors, in shares of the interval, is above the inverse of this.
+/// The interval is multiplied by this factor times the root mean square of past errors in intervals, if the product
+/// is above 1.
 const OWN_ERROR: f64 = 1.5;
-/// An error counts at most this many intervals.
+/// Maximum error, in intervals.
 const WORST: f64 = 10.0;
-/// Dollars a day that move at least.
+/// Minimum cash flow, dollars a day.
 const LEAST: f64 = 1.0;
-/// Share of what moves that an interval reaches at least: no policy is as inventive as a person.
+/// Minimum half-width of an interval, as a share of the expected flow: users vary more than policies.
 const NARROWEST: f64 = 0.05;
-/// A share of what moves that is no error.
+/// Errors up to this share of the expected flow count as 0.
 const ROUNDING: f64 = 1e-4;
-/// Quantiles of the errors between which an interval lies: wider than 95 %, as the next company is none of those measured.
+/// Quantiles of the errors that bound an interval: wider than 95 %, because a company differs from those measured.
 const QUANTILES: [f64; 2] = [0.02, 0.98];
 
-/// How far a company has come, by its weekly income.
+/// Stage of a company, by its weekly income.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
@@ -38,13 +40,13 @@ pub enum Stage {
     Start,
     /// In its first weeks.
     Young,
-    /// Income grows.
+    /// Income is growing.
     Growing,
-    /// Income stays.
+    /// Income is steady.
     Steady,
-    /// Income shrinks.
+    /// Income is shrinking.
     Shrinking,
-    /// No income now, nor four weeks before.
+    /// No income, now or four weeks before.
     Idle,
 }
 
@@ -53,7 +55,8 @@ impl Stage {
     pub const ALL: [Stage; 6] =
         [Stage::Start, Stage::Young, Stage::Growing, Stage::Steady, Stage::Shrinking, Stage::Idle];
 
-    /// The stage after some weeks: income of the last two beside that of two weeks four weeks before.
+    /// Returns the stage after these weeks: compares income of the last two weeks with that of two weeks four weeks
+    /// before.
     pub fn of(weeks: &[WeekFigures]) -> Stage {
         let end = weeks.len();
         if end <= YOUNG {
@@ -71,40 +74,40 @@ impl Stage {
     }
 }
 
-/// How far below and above the point the interval reaches, in shares of what moves until then.
+/// An interval around the point, in shares of the expected flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Band {
-    /// Of companies in this stage.
+    /// Stage of the companies.
     pub stage: Stage,
     /// Days ahead.
     pub horizon: u32,
-    /// Negative.
+    /// Lower end, negative.
     pub below: f64,
-    /// Positive.
+    /// Upper end, positive.
     pub above: f64,
-    /// Forecasts that were measured.
+    /// Number of measured forecasts.
     pub forecasts: usize,
 }
 
-/// How often intervals held.
+/// Measured coverage of intervals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Days ahead.
     pub horizon: u32,
-    /// Forecasts that came due.
+    /// Number of forecasts that came due.
     pub forecasts: usize,
-    /// Share of them that came within the interval.
+    /// Share of the outcomes within the interval.
     pub held: f64,
 }
 
-/// What a back-test measured.
+/// Results of a back-test.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
-    /// Policies that were played.
+    /// Number of policies.
     pub policies: usize,
-    /// Seeds of each.
+    /// Seeds per policy.
     pub seeds: u64,
-    /// How often the intervals held, by horizon.
+    /// Coverage by horizon.
     pub coverage: Vec<Coverage>,
     /// The intervals.
     pub bands: Vec<Band>,
@@ -115,12 +118,12 @@ static SHIPPED: LazyLock<Bands> = LazyLock::new(|| {
 });
 
 impl Bands {
-    /// Those that are shipped.
+    /// Returns the bundled bands.
     pub fn shipped() -> &'static Bands {
         &SHIPPED
     }
 
-    /// The intervals that held for measured errors: stage, days ahead, share of what moves.
+    /// Computes the intervals from measured errors: stage, days ahead, share of the expected flow.
     pub fn measured(errors: &[(Stage, u32, f64)], policies: usize, seeds: u64) -> Bands {
         let mut horizons: Vec<u32> = errors.iter().map(|(_, horizon, _)| *horizon).collect();
         horizons.sort_unstable();
@@ -130,7 +133,7 @@ impl Bands {
             let mut own: Vec<f64> = own.map(|(_, _, error)| *error).collect();
             own.sort_unstable_by(f64::total_cmp);
             let [below, above] = QUANTILES.map(|share| quantile(&own, share));
-            // Four decimals are more than the measurement is worth; the point lies within.
+            // Four decimals exceed the precision of the measurement; the interval contains the point.
             let rounded = |value: f64| (value * 1e4).round() / 1e4;
             Band {
                 stage,
@@ -144,7 +147,7 @@ impl Bands {
         Bands { policies, seeds, coverage: Vec::new(), bands: cells.map(band).collect() }
     }
 
-    /// The interval of a stage for a horizon; for one that was not measured that of the next shorter one.
+    /// Returns the interval of a stage for a horizon, or that of the next shorter measured horizon.
     fn of(&self, stage: Stage, horizon: u32) -> (f64, f64) {
         let own = self.bands.iter().filter(|band| band.stage == stage);
         let shorter = own.clone().filter(|band| band.horizon <= horizon).max_by_key(|band| band.horizon);
@@ -152,7 +155,7 @@ impl Bands {
         band.map_or((-1.0, 1.0), |band| (band.below, band.above))
     }
 
-    /// Share of the measured intervals so far ahead that held, in words: `97 % of 17,000`.
+    /// Describes the measured coverage: `97 % of 17,000 such intervals …`.
     pub fn coverage_in_words(&self) -> String {
         let held = self.coverage.iter().map(|own| own.held);
         let (least, most) = held.fold((1.0f64, 0.0f64), |all, own| (all.0.min(own), all.1.max(own)));
@@ -170,30 +173,30 @@ impl Bands {
     }
 }
 
-/// The value below which a share of sorted values lies, between its neighbours; 0 of none.
+/// Returns a quantile of sorted values by linear interpolation; 0 if there are none.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * sorted.len().saturating_sub(1) as f64;
     let value = |at: f64| sorted.get(at as usize).copied().unwrap_or(0.0);
     value(at.floor()) + (value(at.ceil()) - value(at.floor())) * at.fract()
 }
 
-/// A naive forecast as it was, or would have been, made before a week, and what came.
+/// A naive forecast as it was, or would have been, made before a week, and its outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hindcast {
-    /// The stage then.
+    /// Stage at that time.
     pub stage: Stage,
-    /// What would have come without later purchases, less the point, in shares of what was to move: a forecast does not
-    /// foresee what a person decides to buy.
+    /// Outcome without later purchases, less the point, as a share of the expected flow. A naive forecast does not
+    /// predict purchases.
     pub error: f64,
-    /// Whether the interval held what came, purchases included.
+    /// Whether the interval contains the outcome, purchases included.
     pub held: bool,
-    /// Week after which the outcome is known.
+    /// Index of the week after which the outcome is known.
     due: usize,
-    /// The error in intervals.
+    /// The error, in intervals.
     intervals: f64,
 }
 
-/// Naive forecasts a horizon ahead before each of the weeks that ran, as far as what came is known.
+/// Returns the naive forecasts before each past week for a horizon, as far as outcomes are known.
 pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &Bands) -> Vec<Hindcast> {
     let mut made: Vec<Hindcast> = Vec::new();
     for before in 0..weeks.len() {
@@ -214,37 +217,37 @@ pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &Bands) -> Vec<Hind
     made
 }
 
-/// Index of the week that ends a horizon after the beginning of another. A bankrupt company keeps its last cash: without that,
-/// only those that fared well would be measured.
+/// Returns the index of the week that ends `horizon` days after the start of another. A bankrupt company keeps its
+/// last cash: without it, only successful companies would be measured.
 fn due(weeks: &[WeekFigures], before: usize, horizon: u32) -> Option<usize> {
     let day = weeks[before].day - weeks[before].days_run + horizon;
     let last = weeks.last().filter(|last| last.cash < 0.0 && last.day < day);
     weeks.binary_search_by_key(&day, |week| week.day).ok().or(last.map(|_| weeks.len() - 1))
 }
 
-/// Cash on the decision day of a week, when its purchases were made.
+/// Returns the cash on the decision day of a week, before its purchases.
 fn cash_before(week: &WeekFigures) -> f64 {
     week.cash - week.cash_change + purchases(week)
 }
 
-/// What a week booked for research and studies, negative.
+/// Returns the amount booked for R&D and studies in a week, negative.
 fn purchases(week: &WeekFigures) -> f64 {
     let kinds = [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
     kinds.iter().map(|category| week.booked.of(*category)).sum()
 }
 
-/// What the settings of a week committed to, dollars a day.
+/// Returns the costs that the settings of a week committed to, dollars a day.
 fn committed(week: &WeekFigures) -> f64 {
     let kinds = [Category::Capacity, Category::Operations, Category::Development, Category::Advertising];
     -kinds.iter().map(|category| week.booked.of(*category)).sum::<f64>() / f64::from(week.days_run.max(1))
 }
 
-/// Dollars that go in and out until a horizon at a pace.
+/// Returns the total income and costs until a horizon at a rate, dollars.
 fn moved(pace: &Pace, horizon: u32) -> f64 {
     (pace.income + pace.committed + pace.variable).max(LEAST) * f64::from(horizon)
 }
 
-/// How much wider an interval is than the measured one, by the forecasts that have come due before a week.
+/// Returns the factor that widens an interval, from the forecasts that came due before a week.
 fn widening(made: &[Hindcast], before: usize) -> f64 {
     let known = made.iter().rev().filter(|hindcast| hindcast.due < before).take(REMEMBERED);
     let squares: Vec<f64> = known.map(|hindcast| hindcast.intervals * hindcast.intervals).collect();
@@ -252,7 +255,7 @@ fn widening(made: &[Hindcast], before: usize) -> f64 {
     (OWN_ERROR * mean.sqrt()).max(1.0)
 }
 
-/// Naive forecasts of cash after the weeks that ran, at a pace.
+/// Returns the naive forecasts of cash after the given weeks.
 pub(crate) fn forecasts(cash: f64, pace: &Pace, weeks: &[WeekFigures], horizons: &[u32]) -> Forecasts {
     let bands = Bands::shipped();
     let stage = Stage::of(weeks);
@@ -282,7 +285,7 @@ mod tests {
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 
-    /// Weeks with these payments and a thousand dollars of advertising each.
+    /// Returns weeks with these payments and 1,000 dollars of advertising each.
     fn weeks(payments: &[f64]) -> Vec<WeekFigures> {
         let mut cash = 1e6;
         let week = |(at, paid): (usize, &f64)| {
@@ -334,7 +337,7 @@ mod tests {
         let calm = weeks(&[1_000.0; 20]);
         let bands = Bands::shipped();
         let errors = hindcasts(&calm, 28, bands);
-        // The first is made before there is an income to see.
+        // The first forecast is made before there is any income.
         assert_eq!(errors.len(), 17);
         assert!(errors[1..].iter().all(|own| own.error.abs() < 1e-9 && own.held));
         assert_eq!(widening(&errors[1..], 20), 1.0);
@@ -343,7 +346,7 @@ mod tests {
         assert!(errors.iter().any(|own| !own.held));
         assert!(widening(&errors, 20) > 1.5, "{}", widening(&errors, 20));
         let known = errors.iter().filter(|own| own.due < 10).count();
-        assert_eq!(widening(&errors, 10), widening(&errors[..known], 20), "only what has come due is known");
+        assert_eq!(widening(&errors, 10), widening(&errors[..known], 20), "only due forecasts affect the width");
     }
 
     #[test]
@@ -356,7 +359,7 @@ mod tests {
         assert!(errors[1..].iter().all(|own| own.error.abs() < 1e-9 && own.held), "{errors:?}");
         let later = hindcasts(&all, 28, Bands::shipped());
         assert!(later[1..].iter().all(|own| own.error.abs() < 1e-9), "{later:?}");
-        assert!(!later[4].held, "what is bought later is in what came");
+        assert!(!later[4].held, "later purchases are part of the outcome");
     }
 
     #[test]
@@ -365,7 +368,7 @@ mod tests {
             (0..=1000).map(|at| (Stage::Steady, 7, f64::from(at) / 1000.0 - 0.4)).collect();
         let bands = Bands::measured(&errors, 1, 1);
         assert_eq!(bands.of(Stage::Steady, 7), (-0.38, 0.58));
-        assert_eq!(bands.of(Stage::Steady, 30), (-0.38, 0.58), "the next shorter horizon");
+        assert_eq!(bands.of(Stage::Steady, 30), (-0.38, 0.58), "the next shorter horizon applies");
         assert_eq!(bands.of(Stage::Idle, 7), (-NARROWEST, NARROWEST), "nothing was measured");
         assert_eq!(quantile(&[], 0.5), 0.0);
     }

@@ -1,15 +1,15 @@
-//! How money goes on: what the settings commit to, what recent weeks brought and took besides, how long cash lasts at
-//! that. Naive forecasts follow from it.
+//! The rate at which cash changes: commitments of the settings, and income and variable costs of recent weeks. Naive
+//! forecasts and the runway follow from it.
 
 use serde::Serialize;
 
 use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
-/// Weeks that are recent.
+/// Number of recent weeks.
 const RECENT: usize = 4;
 
-/// Dollars a day.
+/// Rates, dollars a day.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Pace {
     /// Costs that the settings commit to: capacity, operations, development, advertising.
@@ -21,7 +21,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// The pace of a company with these daily commitments and these recent weeks.
+    /// Computes the rate from daily commitments and the figures of past weeks.
     pub fn of(committed: f64, weeks: &[WeekFigures]) -> Pace {
         let recent = &weeks[weeks.len().saturating_sub(RECENT)..];
         let days: u32 = recent.iter().map(|week| week.days_run).sum();
@@ -36,18 +36,18 @@ impl Pace {
         }
     }
 
-    /// What a day changes cash by.
+    /// Returns the change of cash per day.
     pub fn net(&self) -> f64 {
         self.income - self.committed - self.variable
     }
 
-    /// Weeks until cash is gone; none while it does not shrink.
+    /// Returns the weeks until cash is 0; `None` if it does not shrink.
     pub fn runway_weeks(&self, cash: f64) -> Option<f64> {
         (self.net() < 0.0).then(|| cash.max(0.0) / -self.net() / 7.0)
     }
 }
 
-/// Income and variable costs of a week, both positive.
+/// Returns income and variable costs of a week, both positive.
 fn flows(week: &WeekFigures) -> (f64, f64) {
     let of = |category| week.booked.of(category);
     (

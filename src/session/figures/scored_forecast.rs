@@ -1,5 +1,4 @@
-//! Forecasts that were filed, and what came of them: the one place that knows when a forecast is due, whether its
-//! interval held, and how far it missed.
+//! Submitted forecasts and their outcomes: due day, coverage and error.
 
 use serde::Serialize;
 
@@ -7,32 +6,32 @@ use super::journal::JournalEntry;
 use novamind_base::notation::percent;
 use novamind_tools::Forecast;
 
-/// A forecast of cash that was filed, and what came if its day has come.
+/// A submitted forecast of cash, with its outcome once it is due.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ScoredForecast {
-    /// What was said.
+    /// The forecast.
     #[serde(flatten)]
     pub forecast: Forecast,
-    /// Day on which it was filed.
+    /// Day of submission.
     #[serde(skip)]
     pub day: u32,
-    /// What came, dollars; none before its day.
+    /// Outcome, dollars; `None` before the due day.
     pub outcome: Option<f64>,
 }
 
-/// Where an outcome lies beside an interval. The ends of an interval belong to it.
+/// Position of an outcome relative to an interval. The interval includes its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Below its lower end.
+    /// Below the lower end.
     Below,
-    /// In it.
+    /// Within the interval.
     Inside,
-    /// Above its upper end.
+    /// Above the upper end.
     Above,
 }
 
 impl Verdict {
-    /// In a word.
+    /// Returns the position as a word.
     pub fn word(self) -> &'static str {
         match self {
             Verdict::Below => "below",
@@ -43,18 +42,18 @@ impl Verdict {
 }
 
 impl ScoredForecast {
-    /// A forecast that was filed on a day. `cash_by_day` is cash at the end of each day, day 0 first.
+    /// Creates a forecast submitted on `day`. `cash_by_day` is cash at the end of each day, day 0 first.
     pub fn of(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
         let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
         ScoredForecast { outcome: cash_by_day.get(scored.due() as usize).copied(), ..scored }
     }
 
-    /// The day it speaks of.
+    /// Returns the due day.
     pub fn due(&self) -> u32 {
         self.day.saturating_add(self.forecast.horizon_days)
     }
 
-    /// Where the outcome lies; none before its day.
+    /// Returns the position of the outcome; `None` before the due day.
     pub fn verdict(&self) -> Option<Verdict> {
         let outcome = self.outcome?;
         Some(if outcome < self.forecast.lower {
@@ -66,19 +65,19 @@ impl ScoredForecast {
         })
     }
 
-    /// Whether the interval held what came; not before its day.
+    /// Whether the interval contains the outcome; false before the due day.
     pub fn is_inside(&self) -> bool {
         self.verdict() == Some(Verdict::Inside)
     }
 
-    /// How far the point was off, as a share of what came, or of a dollar where less than that came; positive where the
-    /// point was above it.
+    /// Returns the error of the point as a share of the outcome, or of 1 dollar if the outcome is smaller. Positive
+    /// if the point was too high.
     pub fn error(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / size(outcome))
     }
 
-    /// Where the point lay beside what came, in words: `0.2% below`, `on it` where no digit shows a difference; none before
-    /// its day. Near zero cash any miss is a large share of it: beyond some size only that matters.
+    /// Describes the error of the point: `0.2% below`, or `on it` if no digit shows a difference; `None` before the
+    /// due day. Errors of 1,000 % or more (outcomes near 0) are shown as `>999%`.
     pub fn miss_in_words(&self) -> Option<String> {
         let error = self.error()?;
         let shown = match error.abs() {
@@ -92,7 +91,7 @@ impl ScoredForecast {
         })
     }
 
-    /// How wide the interval was, as a share of what came.
+    /// Returns the width of the interval as a share of the outcome.
     pub fn sharpness(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / size(outcome))
     }
@@ -102,7 +101,7 @@ fn size(outcome: f64) -> f64 {
     outcome.abs().max(1.0)
 }
 
-/// Every forecast that was filed, in the order of filing. `cash_by_day` is cash at the end of each day, day 0 first.
+/// Returns all submitted forecasts in order. `cash_by_day` is cash at the end of each day, day 0 first.
 pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
     let mut all = Vec::new();
     for entry in journal {
@@ -112,23 +111,23 @@ pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<Sco
     all
 }
 
-/// How the forecasts of a horizon did.
+/// Score of the forecasts of a horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ForecastScore {
     /// Days ahead.
     pub horizon_days: u32,
-    /// Forecasts whose day has come.
+    /// Forecasts that came due.
     pub scored: u32,
-    /// Of them, those whose interval held the outcome.
+    /// Forecasts whose interval contains the outcome.
     pub covered: u32,
-    /// Mean distance of the point from the outcome, as a share of it.
+    /// Mean error of the point, as a share of the outcome.
     pub mean_error: f64,
     /// Mean width of the interval, as a share of the outcome.
     pub mean_sharpness: f64,
 }
 
 impl ForecastScore {
-    /// The score of those of a horizon among all that were filed.
+    /// Computes the score of a horizon from all submitted forecasts.
     pub fn of(horizon_days: u32, filed: &[ScoredForecast]) -> ForecastScore {
         let due = filed.iter().filter(|one| one.forecast.horizon_days == horizon_days);
         let due: Vec<&ScoredForecast> = due.filter(|one| one.outcome.is_some()).collect();

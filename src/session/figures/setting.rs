@@ -1,4 +1,4 @@
-//! Which numbers a player can set, and what each is called.
+//! Identifiers and names of settings.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -27,7 +27,7 @@ pub enum SettingId {
     Advertising(Channel, Group),
     /// Development for a group, dollars a day.
     TargetedDevelopment(Group),
-    /// Operations for a part of the open issues, dollars a day.
+    /// Operations for some of the open issues, dollars a day.
     TargetedOperations(Audience),
     /// Ongoing discount, dollars a month.
     Discount(Audience),
@@ -37,10 +37,10 @@ pub enum SettingId {
     AdsStrength(Audience),
 }
 
-/// Whom a setting reaches.
+/// The customers that a setting applies to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Audience {
-    /// Everybody.
+    /// All customers.
     Everybody,
     /// A group.
     Group(Group),
@@ -57,7 +57,7 @@ pub enum Audience {
 }
 
 impl SettingId {
-    /// The tool that sets it.
+    /// Returns the tool that sets it.
     pub fn tool(self) -> ToolId {
         match self {
             SettingId::Price(_) => ToolId::SetPrices,
@@ -74,7 +74,7 @@ impl SettingId {
         }
     }
 
-    /// Unit of its numbers; none where its name says what they are.
+    /// Returns the unit; `None` if the name of the setting implies it.
     pub fn unit(self) -> Option<&'static str> {
         match self {
             SettingId::ModelTier(_) | SettingId::CapacityTier => None,
@@ -89,7 +89,7 @@ impl SettingId {
         }
     }
 
-    /// What it is one of, and which one it is: `ads linkedin` and `E1`; nothing for everybody.
+    /// Returns the family and the member, for example `ads linkedin` and `E1`. The member is empty for all customers.
     pub fn parts(self) -> (String, String) {
         let of = |family: &str, member: String| (family.to_owned(), member.trim_start().to_owned());
         match self {
@@ -108,7 +108,7 @@ impl SettingId {
         }
     }
 
-    /// The plan, of a setting that every plan has.
+    /// Returns the plan of a setting that every plan has.
     pub fn plan(self) -> Option<Plan> {
         match self {
             SettingId::Price(plan) | SettingId::ModelTier(plan) | SettingId::Quota(plan) => Some(plan),
@@ -117,7 +117,7 @@ impl SettingId {
     }
 }
 
-/// For instance `price A` or `ads linkedin E1`.
+/// Formats the name, for example `price A` or `ads linkedin E1`.
 impl Display for SettingId {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         let (family, member) = self.parts();
@@ -126,7 +126,7 @@ impl Display for SettingId {
     }
 }
 
-/// What follows the name of a setting: nothing for everybody.
+/// Formats the part after the name of a setting; empty for all customers.
 impl Display for Audience {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         match self {
@@ -141,7 +141,7 @@ impl Display for Audience {
     }
 }
 
-/// Every number that is set, in the order of the tools.
+/// Returns every setting with its value, in the order of the tools.
 pub fn setting_values(settings: &Settings) -> Vec<(SettingId, f64)> {
     let core = &settings.core;
     let mut all: Vec<(SettingId, f64)> = Vec::new();

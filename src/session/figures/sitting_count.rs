@@ -1,4 +1,4 @@
-//! How often the program took up a run, as its lines tell. The one definition, for tables and audit.
+//! Counts of sessions from the lines of a run, for tables and audits.
 
 use std::collections::BTreeSet;
 
@@ -8,24 +8,23 @@ use super::attendance::WATCHES_KEYS;
 use novamind_record::trajectory::record::{Activity, ClockEvent, PresenceEvent};
 use novamind_record::trajectory::{Line, Record, end_of};
 
-/// How often the program took up the run.
+/// Counts of the sessions of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct SittingCount {
-    /// How often; 0 where lines do not tell.
+    /// Number of sessions; 0 if no `session` line exists.
     pub opened: u32,
-    /// Of them, in the console, which sees screens, dialogs and keys.
+    /// Sessions in the console, which records screens, dialogs and idle times.
     pub in_console: u32,
-    /// How often it did not leave the run before it took it up again, or, of an unfinished run, at all: it was killed, or
-    /// still plays.
+    /// Sessions without a closing line: the program was killed, or is still open.
     pub not_closed: u32,
-    /// How often the clock was stopped.
+    /// Number of times that the clock was stopped.
     pub clock_stopped: u32,
-    /// Machines it was played on.
+    /// Number of machines.
     pub machines: u32,
 }
 
 impl SittingCount {
-    /// Counts in the lines of a trajectory.
+    /// Counts the sessions in the lines of a trajectory.
     pub fn of(lines: &[Line]) -> SittingCount {
         let (mut count, mut machines, mut is_open) = (SittingCount::default(), BTreeSet::new(), false);
         for line in lines {
@@ -49,7 +48,7 @@ impl SittingCount {
                 _ => {}
             }
         }
-        // What closes the sitting in which a run ends stands after its end.
+        // The closing line of the session in which a run ends comes after its end.
         count.not_closed += u32::from(is_open && end_of(lines).is_none());
         count.machines = machines.len() as u32;
         count

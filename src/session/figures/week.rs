@@ -1,4 +1,4 @@
-//! The numbers of weeks, and what a player must file before one runs.
+//! Week numbers and the forecasts that a player submits for a week.
 
 use serde_json::{Value, json};
 
@@ -6,32 +6,31 @@ use novamind_base::notation::json_number;
 use novamind_record::trajectory::record::FiledForecast;
 use novamind_tools::{FORECAST_KEYS, Forecast};
 
-/// Number of the week that holds a day: 0 -> 0, 1 to 7 -> 1, 8 -> 2.
+/// Returns the week of a day: 0 -> 0, 1 to 7 -> 1, 8 -> 2.
 pub fn week_of(day: u32) -> u32 {
     day.div_ceil(7)
 }
 
-/// The week that a row of the ledger belongs to, in SQL: weeks end with their last day, so what is bought on a decision
-/// day counts in the week that it opens.
+/// SQL expression for the week of a ledger row. Purchases on a decision day belong to the week that starts with it.
 pub const WEEK_OF_ENTRY: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
                                  THEN day / 7 + 1 ELSE (day + 6) / 7 END";
 
-/// The condition that rows of the ledger belong to some weeks, in SQL.
+/// Returns the SQL condition for ledger rows of some weeks.
 pub fn entries_of_weeks(first: u32, last: u32) -> String {
     let (from, to) = (7 * first.saturating_sub(1), 7 * last);
     format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY} BETWEEN {first} AND {last}")
 }
 
-/// Four forecasts of cash, and which of them the naive projection filled in.
+/// Four forecasts of cash, and whether the naive projection filled in each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecasts {
     /// One per horizon: 7, 28, 84, 182 days.
     pub all: [Forecast; 4],
-    /// Filled in by the naive projection, whole or in part.
+    /// Whether the naive projection filled in the forecast, completely or in part.
     pub filled_naively: [bool; 4],
 }
 
-/// How many of some forecasts the naive projection filled in: `naively`, `3 of 4 naively`; none where it filled none.
+/// Describes how many forecasts the naive projection filled in: `naively`, `3 of 4 naively`, or `None`.
 pub fn naively(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
@@ -41,7 +40,7 @@ pub fn naively(filled: &[bool]) -> Option<String> {
 }
 
 impl Forecasts {
-    /// The forecasts of a line; none unless there is one for each horizon.
+    /// Reads the forecasts of a line; `None` unless there is one for each horizon.
     pub(crate) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
         let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
         Some(Forecasts {
@@ -50,7 +49,7 @@ impl Forecasts {
         })
     }
 
-    /// As a line has them.
+    /// Converts the forecasts to their form in a line.
     pub(crate) fn filed(&self) -> Vec<FiledForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
@@ -59,7 +58,7 @@ impl Forecasts {
         self.all.into_iter().zip(self.filled_naively).map(one).collect()
     }
 
-    /// The forecasts as the body of next_week carries them.
+    /// Converts the forecasts to the `predictions` of next_week.
     pub fn as_predictions(&self) -> Value {
         let entry = |(key, forecast): (&str, &Forecast)| {
             let fields = json!({

@@ -1,4 +1,4 @@
-//! Looks: hidden state is shown only through a look, which exists only after it was permitted and recorded.
+//! Inspections: hidden state is shown only after an inspection was permitted and recorded.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -17,7 +17,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// A look at the hidden state of a run that was permitted and recorded.
+/// A permitted and recorded inspection of the hidden state of a run.
 #[derive(Debug)]
 pub struct Look {
     /// Identifier of the run.
@@ -26,7 +26,7 @@ pub struct Look {
 }
 
 impl Look {
-    /// Begins a look at a day, the last one if none is named: it is refused, or recorded before anything is shown.
+    /// Starts an inspection of a day, by default the last one. It is recorded before anything is shown.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
@@ -36,7 +36,7 @@ impl Look {
         Look::record(run, what, which, day)
     }
 
-    /// Begins a look at the current state of the run. `shown_day` is the day that the record names.
+    /// Starts an inspection of the current state of the run. `shown_day` is the day in the record.
     ///
     /// # Errors
     /// `not_in_this_mode`, `read_only`, `not_saved`.
@@ -45,11 +45,12 @@ impl Look {
         Look::record(run, what, which, shown_day)
     }
 
-    /// Begins a look at a customer on a day, the last one if none is named. Its group, its number in the group and the day on
-    /// which it came.
+    /// Starts an inspection of a customer on a day, by default the last one. Also returns the customer's group, its
+    /// number in the group and its arrival day.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, also where it came later, `customer_not_found`, `read_only`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `read_only`,
+    /// `not_saved`.
     pub fn begin_at_customer(
         run: &mut Session,
         customer: u32,
@@ -60,7 +61,7 @@ impl Look {
         let customers = &run.simulation().world.customers;
         let Some(found) = customers.find(customer) else {
             let message = match customers.next_customer {
-                FIRST_CUSTOMER => "nobody has come yet".to_owned(),
+                FIRST_CUSTOMER => "there are no customers yet".to_owned(),
                 next => format!(
                     "there is no customer {customer}; choose one from {FIRST_CUSTOMER} to {}",
                     next - 1
@@ -70,13 +71,13 @@ impl Look {
         };
         let arrival = customers.numbers.arrival_day(customer).unwrap_or(0);
         if arrival > day {
-            let message = format!("customer {customer} came on day {arrival}, after day {day}");
+            let message = format!("customer {customer} arrived on day {arrival}, after day {day}");
             return Err(Refusal::at("day", "day_unknown", message));
         }
         Ok((Look::record(run, "customer", &customer.to_string(), day)?, found, arrival))
     }
 
-    /// The day that is asked for; the last one if none is.
+    /// Returns the day to show, by default the last one.
     ///
     /// # Errors
     /// `day_unknown`: it has not been simulated.
@@ -99,13 +100,13 @@ impl Look {
         run.complete_database()?.open_connection_to(Scope::Hidden)
     }
 
-    /// Records a look, before anything is shown.
+    /// Records an inspection before anything is shown.
     ///
     /// # Errors
-    /// `read_only` where the run has nothing that writes it, `not_saved`.
+    /// `read_only` if the run is open read-only, `not_saved`.
     fn record(run: &mut Session, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
         if !run.log().is_written() {
-            let message = "a look is recorded, and this run is open read-only; open it as for play";
+            let message = "an inspection must be recorded, but this run is open read-only; open it to play it";
             return Err(Refusal::new("read_only", message));
         }
         let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
@@ -115,18 +116,18 @@ impl Look {
         Ok(Look { run: run.manifest().id.clone(), day: shown_day })
     }
 
-    /// The day that it shows.
+    /// Returns the day that it shows.
     pub fn day(&self) -> u32 {
         self.day
     }
 
-    /// The hidden state of the run as it stands.
+    /// Returns the current hidden state of the run.
     pub fn inside<'a>(&self, run: &'a Session) -> Xray<'a> {
         self.assert_is_of(run);
         run.hidden_state()
     }
 
-    /// A copy of the run before its first line, which passes its days to a watch.
+    /// Returns a copy of the run before its first line. It passes its days to `watch`.
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
@@ -136,10 +137,10 @@ impl Look {
     }
 
     fn assert_is_of(&self, run: &Session) {
-        debug_assert_eq!(self.run, run.manifest().id, "a look shows the run that recorded it");
+        debug_assert_eq!(self.run, run.manifest().id, "an inspection is valid only for the run that recorded it");
     }
 
-    /// Simulates the days of the run again up to a day, at most to the end of its week, and passes them to a watch.
+    /// Simulates the days of the run again up to `day`, at most to the end of its week, and passes them to `watch`.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -148,7 +149,7 @@ impl Look {
         watch_up_to(run, day, watch)
     }
 
-    /// The world on the evening of a day that is over.
+    /// Returns the world at the end of a past day.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -164,7 +165,7 @@ fn watch_up_to(run: &Session, day: u32, watch: Arc<dyn DayWatch>) -> Result<(), 
     Shadow::of(run, watch)?.lead(run, |reached| reached < day, &mut |_| {})
 }
 
-/// Days to simulate, and the watch that receives them.
+/// Days to simulate, with the watch that receives them.
 pub struct WatchedDays<'a> {
     /// Number of days.
     pub days: u32,
@@ -174,13 +175,14 @@ pub struct WatchedDays<'a> {
     pub shows_past: bool,
     /// Returns whether to continue after a day.
     pub goes_on: &'a dyn Fn(u32) -> bool,
-    /// The looks to record afterwards: their kind, and what each shows.
+    /// Inspections to record afterward: their kind, and the subject of each.
     pub looks: (&'a str, Vec<String>),
 }
 
 impl WatchedDays<'_> {
-    /// Simulates at least one day of a debug run and passes the days to a watch. Both continuing and stopping show hidden state, so
-    /// each of the looks is recorded on the last day. If there are no looks, the watch receives nothing.
+    /// Simulates at least one day of a debug run and passes the days to the watch. Both continuing and stopping
+    /// reveal hidden state, so each inspection is recorded on the last day. Without inspections, the watch receives
+    /// nothing.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
@@ -206,7 +208,7 @@ impl WatchedDays<'_> {
     }
 }
 
-/// Steps over weeks up to a day, as long as `goes_on` returns true.
+/// Simulates days across weeks up to `until`, as long as `goes_on` returns true.
 fn step_on(
     run: &mut Session,
     until: u32,
@@ -223,7 +225,7 @@ fn step_on(
     }
 }
 
-/// Keeps the world as one day leaves it.
+/// Stores the world at the end of one day.
 struct Evening {
     day: u32,
     world: Mutex<Option<World>>,

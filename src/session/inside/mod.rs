@@ -1,6 +1,7 @@
-//! The only access to hidden state: looks, what a look shows, and the run simulated again beside itself.
+//! The only access to hidden state: recorded inspections and replays of a run.
 //!
-//! Every function that shows hidden state needs a [`Look`](look::Look). A look exists only after it was permitted and recorded.
+//! Every function that shows hidden state needs a [`Look`](look::Look), which exists only after it was permitted and
+//! recorded.
 
 pub(crate) mod look;
 pub(crate) mod shadow;

@@ -1,4 +1,4 @@
-//! A copy of a run that simulates its recorded days again for a watch.
+//! Replays of a run that pass its days to a watch.
 
 use std::sync::Arc;
 
@@ -9,25 +9,25 @@ use novamind_record::trajectory::Trajectory;
 use novamind_tools::Refusal;
 use novamind_world::day::watch::DayWatch;
 
-/// A copy of a run that simulates its recorded days again for a watch.
+/// A copy of a run that replays its recorded days and passes them to a watch.
 pub struct Shadow(Box<Session>);
 
 impl Shadow {
-    /// A copy of a run before its first line.
+    /// Creates a copy of a run before its first line.
     ///
     /// # Errors
     /// `not_possible`: the run has no folder; `not_readable`.
     pub(super) fn of(run: &Session, watch: Arc<dyn DayWatch>) -> Result<Shadow, Refusal> {
         if run.folder().is_none() {
-            let message = "a run in memory keeps no lines, so its past days cannot be simulated again";
+            let message = "a run in memory has no record, so its past days cannot be simulated again";
             return Err(Refusal::new("not_possible", message));
         }
         let shadow = Session::shadow_of(run, watch).map_err(|error| not_readable(&error))?;
         Ok(Shadow(Box::new(shadow)))
     }
 
-    /// Applies the lines of the run that the copy lacks, up to the current line of the run, while `goes_on` returns true for
-    /// the day it has reached. Each line must lead to the state that it records. Calls `tell` for each day.
+    /// Applies the lines after the last applied one, up to the current line of the run, while `goes_on` returns true
+    /// for the day reached. Each line must lead to the state that it records. Calls `tell` for each day.
     ///
     /// # Errors
     /// `not_readable`.

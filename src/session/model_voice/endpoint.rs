@@ -1,4 +1,4 @@
-//! The connection to a language model: one question, one answer, over plain http and within a time.
+//! HTTP requests to a language model, with a time limit.
 
 use std::time::Duration;
 
@@ -18,12 +18,12 @@ mod over_http {
     use super::{Duration, ModelPrompt, ModelSettings};
     use novamind_base::notation::printable;
 
-    /// Bytes of an answer.
+    /// Maximum size of a response, bytes.
     const MOST_BYTES: u64 = 1024 * 1024;
-    /// How freely a model chooses among its words.
+    /// Sampling temperature.
     const TEMPERATURE: f64 = 0.3;
 
-    /// Where a model answers.
+    /// The endpoint of a model.
     pub(crate) struct Endpoint {
         agent: Agent,
         address: String,
@@ -32,15 +32,15 @@ mod over_http {
     }
 
     impl Endpoint {
-        /// The endpoint that settings name; nothing is sent yet.
+        /// Creates the endpoint from settings; sends nothing.
         ///
         /// # Errors
-        /// The environment does not hold the key.
+        /// The environment variable of the key is not set.
         pub(crate) fn open(settings: &ModelSettings) -> Result<Endpoint, String> {
             let key = settings.key_variable.as_deref().map(key_in).transpose()?;
             let configuration = Agent::config_builder()
                 .http_status_as_error(false)
-                // What is asked goes to the host that was named, and to no other.
+                // Prompts go only to the configured host.
                 .max_redirects(0)
                 .max_redirects_will_error(false)
                 .proxy(None)
@@ -51,10 +51,10 @@ mod over_http {
             Ok(Endpoint { agent: configuration.into(), address, model, key })
         }
 
-        /// Asks, and waits no longer than that.
+        /// Sends a prompt and waits at most `within` for the response.
         ///
         /// # Errors
-        /// Why there is no answer, in words.
+        /// A description of the failure.
         pub(crate) fn ask(&self, prompt: &ModelPrompt, within: Duration) -> Result<String, String> {
             let body = json!({
                 "model": self.model,
@@ -73,28 +73,28 @@ mod over_http {
             let mut response = request.send(body.to_string()).map_err(in_words)?;
             let status = response.status().as_u16();
             if status != 200 {
-                return Err(format!("it answered with status {status}"));
+                return Err(format!("it responded with status {status}"));
             }
             let read = response.body_mut().with_config().limit(MOST_BYTES).read_to_string();
             let told: Value = serde_json::from_str(&read.map_err(in_words)?)
-                .map_err(|_| "what it sent is not JSON".to_owned())?;
+                .map_err(|_| "its response is not JSON".to_owned())?;
             let content = told.pointer("/choices/0/message/content").and_then(Value::as_str);
-            content.map(str::to_owned).ok_or_else(|| "what it sent holds no message".to_owned())
+            content.map(str::to_owned).ok_or_else(|| "its response has no message".to_owned())
         }
     }
 
     fn key_in(variable: &str) -> Result<String, String> {
         let key = std::env::var(variable).unwrap_or_default();
         match key.trim() {
-            "" => Err(format!("the environment variable {variable} must hold its key, but is not set")),
+            "" => Err(format!("the environment variable {variable}, which must contain its key, is not set")),
             key => Ok(key.to_owned()),
         }
     }
 
     fn in_words(error: Error) -> String {
         match error {
-            Error::Timeout(_) => "it did not answer in time".to_owned(),
-            Error::BodyExceedsLimit(_) => format!("what it sent is longer than {MOST_BYTES} bytes"),
+            Error::Timeout(_) => "it did not respond in time".to_owned(),
+            Error::BodyExceedsLimit(_) => format!("its response is longer than {MOST_BYTES} bytes"),
             other => format!("it could not be reached: {}", printable(&other.to_string())),
         }
     }
@@ -104,25 +104,25 @@ mod over_http {
 mod without {
     use super::{Duration, ModelPrompt, ModelSettings};
 
-    /// Where a model would answer.
+    /// Stand-in for builds without HTTP.
     pub(crate) struct Endpoint;
 
     impl Endpoint {
-        /// This build asks nobody.
+        /// Fails: this build cannot send requests.
         ///
         /// # Errors
         /// Always.
         pub(crate) fn open(_: &ModelSettings) -> Result<Endpoint, String> {
-            Err("this program was built without the feature server, and cannot ask a language model"
+            Err("this program was built without the feature server and cannot use a language model"
                 .to_owned())
         }
 
-        /// Never asked.
+        /// Never called.
         ///
         /// # Errors
         /// Always.
         pub(crate) fn ask(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
-            Err("this program cannot ask".to_owned())
+            Err("this program cannot send requests".to_owned())
         }
     }
 }

@@ -1,8 +1,7 @@
-//! A language model that lends the public its voice: asking it, recording what it says, and going on without it
-//! (docs/interfaces/voice.md).
+//! A language model as voice: requests, recording and fallback (docs/interfaces/voice.md).
 //!
-//! Its scores of the player's posts are inputs of the world, so their line is in the trajectory before they count. Its words
-//! stand beside the world: nothing that is simulated reads them.
+//! The model's scores of the player's posts are inputs of the world, so they are in the trajectory before they take
+//! effect. Its texts do not affect the simulation.
 
 mod endpoint;
 pub(crate) mod speaker;

@@ -1,5 +1,4 @@
-//! Who speaks in an open run besides the built-in voice, how long a week still waits for it, and what the player is told
-//! where it does not speak.
+//! The language model of an open run: time limit per week, and notices about failures.
 
 use std::time::{Duration, Instant};
 
@@ -10,64 +9,65 @@ use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::settings::ModelSettings;
 
-/// With less time than this left nobody is asked.
+/// No request is sent with less time left.
 const LEAST: Duration = Duration::from_millis(50);
 
-/// What an open run has besides the built-in voice: nothing, as a rule.
+/// The language model of an open run; usually none.
 #[derive(Default)]
 pub(crate) struct ModelVoice {
-    /// The model.
+    /// The client of the model.
     pub(crate) speaker: Option<Speaker>,
-    /// What a model said in another run of which this one takes over decisions.
+    /// Recorded scores of another run whose decisions this run repeats.
     pub(crate) inherited: Vec<JudgedPost>,
 }
 
 impl ModelVoice {
-    /// A new week has all its time.
+    /// Resets the time limit for a new week.
     pub(crate) fn begin_week(&mut self) {
         if let Some(speaker) = &mut self.speaker {
             speaker.left = Duration::from_secs(u64::from(speaker.settings.seconds_a_week));
         }
     }
 
-    /// What the player has to know and was not told yet.
+    /// Returns the notice that the player has not seen yet, if any.
     pub(crate) fn take_notice(&mut self) -> Option<String> {
         self.speaker.as_mut()?.notice.take()
     }
 }
 
-/// A model that can be asked.
+/// A client of a language model.
 pub(crate) struct Speaker {
     /// Which, where, and what for.
     pub(crate) settings: ModelSettings,
     endpoint: Endpoint,
-    /// What this week may still wait.
+    /// Time left in this week.
     left: Duration,
-    /// The last question had no answer that could be used.
+    /// Whether the last request had no usable response.
     is_failing: bool,
     notice: Option<String>,
 }
 
-/// What came of a question, and the milliseconds it took.
+/// The response to a request.
 pub(crate) struct Reply<T> {
-    /// The answer, or why there is none.
+    /// The answer, or the reason why there is none.
     pub(crate) answer: Result<T, String>,
-    /// Milliseconds.
+    /// Duration, milliseconds.
     pub(crate) took_ms: f64,
 }
 
 impl Speaker {
-    /// The model of these settings; nothing is sent yet.
+    /// Creates the client; sends nothing.
     ///
     /// # Errors
-    /// It cannot be asked: its key is missing, or this build asks nobody.
+    /// The key is missing, or this build cannot send requests.
     pub(crate) fn open(settings: &ModelSettings) -> Result<Speaker, String> {
         let endpoint = Endpoint::open(settings)?;
         let left = Duration::from_secs(u64::from(settings.seconds_a_week));
         Ok(Speaker { settings: settings.clone(), endpoint, left, is_failing: false, notice: None })
     }
 
-    /// Asks within what is left of the week's time. The player is told of the first of several failures.
+    /// Sends a request within the time left in this week. The player is notified of the first of consecutive
+    /// failures.
     pub(crate) fn ask<T>(
         &mut self,
         prompt: &ModelPrompt,
@@ -75,7 +75,7 @@ impl Speaker {
     ) -> Reply<T> {
         let started = Instant::now();
         let answer = match self.left < LEAST {
-            true => Err("the time of the week is used up".to_owned()),
+            true => Err("the time limit of the week was reached".to_owned()),
             false => self.endpoint.ask(prompt, self.left),
         };
         let answer = answer
@@ -84,8 +84,8 @@ impl Speaker {
         self.left = self.left.saturating_sub(took);
         if let (Err(problem), false) = (&answer, self.is_failing) {
             self.notice = Some(format!(
-                "the language model {} at {} did not serve ({problem}): the built-in voice speaks instead; this is said once, \
-                 until the model serves again",
+                "the language model {} at {} failed ({problem}). The built-in voice replaces it; you see this notice \
+                 once, until the model works again",
                 self.settings.model,
                 self.settings.host()
             ));
@@ -95,11 +95,10 @@ impl Speaker {
     }
 }
 
-/// The language model of a new run, if it is to have one: what its study lays down, where it belongs to one, or the one that
-/// was named.
+/// Returns the language model of a new run: that of its study, or the named one.
 ///
 /// # Errors
-/// It must not have the one that was named.
+/// A run of this mode cannot use the named model.
 pub(crate) fn model_of(
     mode: Mode,
     study: Option<Option<&ModelSettings>>,
@@ -108,11 +107,11 @@ pub(crate) fn model_of(
     match (mode, study, named) {
         (Mode::Baseline, Some(laid_down), _) => Ok(laid_down.cloned()),
         (Mode::Baseline, None, Some(_)) => Err(RunError::NotPossible(
-            "a baseline run speaks with the built-in voice, unless the configuration of its study names a language model \
-             ([voice] in study.toml): leave out --voice, or take another mode. Nothing was recorded"
+            "a baseline run uses the built-in voice, unless its study names a language model ([voice] in study.toml): \
+             omit --voice, or choose another mode. Nothing was recorded"
                 .to_owned(),
         )),
-        // A lesson is the same on every machine.
+        // Lessons do not depend on the configuration of the machine.
         (Mode::Lesson, ..) => Ok(None),
         (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.cloned()),
     }

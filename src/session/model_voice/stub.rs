@@ -1,4 +1,4 @@
-//! A language model of a few lines, for tests: a thread that answers over HTTP in one of some manners.
+//! A stub of a language model for tests: a thread that answers over HTTP.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -12,22 +12,22 @@ use serde_json::{Value, json};
 use novamind_record::folder::configuration::Configuration;
 use novamind_voice::model::settings::ModelSettings;
 
-/// How it answers.
+/// The behavior of a stub.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Manner {
-    /// As it is asked.
+    /// Correct answers.
     Well,
-    /// Well, after three seconds.
+    /// Correct answers after three seconds.
     Late,
-    /// With too few texts and scores.
+    /// Too few texts and scores.
     Short,
-    /// With something that is no array.
+    /// An answer that is not an array.
     Chatty,
-    /// With status 500.
+    /// Status 500.
     Broken,
 }
 
-/// The model; it is gone when this is dropped.
+/// A stub of a language model; stops on drop.
 pub struct Stub {
     port: u16,
     asked: Arc<Mutex<Vec<Value>>>,
@@ -36,7 +36,7 @@ pub struct Stub {
 }
 
 impl Stub {
-    /// Starts a model that answers in a manner, on its own port.
+    /// Starts a stub on its own port.
     pub fn start(manner: Manner) -> Stub {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
@@ -47,14 +47,14 @@ impl Stub {
                 if stop.load(Ordering::SeqCst) {
                     return;
                 }
-                // Whoever asked may have gone.
+                // The client may have closed the connection.
                 let _ = stream.and_then(|stream| answer(stream, manner, &heard));
             }
         });
         Stub { port, asked, stopped, thread: Some(thread) }
     }
 
-    /// A configuration that names it, with these switches.
+    /// Returns a configuration that names the stub.
     pub fn named(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
         let settings = ModelSettings {
             endpoint: format!("http://127.0.0.1:{}/v1", self.port),
@@ -67,9 +67,9 @@ impl Stub {
         Configuration { voice: Some(settings), ..Configuration::shipped() }
     }
 
-    /// What it was asked.
+    /// Returns the requests so far.
     pub fn asked(&self) -> Vec<Value> {
-        self.asked.lock().expect("nobody panicked").clone()
+        self.asked.lock().expect("not poisoned").clone()
     }
 }
 
@@ -97,7 +97,7 @@ fn answer(stream: TcpStream, manner: Manner, heard: &Mutex<Vec<Value>>) -> std::
     let asked: Value = serde_json::from_slice(&body)?;
     let material = asked["messages"][1]["content"].as_str().unwrap_or_default();
     let material: Value = serde_json::from_str(material)?;
-    heard.lock().expect("nobody panicked").push(asked);
+    heard.lock().expect("not poisoned").push(asked);
     let mut said = well(&material);
     match manner {
         Manner::Late => std::thread::sleep(Duration::from_secs(3)),
@@ -117,7 +117,7 @@ fn answer(stream: TcpStream, manner: Manner, heard: &Mutex<Vec<Value>>) -> std::
     reader.get_mut().write_all(format!("{head}{body}").as_bytes())
 }
 
-/// Scores of 0.8 for groups, a word before the texts of posts.
+/// Scores of 0.8 for groups, a prefix for the texts of posts.
 fn well(material: &Value) -> Vec<Value> {
     let score =
         |group: &Value| json!({ "group": group["group"], "score": 0.8, "reason": "It speaks to me." });

@@ -237,7 +237,7 @@ fn only_a_debug_run_has_a_fault() {
             let new =
                 NewRun { mode, participant: participant.clone(), ..new_run(folder.path(), Some(fault)) };
             let refused = Session::create(new, &Configuration::shipped()).err().expect("refused").to_string();
-            assert!(refused.contains("a fault can be planted in debug runs only"), "{refused}");
+            assert!(refused.contains("a fault can be seeded in debug runs only"), "{refused}");
         }
     }
     assert!(

@@ -80,7 +80,7 @@ fn hidden_state_of_a_part_is_shown_once_the_last_part_is_over() {
     let hidden = |session: &mut Session| {
         assert!(!session.may_look_inside());
         let refused = session.refuse_to_look_inside().expect_err("it is refused");
-        assert!(refused.message.contains("once its last part is over"), "{refused}");
+        assert!(refused.message.contains("after its last part"), "{refused}");
         // The causes are those that a player of an unfinished run sees: no hidden figure, no look.
         let asked: WeekQuestion = "satisfaction 3".parse().expect("a question");
         assert_eq!(code(look_at_figure(session, &asked)), "not_in_this_mode");

@@ -50,7 +50,7 @@ fn without_an_answer_the_game_goes_on_and_the_run_says_what_it_is() {
         "set_prices A=12\npost_social_media content=\"Prices are down 20% today.\"\nnext naive\nnext naive\n";
     let played = home.play(&["--new", "--days", "28", "--voice", &file], lines);
     assert_eq!(played.code, 0, "{}", played.err);
-    assert_eq!(played.out.matches("did not serve").count(), 1, "{}", played.out);
+    assert_eq!(played.out.matches("The built-in voice replaces it").count(), 1, "{}", played.out);
     let run = home.only_run();
     let manifest = std::fs::read_to_string(run.join("run.toml")).expect("a manifest");
     assert!(manifest.contains("[voice]") && manifest.contains("model = \"llama3\""), "{manifest}");

@@ -93,7 +93,7 @@ mod over_http {
 
     fn in_words(error: Error) -> String {
         match error {
-            Error::Timeout(_) => "it did not respond in time".to_owned(),
+            Error::Timeout(_) => "it did not answer in time".to_owned(),
             Error::BodyExceedsLimit(_) => format!("its response is longer than {MOST_BYTES} bytes"),
             other => format!("it could not be reached: {}", printable(&other.to_string())),
         }

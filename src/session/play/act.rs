@@ -1,4 +1,4 @@
-//! Calling tools: check and call.
+//! Tool calls: preview and execution.
 
 use std::time::Instant;
 
@@ -20,33 +20,33 @@ use novamind_tools::{
 };
 use novamind_world::command::{Command, ResolvedCommand};
 
-/// What a call would do.
+/// The effects of a call before it is made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preview {
     /// Tool.
     pub tool: ToolId,
-    /// Paid at once, dollars.
+    /// Immediate cost, dollars.
     pub cost_now: f64,
     /// Change of the running costs, dollars a day.
     pub cost_per_day: f64,
-    /// First day on which it acts; none when it changes nothing.
+    /// First day with an effect; `None` if the call changes nothing.
     pub effect_day: Option<u32>,
-    /// Settings that change.
+    /// Changed settings.
     pub changes: Vec<Change>,
-    /// Of an R&D project: what it can be expected to take and to gain.
+    /// For an R&D project: its expected duration and gain.
     pub research: Option<ResearchOutlook>,
 }
 
-/// What the line of a call says besides the call and its outcome.
+/// Additional fields of a call's line.
 #[derive(Debug, Default)]
 pub(crate) struct Marks {
-    /// What it does to an earlier call.
+    /// The earlier call that it undoes or redoes.
     pub(crate) reversal: Option<Reversal>,
-    /// The id that the program gave it.
+    /// The id of the request.
     pub(crate) request: Option<RequestId>,
 }
 
-/// An accepted call whose draws are known.
+/// An accepted call with its random draws.
 struct Accepted {
     resolved: ResolvedCommand,
     change: Option<NotebookChange>,
@@ -54,10 +54,10 @@ struct Accepted {
 }
 
 impl Session {
-    /// What a call would do; nothing happens, nothing is recorded, nothing is drawn.
+    /// Returns the effects of a call without executing, recording or drawing anything.
     ///
     /// # Errors
-    /// The same refusals as the call.
+    /// The rejections of the call.
     pub fn check(&self, tool: impl AsRef<str>, arguments: &Value) -> Result<Preview, Refusal> {
         let tool = self.tool(tool.as_ref())?;
         self.refuse_if_over(tool.spec().kind)?;
@@ -106,11 +106,11 @@ impl Session {
         Ok(preview)
     }
 
-    /// Calls a tool; `next_week` and `query` have functions of their own.
+    /// Calls a tool. `next_week` and `query` have their own functions.
     ///
     /// # Errors
-    /// The refusals of the tool; `unknown_tool`; `run_over`; `not_saved` when the disk refuses. Nothing has
-    /// changed then.
+    /// The rejections of the tool; `unknown_tool`; `run_over`; `not_saved` if the disk fails. Nothing has changed
+    /// then.
     pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Answer, Refusal> {
         self.call_recorded(tool.as_ref(), arguments, via, Marks::default())
     }
@@ -198,14 +198,14 @@ impl Session {
         self.after_call(settings);
     }
 
-    /// What follows every applied command, live or replayed; with the settings family that it leaves.
+    /// Completes an applied command, live or replayed. `settings` is the settings family after the call.
     fn after_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.history.cash_by_day.last_mut() {
             *last = self.simulation.world.finance.cash;
         }
         let notices = self.simulation.notice_texts();
         self.simulation.follow_call(self.database.entries(), notices, settings);
-        // The database must not be ahead of what is on the disk.
+        // The database must not be ahead of the disk.
         if self.log.durability_of_calls() == Durability::Synced {
             self.commit_projection();
         }
@@ -214,7 +214,7 @@ impl Session {
     pub(crate) fn tool(&self, name: &str) -> Result<&'static dyn AnyTool, Refusal> {
         find(name).ok_or_else(|| {
             let message = match name {
-                "" => "the call names no tool; novamind tools lists them".to_owned(),
+                "" => "the call names no tool; to list the tools, run novamind tools".to_owned(),
                 name => {
                     let near = novamind_tools::catalogue::nearest(name);
                     let help = match near.is_empty() {
@@ -240,7 +240,7 @@ impl Session {
         Ok((given, planned))
     }
 
-    /// Plans a call that was accepted once, by a version that may have taken larger numbers.
+    /// Plans a recorded call, without limits that earlier versions did not have.
     fn plan_again(
         &self,
         tool: &'static dyn AnyTool,
@@ -251,7 +251,7 @@ impl Session {
         Ok((given, planned))
     }
 
-    /// Refuses what acts once the run is over, and in a run that is only read.
+    /// Rejects acting tools if the run has ended or is open read-only.
     pub(crate) fn refuse_if_over(&self, kind: Kind) -> Result<(), Refusal> {
         if !kind.acts() {
             return Ok(());
@@ -266,10 +266,10 @@ impl Session {
                     format!("the company went bankrupt on day {day}")
                 }
                 novamind_record::trajectory::record::Ended::Abandoned => {
-                    format!("it was given up on day {day}")
+                    format!("it was abandoned on day {day}")
                 }
                 novamind_record::trajectory::record::Ended::Lesson => {
-                    format!("its lesson was over on day {day}")
+                    format!("its lesson ended on day {day}")
                 }
             };
             return Err(Refusal::new(
@@ -287,7 +287,7 @@ impl Session {
         }
     }
 
-    /// Records a refused call that no tool received, for instance a refused week.
+    /// Records a rejected call that no tool received, for example a rejected week.
     pub(crate) fn record_refusal(
         &mut self,
         tool: &str,
@@ -302,8 +302,8 @@ impl Session {
         self.note_refused(Record::Call(call));
     }
 
-    /// Records a call that was refused before it reached the session, and returns the refusal: if the run is over and the tool
-    /// acts, that comes first.
+    /// Records a call that was rejected before it reached the session. Returns the rejection, or `run_over` if the
+    /// run has ended and the tool acts.
     pub fn refuse_call(&mut self, tool: &str, arguments: &Value, via: Via, refusal: Refusal) -> Refusal {
         let over = find(tool).and_then(|tool| self.refuse_if_over(tool.spec().kind).err());
         let refusal = over.unwrap_or(refusal);
@@ -311,7 +311,7 @@ impl Session {
         refusal
     }
 
-    /// Records a refused call. A refusal changes nothing, so a disk that refuses its line takes nothing away.
+    /// Appends a rejected call. Ignores disk errors, because a rejection changes nothing.
     fn note_refused(&mut self, record: Record) {
         self.note_answer(&record);
         self.note(record);
@@ -324,20 +324,18 @@ impl Session {
     }
 }
 
-/// A refusal that says the disk did not take a line.
+/// Returns the rejection for a line that could not be written.
 pub(crate) fn not_saved(error: RunError) -> Refusal {
     if matches!(error, RunError::Astray { .. }) {
         return Refusal::new("not_saved", error.to_string());
     }
     let message = format!(
-        "{error}; nothing was changed and everything confirmed before is safe: free some disk space, then \
-         try again"
+        "{error}; nothing was changed and everything confirmed before is safe. Free some disk space, then try again"
     );
     Refusal::new("not_saved", message)
 }
 
-/// What an answer says, whichever version wrote it: earlier versions wrote whole floats as integers, and worded remarks
-/// differently.
+/// Makes answers comparable across versions: earlier versions wrote whole floats as integers and had other remarks.
 fn comparable(spec: &Spec, answer: &Value) -> Value {
     let mut answer = plain_numbers(answer.clone());
     if let Value::Object(fields) = &mut answer {
@@ -348,7 +346,7 @@ fn comparable(spec: &Spec, answer: &Value) -> Value {
     answer
 }
 
-/// Milliseconds to a thousandth.
+/// Rounds milliseconds to three decimals.
 fn rounded(took_ms: f64) -> f64 {
     (took_ms * 1e3).round() / 1e3
 }
@@ -357,19 +355,19 @@ impl Session {
     /// Applies an accepted call of a trajectory again.
     ///
     /// # Errors
-    /// What speaks against it now: the line was changed, or the program is another.
+    /// The reason why the call is not possible now: the line was changed, or another version recorded it.
     pub(crate) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.known().ok_or("the call names an unknown tool")?.tool();
         let (given, planned) = self.plan_again(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let Planned { command, change, row, reply } = planned;
         let resolved = self.simulation.resolve(command);
-        // What statements said is not asked again: the database may be ahead of this line. And documents may be worded
-        // differently by now.
+        // Statements are not run again, because the database can be ahead of this line. Documentation texts can
+        // differ between versions.
         let is_told_again = tool.spec().kind != Kind::Engine || change.is_some();
         let differs =
             |now: Answer| comparable(tool.spec(), answer) != comparable(tool.spec(), &now.to_json());
         if is_told_again && reply.without_running(&resolved).is_some_and(differs) {
-            return Err("the call answers differently now".to_owned());
+            return Err("the call now has a different result".to_owned());
         }
         self.apply(tool.spec(), &given, call.reversal, Accepted { resolved, change, row });
         Ok(())

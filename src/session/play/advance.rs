@@ -1,4 +1,4 @@
-//! Letting time pass.
+//! Advancing the simulation by weeks and days.
 
 use std::sync::Arc;
 
@@ -21,29 +21,29 @@ use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal, ToolId};
 use novamind_world::held::Held;
 
-/// The rationale of a week in a lesson that asks for none.
+/// Recorded rationale of a week in lessons that ask for none.
 const UNASKED: &str = "(not asked for in this lesson)";
 
-/// What is filed before a week, not yet checked.
+/// An unchecked submission of a week.
 pub(crate) struct Filing<'a> {
-    /// Why.
+    /// Rationale.
     pub(crate) rationale: &'a Value,
-    /// Forecasts of four horizons.
+    /// Forecasts for four horizons.
     pub(crate) predictions: &'a Value,
-    /// Which of them the naive projection filled in.
+    /// Whether the naive projection filled in each forecast.
     pub(crate) filled_naively: [bool; 4],
-    /// The day on which the run must be; null if any will do.
+    /// The day on which the run must be; null for any.
     pub(crate) expected_day: &'a Value,
-    /// The id that the program gave the request.
+    /// The id of the request.
     pub(crate) request: Option<RequestId>,
 }
 
 impl Session {
-    /// Files rationale and forecasts and simulates the days until the next decision day, or the last day, or
+    /// Submits rationale and forecasts and simulates the days until the next decision day, the last day or
     /// bankruptcy.
     ///
     /// # Errors
-    /// `run_over`, `too_many_leads`, the refusals of next_week, `not_saved`. Nothing has happened then.
+    /// `run_over`, `too_many_leads`, the rejections of next_week, `not_saved`. Nothing has happened then.
     pub fn advance(
         &mut self,
         rationale: &str,
@@ -55,10 +55,10 @@ impl Session {
         self.advance_given(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// As [`Session::advance`], with rationale and predictions as a program sends them.
+    /// Like [`Session::advance`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Session::advance`].
     pub fn advance_given(
         &mut self,
         rationale: &Value,
@@ -117,7 +117,7 @@ impl Session {
         Ok(self.run_week(progress))
     }
 
-    /// Refuses a week if the run is not on the day that the program expects.
+    /// Rejects a week if the run is not on the expected day.
     fn refuse_unexpected_day(&self, expected: &Value) -> Result<(), Refusal> {
         let day = self.simulation.world.day;
         if expected.is_null() || expected.as_u64() == Some(day.into()) {
@@ -143,10 +143,10 @@ impl Session {
         self.step_while(&|_| true, days, progress)
     }
 
-    /// As [`Session::step`], as long as it is to go on after a day.
+    /// Like [`Session::step`]; stops after a day for which `goes_on` returns false.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Session::step`].
     pub(crate) fn step_while(
         &mut self,
         goes_on: &dyn Fn(u32) -> bool,
@@ -162,7 +162,7 @@ impl Session {
         Ok(self.close_days(Record::Step, from, last_day))
     }
 
-    /// Refuses single days where there are none.
+    /// Checks that single days can be simulated.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`.
@@ -173,7 +173,7 @@ impl Session {
         self.refuse_if_over(Kind::Time)
     }
 
-    /// Gives up an unfinished run for good.
+    /// Abandons an unfinished run permanently.
     ///
     /// # Errors
     /// `run_over`, `not_saved`. Nothing has happened then.
@@ -186,8 +186,8 @@ impl Session {
         Ok(())
     }
 
-    /// Runs the week of an `advance` line and closes it. A week in which a day has no room for its leads ends before that day, as
-    /// single days do.
+    /// Simulates the week of an `advance` line and closes it. The week ends early before a day that would exceed the
+    /// limit of leads.
     pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
         let (from, until) = (self.simulation.world.day, self.company().next_decision_day());
         let last_day = self.run_days_while(&has_room, until, progress);
@@ -196,14 +196,14 @@ impl Session {
         self.close_days(if is_whole { Record::Week } else { Record::Step }, from, last_day)
     }
 
-    /// Simulates days until one of them is reached, or cash is below zero. Returns the hash of the state reached.
+    /// Simulates days until `until` or bankruptcy. Returns the hash of the state reached.
     pub(crate) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let last_day = self.run_days_while(&|_| true, until, progress);
         self.simulation.end_days(self.database.entries(), last_day)
     }
 
-    /// Simulates days as long as it is to go on. Returns the notices of the last day, if there was any: what follows from it
-    /// is left.
+    /// Simulates days while `goes_on` returns true. Returns the notices of the last simulated day, whose facts are
+    /// not processed yet.
     fn run_days_while(
         &mut self,
         goes_on: &dyn Fn(&Simulation) -> bool,
@@ -236,8 +236,8 @@ impl Session {
         day_before
     }
 
-    /// Lets follow what is left of the last day, and hashes the state for the line that closes the days; where no file holds
-    /// that line, the hash stays empty.
+    /// Processes the facts of the last day and hashes the state. For runs in memory the hash is empty, because no
+    /// line contains it.
     fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
         let entries = self.database.entries();
         if self.log.is_on_disk() {
@@ -247,7 +247,7 @@ impl Session {
         StateHash::default()
     }
 
-    /// Ends the figures of the days that ran, and the week if it is complete.
+    /// Completes the figures of the simulated days, and of the week if it has ended.
     pub(crate) fn settle_figures(&mut self) -> WeekFigures {
         let open_issues = self.simulation.open_issues();
         let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
@@ -255,7 +255,8 @@ impl Session {
         figures
     }
 
-    /// Writes the line that closes days that ran, and tells what came of them and what keeps the line from the disk.
+    /// Writes the line that closes simulated days. Returns the report, with a remark if the line could not be
+    /// written.
     fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, last_day: Option<Vec<String>>) -> Week {
         let state = self.end_days(last_day);
         let figures = self.settle_figures();
@@ -268,7 +269,7 @@ impl Session {
         if unclosed.is_none() {
             self.word_days_after(from);
         }
-        // The run is over whether the disk takes the line of its last week or not: both lines wait for the disk.
+        // The run ends even if the line of its last week is not saved: both lines wait for the disk.
         let problem = match self.due_end() {
             Some(ended) => self.close_run(ended),
             None => unclosed,
@@ -276,11 +277,11 @@ impl Session {
         let due =
             self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.log.durability_of_calls() == Durability::Synced;
-        // Before a week stands the line that lets it pass; before single days stands nothing.
+        // A week has an `advance` line before it, single days do not.
         let next = match is_week {
             true => "the days are simulated again when the run is opened, with the same result",
             false => {
-                "these days are lost if the program ends before the disk takes them: make room and step on"
+                "these days are lost if the program ends before they are saved: free some disk space, then step again"
             }
         };
         let unsaved = problem.map(|problem| format!("{problem}; {next}"));
@@ -290,7 +291,7 @@ impl Session {
         let remarks: Vec<String> = remarks.collect();
         let week = self.report((!remarks.is_empty()).then(|| remarks.join(". ")));
         self.history.first_answers.note_week(|| week.clone());
-        // The database is written once everything is told: until then the processors are needed here.
+        // The database is written after progress was reported, because it competes for processors.
         if snapshot {
             self.keep_snapshot(|| state.0, false);
         } else {
@@ -299,12 +300,12 @@ impl Session {
         week
     }
 
-    /// Closes a run whose last day has passed or whose cash is gone; the database has to be told.
+    /// Closes a run that has reached its last day or bankruptcy. The caller commits the database.
     pub(crate) fn close_if_over(&mut self) -> Option<String> {
         self.due_end().and_then(|ended| self.close_run(ended))
     }
 
-    /// How the run ends now, if it is over and not closed yet.
+    /// Returns how the run ends, if it has ended and is not closed.
     fn due_end(&self) -> Option<Ended> {
         let Simulation { world, params, .. } = &self.simulation;
         let due = if world.finance.is_bankrupt(params) {
@@ -315,8 +316,8 @@ impl Session {
         due.filter(|_| self.history.ended.is_none())
     }
 
-    /// What the player should know if world.db could not be written. The rows of the last days are written after the week was
-    /// answered, so a failure is noticed with the next week. No week follows the last one: its rows are waited for.
+    /// Describes a failure to write world.db. Rows are written after the week was reported, so a failure is reported
+    /// with the next week. After the last week, waits for its rows.
     fn database_remark(&self) -> Option<String> {
         if self.history.ended.is_some() {
             self.commit_projection();
@@ -325,10 +326,10 @@ impl Session {
         let ProjectionError(problem) = self.database.failure()?;
         let recovery = match self.folder {
             Some(_) => {
-                "The run is safe: world.db is rebuilt from its record, trajectory.jsonl. Free some disk space; the next query \
-                 then rebuilds it, and so does opening the run again"
+                "The run is safe: world.db is rebuilt from its record, trajectory.jsonl. Free some disk space; the \
+                 next query or the next opening of the run rebuilds it"
             }
-            None => "Queries do not see them",
+            None => "Queries do not return them",
         };
         Some(format!("The database could not be written ({problem}): it lacks the newest rows. {recovery}"))
     }
@@ -340,21 +341,21 @@ impl Session {
         self.append_done(&Record::End(end))
     }
 
-    /// Keeps the answer to a week that a replay simulated, if its request carried an id.
+    /// Stores the response to a replayed week, if its request has an id.
     pub(crate) fn note_answered_week(&mut self) {
         let mut answers = std::mem::take(&mut self.history.first_answers);
         answers.note_week(|| self.report(None));
         self.history.first_answers = answers;
     }
 
-    /// Adds the end of the run to the answer to its last week; a run that was given up did not end with it.
+    /// Adds the end of the run to the response to its last week, unless the run was abandoned.
     pub(crate) fn note_end(&mut self, ended: Ended) {
         if ended != Ended::Abandoned {
             self.history.first_answers.note_end(self.simulation.world.day, ended);
         }
     }
 
-    /// What a line says that closes days: what a replay has to arrive at.
+    /// Returns the record that closes days, which a replay must reproduce.
     pub(crate) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
         let (state_hash, parts) = state.clone();
         Closing {
@@ -376,7 +377,7 @@ impl Session {
         }
     }
 
-    /// Keeps rationale and forecasts in the journal and the database.
+    /// Adds rationale and forecasts to journal and database.
     fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
         self.project_forecasts(forecasts, at);
         self.history.journal.push(JournalEntry::Advance {
@@ -387,7 +388,7 @@ impl Session {
         });
     }
 
-    /// Files the rationale and forecasts of an `advance` line again.
+    /// Adds the rationale and forecasts of an `advance` line again.
     pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
         let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
         self.history.calculated.clone_from(&filed.calculations);
@@ -410,12 +411,12 @@ impl Session {
     }
 }
 
-/// Whether the next day has room for those who come.
+/// Whether the next day is within the limits of leads and customers.
 fn has_room(simulation: &Simulation) -> bool {
     simulation.refuse_crowded_day().is_ok()
 }
 
-/// The arguments of a week as its refusal records them.
+/// Returns the arguments of a week as its rejection records them.
 pub(crate) fn arguments_of_week(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
     let mut args = json!({ "rationale": rationale, "predictions": predictions });
     if !expected_day.is_null() {

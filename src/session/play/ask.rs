@@ -1,4 +1,4 @@
-//! Asking the database.
+//! Database queries.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use novamind_record::trajectory::record::{Query, QuerySource};
 use novamind_tools::Refusal;
 
 impl Session {
-    /// Answers one guarded statement and records that it was asked.
+    /// Runs a guarded statement and records it.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -19,8 +19,8 @@ impl Session {
         self.query_as(None, sql, QuerySource::Typed)
     }
 
-    /// The same for a statement from another source, under a ticket of [`RunDatabase::interrupt`] if one was drawn when the
-    /// statement was asked for.
+    /// Like [`Session::query`], for a statement from another source. `ticket` is the ticket of
+    /// [`RunDatabase::interrupt`] that was drawn when the statement was requested.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -32,12 +32,12 @@ impl Session {
         answer
     }
 
-    /// A ticket for a statement that is asked now.
+    /// Draws a ticket for a statement that starts now.
     pub(super) fn draw_ticket(&mut self) -> Result<Ticket, Refusal> {
         Ok(self.complete_database()?.interrupt()?.ticket())
     }
 
-    /// Answers a statement under these limits, and leaves recording it to the caller.
+    /// Runs a statement under these limits without recording it.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -55,7 +55,7 @@ impl Session {
         )
     }
 
-    /// Answers a statement of the program's own, which is not recorded: what a person did not ask.
+    /// Runs a statement of the program, which is not recorded because the user did not enter it.
     ///
     /// # Errors
     /// The `sql_` codes.
@@ -65,12 +65,12 @@ impl Session {
         self.complete_database()?.answer(ticket, sql, limits)
     }
 
-    /// The database of the run, which may lack the newest rows.
+    /// Returns the database, which may lack the newest rows.
     pub fn database(&self) -> &RunDatabase {
         &self.database
     }
 
-    /// Waits until the database holds everything up to the last decision day and this week's calls.
+    /// Waits until the database contains everything up to the last decision day and this week's calls.
     ///
     /// # Errors
     /// The database cannot be written.
@@ -82,7 +82,7 @@ impl Session {
         self.database.wait().map_err(|error| refused(error.to_string()))
     }
 
-    /// Records a query that was asked elsewhere.
+    /// Records a query that was run elsewhere.
     pub fn note_query(
         &mut self,
         sql: &str,
@@ -106,7 +106,7 @@ impl Session {
         self.note(Record::Query(query));
     }
 
-    /// Keeps a statement for whoever asks again; those of scripts stand in their code.
+    /// Adds a statement to the query history, unless it came from a script.
     pub(super) fn remember_query(&mut self, Query { sql, via, .. }: &Query) {
         const KEPT: usize = 100;
         if *via == Some(QuerySource::Script) {
@@ -118,13 +118,13 @@ impl Session {
         self.history.asked.drain(..surplus);
     }
 
-    /// The database with everything up to now. It is made whole if it could not be written before.
+    /// Returns the database with all rows. Repairs it if it could not be written before.
     ///
     /// # Errors
     /// The database cannot be written.
     pub fn complete_database(&mut self) -> Result<&mut RunDatabase, Refusal> {
         if let Err(problem) = self.wait_for_database() {
-            // There may be room again.
+            // Disk space may be available again.
             self.mend_database().map_err(|_| problem)?;
         }
         Ok(&mut self.database)

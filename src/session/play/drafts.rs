@@ -1,6 +1,6 @@
-//! Texts that were typed and not sent, kept beside a run for the case that the program is stopped: `drafts.json`.
+//! Drafts: texts that were typed but not submitted, saved in `drafts.json` in case the program stops.
 //!
-//! The file is written whole and takes the place of the old one. It is no part of the record, and is not exported.
+//! The file is replaced atomically. It is not part of the record and is not exported.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,32 +11,31 @@ use super::Session;
 use novamind_record::files::write_whole;
 use novamind_tools::ToolId;
 
-/// Name of the file in the folder of the run.
 const FILE: &str = "drafts.json";
 
-/// Texts that were typed and not sent.
+/// Texts that were typed but not submitted.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct UnsentTexts {
-    /// Why the next week is as it is.
+    /// Rationale of the next week.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub rationale: String,
-    /// Low, point, high of every horizon, as far as they were typed.
+    /// Low, point and high of each horizon, as typed.
     #[serde(skip_serializing_if = "is_unset")]
     pub forecasts: [[String; 3]; 4],
-    /// Notes that differ from those that are kept.
+    /// Notes, if they differ from the saved notes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub notes: Option<String>,
-    /// A statement that was not asked.
+    /// SQL statement.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub sql: String,
-    /// A post.
+    /// Text of a post.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub post: String,
-    /// The post that it answers.
+    /// The post that it replies to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<u32>,
-    /// Values in forms of tools, by their paths.
+    /// Values in forms of tools, by path.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub forms: BTreeMap<ToolId, BTreeMap<String, String>>,
 }
@@ -46,12 +45,12 @@ fn is_unset(forecasts: &[[String; 3]; 4]) -> bool {
 }
 
 impl UnsentTexts {
-    /// Whether there is nothing.
+    /// Whether there are no texts.
     pub fn is_empty(&self) -> bool {
         *self == UnsentTexts::default()
     }
 
-    /// Each text with its place, as the record names it.
+    /// Returns each text with its location, as named in the record.
     pub fn places(&self) -> Vec<(String, String)> {
         let mut all = vec![("rationale".to_owned(), self.rationale.clone())];
         let forecasts = self.forecasts.as_flattened().iter().filter(|text| !text.is_empty()).cloned();
@@ -68,13 +67,12 @@ impl UnsentTexts {
     }
 }
 
-/// The file of texts that were typed and not sent in a run that is played; a run in memory, or one that is only read, keeps
-/// none.
+/// The drafts file of a run. A run in memory or open read-only has none.
 pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
-    /// Keeps texts beside the run; no file where there are none. A disk that refuses them is no reason to stop: they are in the
-    /// window.
+    /// Saves the drafts, or removes the file if there are none. Ignores disk errors, because the texts are still on
+    /// the screen.
     pub fn keep(&self, drafts: &UnsentTexts) {
         let Some(file) = &self.0 else { return };
         if drafts.is_empty() {
@@ -85,7 +83,7 @@ impl Drafts {
         let _ = write_whole(file, &text);
     }
 
-    /// Texts that were kept when the program was stopped; none that cannot be read.
+    /// Loads the drafts; empty if they cannot be read.
     pub fn kept(&self) -> UnsentTexts {
         let text = self.0.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
         serde_json::from_slice(&text).unwrap_or_default()
@@ -93,7 +91,7 @@ impl Drafts {
 }
 
 impl Session {
-    /// Texts that were typed and not sent.
+    /// Returns the drafts file of the run.
     pub fn drafts(&self) -> Drafts {
         let folder = self.folder.as_ref().filter(|_| self.log.is_written());
         Drafts(folder.map(|folder| folder.join(FILE)))
@@ -121,7 +119,7 @@ mod tests {
         assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
         let file = session.folder().expect("a folder").join(FILE);
         std::fs::write(&file, b"{\"rationale\":").expect("written");
-        assert!(session.drafts().kept().is_empty(), "half a file is none");
+        assert!(session.drafts().kept().is_empty(), "a truncated file is ignored");
         session.drafts().keep(&UnsentTexts::default());
         assert!(!file.exists());
     }

@@ -1,7 +1,7 @@
-//! The notes that are kept with a run: a file beside the trajectory, and a line in it for every change.
+//! The player's notes: a file next to the trajectory, and a line for every change.
 //!
-//! New notes are on the disk as a draft before their line is, and take the place of the old ones after it: whenever
-//! the program is stopped, one of the two files holds what the last line tells.
+//! New notes are written to a draft before their line, and replace the old file after it. Whenever the program stops,
+//! one of the two files matches the last line.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -20,7 +20,7 @@ const FILE: &str = "memo.md";
 const DRAFT: &str = "memo.draft";
 
 impl Session {
-    /// The notes kept with the run.
+    /// Returns the notes.
     ///
     /// # Errors
     /// The file exists and cannot be read.
@@ -34,7 +34,7 @@ impl Session {
         }
     }
 
-    /// Keeps notes with the run, and records that they changed.
+    /// Saves the notes and records the change.
     ///
     /// # Errors
     /// `not_saved`, `read_only`.
@@ -66,31 +66,30 @@ impl Session {
         Ok(())
     }
 
-    /// Finishes what a stopped program has left. Notes that are not the ones that were kept last are told; they are the
-    /// person's own, and stay as they are.
+    /// Finishes an interrupted change. Adds a remark if the notes do not match the last line, but does not change
+    /// them.
     pub(crate) fn check_memo(&mut self, trajectory: &Trajectory, access: Access) {
         let Some(folder) = &self.folder else { return };
         let unfinished = notes_file(folder, trajectory) == folder.join(DRAFT);
         match (access, unfinished) {
             (Access::Write, true) => drop(put_in_place(folder)),
-            // It was never confirmed.
+            // The draft was never confirmed.
             (Access::Write, false) => drop(std::fs::remove_file(folder.join(DRAFT))),
             (Access::Read, true) => return,
             (Access::Read, false) => {}
         }
-        // Once a run is over, notes are kept without a line.
+        // Notes changed after the end of the run have no line in the trajectory.
         let Some(kept) = last_digest(trajectory).filter(|_| self.history.ended.is_none()) else { return };
         if digest_of(&folder.join(FILE)) != Some(kept) {
             self.remarks.push(
-                "memo.md is not as it was last saved: another program changed it, or it is damaged."
+                "memo.md differs from the notes saved last: another program changed it, or it is damaged."
                     .to_owned(),
             );
         }
     }
 }
 
-/// The file that holds the notes of a run as its trajectory tells them: the draft, where the program was stopped between
-/// the line and the file.
+/// Returns the file with the notes of the last line: the draft, if the program stopped between the line and the file.
 pub(crate) fn notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
     let (file, draft) = (folder.join(FILE), folder.join(DRAFT));
     let kept = last_digest(trajectory);
@@ -102,7 +101,7 @@ fn last_digest(trajectory: &Trajectory) -> Option<String> {
     trajectory.lines.iter().rev().find_map(|line| line.record.notes_digest().map(str::to_owned))
 }
 
-/// Digest of the notes in a file, as lines tell it; that of no notes where there is no file.
+/// Returns the digest of the notes in a file. A missing file counts as empty notes.
 fn digest_of(path: &Path) -> Option<String> {
     match std::fs::read(path) {
         Ok(bytes) => Some(digest(&bytes)),
@@ -141,7 +140,7 @@ mod tests {
         (session.folder().expect("a folder").to_owned(), session)
     }
 
-    /// The notes and the remarks of a run that is opened again.
+    /// Returns the notes and the remarks of a reopened run.
     fn opened(folder: &Path, access: Access) -> (String, Vec<String>) {
         let session = Session::open(folder, access, false).expect("it opens");
         (session.memo().expect("notes"), session.remarks().to_vec())
@@ -152,13 +151,13 @@ mod tests {
         let runs = tempfile::tempdir().expect("a folder");
         let (folder, mut session) = run(runs.path());
         session.set_memo("first").expect("kept");
-        // Stopped before the line.
+        // The program stopped before the line.
         write_draft(&folder.join(DRAFT), "second").expect("a draft");
         drop(session);
         assert_eq!(opened(&folder, Access::Read), ("first".to_owned(), Vec::new()));
         assert_eq!(opened(&folder, Access::Write), ("first".to_owned(), Vec::new()));
-        assert!(!folder.join(DRAFT).exists(), "what was never confirmed is gone");
-        // Stopped between the line and the file.
+        assert!(!folder.join(DRAFT).exists(), "an unconfirmed draft is removed");
+        // The program stopped between the line and the file.
         let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
         write_draft(&folder.join(DRAFT), "second").expect("a draft");
         session.note_memo("second").expect("a line");
@@ -166,7 +165,7 @@ mod tests {
         assert_eq!(opened(&folder, Access::Read).1, Vec::<String>::new());
         assert_eq!(opened(&folder, Access::Write), ("second".to_owned(), Vec::new()));
         assert!(!folder.join(DRAFT).exists());
-        // Changed by somebody else.
+        // Another program changed the file.
         std::fs::write(folder.join(FILE), "third").expect("written");
         let (notes, remarks) = opened(&folder, Access::Write);
         assert_eq!(notes, "third");

@@ -116,7 +116,7 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
     assert_eq!(other.run(&["replay", &id(&run), "--verify"]).code, 0);
     let go_on = other.play(&["--run", &id(&run)], "next \"the end\" naive\n");
     assert_eq!(go_on.code, 0, "{}", go_on.err);
-    import(&other, &home.0.path().join("run.tar")).fails(1, &["already exists", "played further since"]);
+    import(&other, &home.0.path().join("run.tar")).fails(1, &["already exists", "was continued after the export"]);
     let (later, _) = export(&other, &run, "later.tar");
     import(&home, &later).fails(1, &["already exists", "later state"]);
     assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");
@@ -136,11 +136,11 @@ fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() 
     let there = other.runs().join(id(&run));
     let before = bytes_of(&there, "trajectory.jsonl");
     let (second, _) = export(&home, &run, "second.tar");
-    let parts = ["already exists", "differ from line", "in the archive", "lines up to day", "--under NAME"];
+    let parts = ["already exists", "differ from line", "the archive has", "lines up to day", "--under NAME"];
     import(&other, &second).fails(1, &parts);
     let path = text(&second);
-    other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is no name for a run"]);
-    other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["there is a run"]);
+    other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is not a valid run name"]);
+    other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["already exists in"]);
     other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["names one run"]);
     let imported = other.run(&["runs", "import", &path, "--under", "second"]);
     assert!(
@@ -252,7 +252,7 @@ fn what_was_changed_is_refused_and_named() {
     refused(&twice, &["twice"]);
     let mut stranger = files.clone();
     stranger.push((format!("{}/snapshot.bin", id(&run)), b"x".to_vec()));
-    refused(&stranger, &["snapshot.bin", "does not belong"]);
+    refused(&stranger, &["snapshot.bin", "is not a file of a run"]);
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn dangerous_and_foreign_files_are_refused() {
     let bad = home.0.path().join("bad.tar");
     for name in ["../../evil", "/etc/evil", "0123abcd/../evil", "0123abcd/sub/run.toml", "latest/run.toml"] {
         forged(&bad, &[(name.to_owned(), b"x".to_vec())]);
-        import(&home, &bad).fails(3, &["does not belong to a run"]);
+        import(&home, &bad).fails(3, &["is not a file of a run"]);
     }
     for kind in
         [tar::EntryType::Symlink, tar::EntryType::Link, tar::EntryType::XHeader, tar::EntryType::GNULongName]
@@ -273,7 +273,7 @@ fn dangerous_and_foreign_files_are_refused() {
     }
     // What a damaged archive holds is told in one line that does not steer the terminal.
     forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
-    import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml does not belong to a run"]);
+    import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");

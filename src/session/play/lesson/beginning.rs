@@ -1,5 +1,4 @@
-//! How a lesson and its steps begin: what is played before the student sees the company, and what a program that ended on the
-//! way has left to do.
+//! Start of a lesson and of its steps, and completion of a start that was interrupted.
 
 use super::conduct::{lesson_step, weeks_passed};
 use std::path::Path;
@@ -15,10 +14,10 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
 
 impl Session {
-    /// Plays the start of a lesson, up to the moment at which the student sees the company; tells each day of it.
+    /// Plays the start of a lesson, until the student can decide. Calls `tell` for each simulated day.
     ///
     /// # Errors
-    /// A call of the start is refused.
+    /// A call of the start is rejected.
     pub(crate) fn begin_lesson(
         &mut self,
         entry: &LessonEntry,
@@ -34,7 +33,7 @@ impl Session {
         self.go_on_with_start(0, tell)
     }
 
-    /// Plays the start of a lesson from the present week on, of which so many calls are made; then the first step begins.
+    /// Continues the start of a lesson in the current week, of which `made` calls exist; then starts the first step.
     fn go_on_with_start(
         &mut self,
         made: usize,
@@ -49,7 +48,7 @@ impl Session {
             for call in due.skip(if week == first { made } else { 0 }) {
                 self.call_of_start(call).map_err(|refusal| {
                     RunError::NotPossible(format!(
-                        "the start of lesson {} is refused: {refusal}",
+                        "lesson {} cannot start: {refusal}",
                         lesson.name
                     ))
                 })?;
@@ -67,12 +66,12 @@ impl Session {
         match call {
             LessonCall::Tool(tool, args) => self.call(tool, args, Via::Lesson).map(|_| ()),
             LessonCall::Rules(_) => {
-                Err(Refusal::new("not_possible", "no rules answer companies in the start of a lesson"))
+                Err(Refusal::new("not_possible", "rules cannot answer enterprises in the start of a lesson"))
             }
         }
     }
 
-    /// Begins a step: its parameters are set.
+    /// Starts a step by setting its parameters.
     pub(super) fn begin_step(&mut self, step: usize, number: u32) -> Result<(), Refusal> {
         let Some(own) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned() else {
             return Ok(());
@@ -86,10 +85,10 @@ impl Session {
         self.note_lesson(note)
     }
 
-    /// Takes up the lesson of a run that was opened again.
+    /// Restores the lesson of a run that was opened again.
     ///
     /// # Errors
-    /// The lesson that is kept with the run is missing, wrong, or another than the first line names.
+    /// The lesson in the run folder is missing or invalid, or is not the one of the first line.
     pub(crate) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
         let Some(stamp) = self.manifest().lesson.clone() else { return Ok(()) };
         let lesson = Lesson::of_run(folder, &stamp.name)?;
@@ -98,13 +97,13 @@ impl Session {
             return Err(RunError::Damaged {
                 path: folder.join("lesson.toml"),
                 line: 1,
-                problem: format!("the lesson is not the one that was played, {}", stamp.name),
+                problem: format!("this is not the recorded lesson, {}", stamp.name),
                 safe: "The trajectory was not touched; restore lesson.toml and lesson.md from a copy to open the run"
                     .to_owned(),
             });
         }
         self.lesson = Some(Box::new(LessonStanding::of(Arc::new(lesson), part - 1, lines)));
-        // The program may have ended between a week and what it came to.
+        // The program may have ended between a week and its judgement.
         let is_open = |line: &Line| {
             matches!(
                 line.record,
@@ -117,11 +116,11 @@ impl Session {
         Ok(())
     }
 
-    /// Begins what has not begun: the first step of a lesson, or the one that is tried again. A program may have ended on the
-    /// way; a week that it has left is simulated already.
+    /// Starts the first step of a lesson, or a step that is tried again, if the program ended before. An interrupted
+    /// week is simulated before this.
     ///
     /// # Errors
-    /// The start of the lesson is refused.
+    /// The start of the lesson is rejected.
     pub(crate) fn finish_beginning(&mut self, lines: &[Line]) -> Result<(), RunError> {
         let is_open = self.log().is_written() && self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
@@ -135,7 +134,7 @@ impl Session {
         if step == 0 { self.go_on_with_start(self.calls_of_week(lines), &mut |_| {}) } else { Ok(()) }
     }
 
-    /// How many calls of the start were made since the last week.
+    /// Returns the number of start calls made since the last week.
     fn calls_of_week(&self, lines: &[Line]) -> usize {
         let day = self.day();
         let after = lines.iter().rposition(Line::closes_days).map_or(0, |week| week + 1);
@@ -144,7 +143,7 @@ impl Session {
         calls.count()
     }
 
-    /// The newest try of a step in the run of which this one is a branch.
+    /// Returns the number of attempts at a step in the parent run.
     fn tries_of_parent(&self, step: usize) -> u32 {
         let runs = self.folder().and_then(Path::parent);
         let parent = self.manifest().parent.as_ref().zip(runs);
@@ -158,7 +157,7 @@ impl Session {
     }
 }
 
-/// Whether the lines are those of another try of a step that has not begun yet.
+/// Whether the lines are those of another attempt at a step that has not started yet.
 fn is_try_to_begin(lines: &[Line]) -> bool {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,

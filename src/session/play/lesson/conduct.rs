@@ -1,4 +1,4 @@
-//! What a lesson does before and after a week, and what it refuses.
+//! Progress of a lesson before and after a week, and its restrictions.
 
 use serde_json::json;
 
@@ -21,32 +21,32 @@ pub fn lesson_step(session: &Session) -> Option<usize> {
 }
 
 impl Session {
-    /// The position of the student in the lesson of this run; `None` outside lessons.
+    /// Returns the position of the student in the lesson of this run; `None` outside lessons.
     pub fn lesson(&self) -> Option<&LessonStanding> {
         self.lesson.as_deref()
     }
 
-    /// Refuses a tool that the lesson does not have.
+    /// Rejects a tool that the lesson does not offer.
     pub(crate) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
         let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
         standing.map_or(Ok(()), |standing| standing.refuse_tool(tool))
     }
 
-    /// Refuses a week that the lesson does not let pass: its question is open, or it is over.
+    /// Rejects a week if the question of the lesson has no answer yet, or if the lesson has ended.
     pub(crate) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
         let Some(step) = lesson_step(self) else {
-            return Err(Refusal::new("lesson_over", "the lesson is over; its debrief tells what came of it"));
+            return Err(Refusal::new("lesson_over", "the lesson has ended; open its debrief to see the result"));
         };
         if standing.has_begun(step) {
             return standing.refuse_before_guess(weeks_passed(self));
         }
         let message =
-            "the goals of the step before are not judged yet; close the run and open it again to go on";
+            "the goals of the previous step are not judged yet; close the run and open it again to continue";
         Err(Refusal::new("step_not_begun", message))
     }
 
-    /// What the lesson does by itself before a week.
+    /// Makes the automatic calls of the lesson before a week.
     pub(crate) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
         if !self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity()) {
             return Ok(());
@@ -58,13 +58,13 @@ impl Session {
         self.call(ToolId::SetCapacityTier, &json!({ "tier": next }), Via::Lesson).map(|_| ())
     }
 
-    /// Judges what a week came to, before the line that ends the run. A step that is over is measured and the next begins;
-    /// after the last one the run is over. What is judged already stays as it is.
+    /// Judges a week, before the line that ends the run. When a step has ended, judges it and starts the next one;
+    /// after the last step the run ends. Existing judgements are not changed.
     pub(crate) fn settle_lesson(&mut self) {
         let is_open = self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
         let is_over = self.simulation().world.is_over(self.params());
-        // A week in which the cash ran out counts.
+        // A week with a bankruptcy counts.
         let weeks = self.day().div_ceil(self.params().run.days_per_week);
         let part = standing.own_part();
         let step = part.step_after(weeks.saturating_sub(1));
@@ -73,7 +73,7 @@ impl Session {
             return;
         };
         if standing.is_judged {
-            // Statements are to see the week.
+            // Statements must see the week.
             self.commit_projection();
             self.note_pitfalls(&standing, step, weeks);
         }
@@ -83,7 +83,7 @@ impl Session {
         }
         if standing.is_judged {
             if self.lacks_answers(&standing, step) {
-                // It is judged when somebody says how rules answer companies.
+                // It is judged when `answer_companies_by` is called.
                 return;
             }
             self.judge_guesses(&standing, step, is_over);
@@ -102,13 +102,13 @@ impl Session {
         }
     }
 
-    /// Records an event of the lesson on the present day.
+    /// Records an event of the lesson on the current day.
     ///
     /// # Errors
     /// `not_in_a_lesson`, `not_saved`.
     pub fn note_lesson(&mut self, note: LessonNote) -> Result<(), Refusal> {
         if self.lesson.is_none() {
-            return Err(Refusal::new("not_in_a_lesson", "this run belongs to no lesson"));
+            return Err(Refusal::new("not_in_a_lesson", "this run is not part of a lesson"));
         }
         self.append(&Record::Activity(Activity::Lesson(note.clone())), Durability::Synced)
             .map_err(not_saved)?;

@@ -1,4 +1,5 @@
-//! Judging a step: what goals, guesses and pitfalls measure, and the good play that goals are compared with.
+//! Judgement of a step: measurements of goals, guesses and pitfalls, and the reference play that goals are compared
+//! with.
 
 use super::conduct::weeks_passed;
 use super::reference::{PartPlay, answers_companies, play_part};
@@ -10,10 +11,10 @@ use novamind_record::lesson::{
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_tools::Refusal;
 
-/// Returns the value of a measurement over the weeks that ended on days after `from_day`; `None` if it has none.
+/// Returns the value of a measurement over the weeks that end after `from_day`; `None` if it has no value.
 ///
 /// # Errors
-/// The statement is refused, or does not answer with one number.
+/// The statement is rejected, or does not return one number.
 pub fn measure(
     measurement: &Measurement,
     session: &mut Session,
@@ -33,13 +34,13 @@ fn answer(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
             Cell::Real(number) => Some(*number),
             _ => None,
         }),
-        rows => Err(format!("the statement answers with {} rows, not with one number", rows.len())),
+        rows => Err(format!("the statement returns {} rows, not one number", rows.len())),
     }
 }
 
 impl Session {
-    /// Says how rules answer companies: goals that are relative to a good play with rules are held against that. A step that
-    /// has waited for it is judged now.
+    /// Sets the function that evaluates rules, needed for goals relative to a reference play with rules. Judges a
+    /// step that has waited for it.
     pub fn answer_companies_by(&mut self, answers: AnswersCompanies) {
         self.company_answers = Some(answers);
         if self.log().is_written() && self.awaits_judgement() {
@@ -47,7 +48,7 @@ impl Session {
         }
     }
 
-    /// Whether the weeks of a step are over, and the next one has not begun.
+    /// Whether the weeks of a step have passed and the next step has not started.
     fn awaits_judgement(&self) -> bool {
         let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
             return false;
@@ -59,7 +60,7 @@ impl Session {
         })
     }
 
-    /// Whether a step can be judged only by somebody who says how rules answer companies.
+    /// Whether judging a step needs a function that evaluates rules, and none is set.
     pub(super) fn lacks_answers(&self, standing: &LessonStanding, step: usize) -> bool {
         let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
         self.company_answers.is_none()
@@ -67,7 +68,7 @@ impl Session {
             && answers_companies(&standing.lesson.plan.good.plays)
     }
 
-    /// Records the pitfalls that the last week met for the first time.
+    /// Records the pitfalls that occurred in the last week for the first time.
     pub(super) fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize, weeks: u32) {
         let met = standing.pitfalls();
         let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
@@ -82,7 +83,7 @@ impl Session {
         }
     }
 
-    /// Measures what was guessed in the step that is over; where the part is over, also what waited for its end.
+    /// Records the outcomes of guesses of a completed step; at the end of the part also of guesses that wait for it.
     pub(super) fn judge_guesses(&mut self, standing: &LessonStanding, step: usize, is_over: bool) {
         let part = standing.own_part();
         let is_last = is_over || step + 1 == part.steps.len();
@@ -97,7 +98,7 @@ impl Session {
         }
     }
 
-    /// What came of a guess, from a day on.
+    /// Returns the outcome of a guess, measured from a day on.
     fn outcome_of(&mut self, standing: &LessonStanding, guess: &Guess, step: usize, from: u32) -> LessonNote {
         let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
         match &guess.form {
@@ -112,7 +113,7 @@ impl Session {
         }
     }
 
-    /// Measures what was to be reached.
+    /// Records whether the goals of a step were reached.
     pub(super) fn judge_goals(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
         let from = begin * self.params().run.days_per_week;
@@ -130,8 +131,8 @@ impl Session {
         }
     }
 
-    /// The good play on the seed of this run, up to the end of a step. `None` if no goal of the step depends on it, and if it
-    /// cannot be played.
+    /// Returns the reference play on the seed of this run, up to the end of a step. `None` if no goal of the step
+    /// depends on it, or if it cannot be played.
     fn good_play(&self, standing: &LessonStanding, step: usize) -> Option<Session> {
         let goals = &standing.step(step)?.goals;
         let mut relative = goals.iter().filter(|goal| goal.bound.is_relative()).peekable();
@@ -142,11 +143,11 @@ impl Session {
             seed: Some(self.manifest().seed),
             plays: &standing.lesson.plan.good.plays,
             weeks: Some(standing.own_part().weeks_of(step).1),
-            // Its own goals would ask for the good play again.
+            // Judging its goals would need the reference play again.
             is_judged: false,
             asks_database: relative.any(|goal| goal.measurement.needs_database()),
         };
-        let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "no rules"));
+        let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "rules are not available"));
         play_part(&play, self.company_answers.unwrap_or(refuses)).ok()
     }
 }

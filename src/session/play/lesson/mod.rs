@@ -1,7 +1,6 @@
-//! What a lesson does in a run: it plays its start, begins and judges steps, and plays its reference plays in memory.
+//! Lessons in a run: their start, the judgement of steps, and reference plays in memory.
 //!
-//! What lessons are is in `novamind-record`; pages, answers and debriefs are
-//! in `novamind-course`.
+//! The definition of lessons is in `novamind-record`; pages, answers and debriefs are in `novamind-course`.
 
 mod beginning;
 pub(crate) mod conduct;

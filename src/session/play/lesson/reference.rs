@@ -1,4 +1,4 @@
-//! Reference plays: a part of a lesson played by its file, in memory.
+//! Reference plays: scheduled calls of a lesson, played in memory.
 
 use super::conduct::lesson_step;
 use std::sync::Arc;
@@ -13,26 +13,26 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
 use novamind_tools::Refusal;
 
-/// A play of a part that is done by its file.
+/// A scheduled play of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartPlay<'a> {
     /// The lesson.
     pub lesson: &'a Arc<Lesson>,
-    /// The part, counted from 0.
+    /// Index of the part, from 0.
     pub part: usize,
-    /// The seed; the student's if none is named.
+    /// The seed; by default that of the part.
     pub seed: Option<u64>,
-    /// What is called, and when.
+    /// Scheduled calls.
     pub plays: &'a [ScheduledCalls],
-    /// It stops after so many weeks of the company; at the end of the part if none are named.
+    /// Number of weeks after which the play stops; by default at the end of the part.
     pub weeks: Option<u32>,
-    /// Whether goals and pitfalls are looked at.
+    /// Whether goals and pitfalls are checked.
     pub is_judged: bool,
     /// Whether it needs a database.
     pub asks_database: bool,
 }
 
-/// Whether rules answer companies in some calls.
+/// Whether rules answer enterprises in any of the calls.
 pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
     let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
     plays.iter().any(|play| play.calls.iter().any(is_rules))
@@ -41,16 +41,16 @@ pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
 /// Plays a part in memory.
 ///
 /// # Errors
-/// The part cannot begin, or a call is refused.
+/// The part cannot start, or a call is rejected.
 pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies) -> Result<Session, RunError> {
     play_part_watched(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
 }
 
-/// As [`play_part`]. `before_week` is called when everything is decided, before a week runs. `after_week` is called with the
+/// Like [`play_part`]. `before_week` is called before each week, after its calls. `after_week` is called with the
 /// number of weeks that have passed.
 ///
 /// # Errors
-/// The same, and those of `after_week`.
+/// As [`play_part`], and the errors of `after_week`.
 pub fn play_part_watched(
     play: &PartPlay<'_>,
     answers: AnswersCompanies,
@@ -63,7 +63,7 @@ pub fn play_part_watched(
         mode: Mode::Lesson,
         seed: play.seed,
         lesson: Some(entry),
-        // Rules ask the database which threads wait.
+        // Rules query the database for open threads.
         projection: play.asks_database || answers_companies(play.plays),
         ..NewRun::default()
     };

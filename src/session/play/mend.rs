@@ -1,5 +1,4 @@
-//! A database that could not be written, for instance because the disk was full, is made whole again while the run
-//! goes on.
+//! Repair of the database of an open run, if it could not be written, for example because the disk was full.
 
 use std::sync::Arc;
 
@@ -11,22 +10,22 @@ use novamind_record::error::RunError;
 use novamind_record::trajectory::Trajectory;
 
 impl Session {
-    /// Brings a database that could not be written up to the last line again, from the trajectory. Connections that were
-    /// opened before know nothing of it.
+    /// Repairs the database from the trajectory if it could not be written. Connections opened before are stale
+    /// afterward.
     ///
     /// # Errors
-    /// It still cannot be written. Nothing else has changed.
+    /// The database still cannot be written. Nothing else has changed.
     pub fn mend_database(&mut self) -> Result<(), RunError> {
         let Some(problem) = self.database.failure() else { return Ok(()) };
         let Some(folder) = self.folder.clone().filter(|_| self.log.is_written()) else {
             return Err(problem.into());
         };
-        // Lines that wait for the disk would be missing.
+        // Include lines that are not on the disk yet.
         self.log.sync()?;
         let path = folder.join("trajectory.jsonl");
         let read = Trajectory::read(&path)?;
         let sound = is_consistent(&Location::File(folder.join("world.db")));
-        // The beginning is made with the parameters of the beginning.
+        // The replay starts with the parameters of day 0.
         let params = Arc::new(self.manifest.params()?);
         let database = open_projector(&folder, Access::Write, (&self.manifest, &params), &read, sound)?;
         let integrity = Integrity::of(&folder, &self.manifest, &self.seal_key);
@@ -52,7 +51,7 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::trajectory::record::Via;
 
-    /// Rows that tell how far the database has come.
+    /// Returns rows that show how far the database has progressed.
     fn rows(session: &mut Session) -> Vec<Vec<Cell>> {
         let sql = "SELECT (SELECT count(*) FROM ledger), (SELECT max(day) FROM ledger), \
                    (SELECT count(*) FROM config_history), (SELECT sum(usage_units) FROM daily_usage)";
@@ -107,7 +106,7 @@ mod tests {
         let problem = session.wait_for_database().expect_err("there is no room").message;
         assert_eq!(session.database().failure().map(|own| own.to_string()), Some(problem.clone()));
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
-        // There is room again: asking is enough, and the run goes on as if nothing had been.
+        // With free disk space, a query repairs the database and the run continues.
         let remark = week(&mut session).remark.expect("the week says so");
         assert!(remark.contains("could not be written") && remark.contains("next query"), "{remark}");
         assert_eq!(rows(&mut session), rows(&mut straight));

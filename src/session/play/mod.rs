@@ -1,5 +1,4 @@
-//! An open run: its state, and everything that changes it: calls, weeks, queries, what follows from them, taking back, opening
-//! again.
+//! An open run: its state and all operations that change it.
 
 pub(crate) mod act;
 pub(crate) mod advance;
@@ -55,46 +54,41 @@ use novamind_world::day::watch::DayWatch;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-/// What rules would have the companies that wait be told. A session does not know rules: whoever plays says it.
+/// Returns the calls with which rules answer waiting enterprises. The session does not evaluate rules itself.
 pub type AnswersCompanies = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
 
-/// A run that is open.
+/// An open run.
 pub struct Session {
     manifest: Manifest,
-    /// Folder of the run; none in memory.
+    /// Folder of the run; `None` in memory.
     folder: Option<PathBuf>,
-    /// The company and its words.
     simulation: Simulation,
-    /// What has happened so far.
     history: History,
-    /// What is kept with the run besides its company.
+    /// Context that tools read.
     surroundings: RunSurroundings,
-    /// What follows from the parameters in force.
+    /// Values derived from the parameters in force.
     derived: DerivedOfParameters,
-    /// Rows that follow from what has happened.
     database: RunDatabase,
-    /// What seals its snapshots.
+    /// Key that seals the snapshots.
     seal_key: SealKey,
-    /// It is a run simulated again beside one that may be looked into: its days are told with their hidden state.
+    /// The session replays an inspected run and reports its days with hidden state.
     is_shadow: bool,
-    /// A value that a higher crate keeps with the run.
     companion: Companion,
-    /// The lesson that it belongs to, and how it went; none outside lessons.
+    /// The lesson and its progress; `None` outside lessons.
     lesson: Option<Box<LessonStanding>>,
-    /// How rules answer companies; none where nobody has said it.
+    /// Function that evaluates rules, if it was set.
     company_answers: Option<AnswersCompanies>,
-    /// Who speaks besides the built-in voice.
     voice: ModelVoice,
     /// Notes of a run without a folder.
     memo_in_memory: String,
-    /// What the person should know about the opening of the run.
+    /// Problems found when the run was opened.
     remarks: Vec<String>,
-    /// Its lines. Dropped last: the lock is held until the database is closed.
+    /// The record of the run. Dropped last: it holds the lock until the database is closed.
     log: RunLog,
 }
 
 impl Session {
-    /// A session that nothing writes, and in which nothing has happened.
+    /// Creates a session on day 0 without a recorder.
     fn assemble(
         manifest: Manifest,
         folder: Option<PathBuf>,
@@ -121,7 +115,7 @@ impl Session {
         }
     }
 
-    /// A session on day 0 that writes nothing, for lines to be applied to.
+    /// Creates a session on day 0 without a recorder, for a replay.
     pub(crate) fn unwritten(
         manifest: Manifest,
         folder: Option<PathBuf>,
@@ -132,7 +126,8 @@ impl Session {
         Session::assemble(manifest, folder, simulation, RunDatabase::of(projector))
     }
 
-    /// A copy of a run before its first line, which passes its days to a watch and reports them with their hidden state.
+    /// Creates a copy of a run before its first line. It passes its days to `watch` and reports them with their
+    /// hidden state.
     pub(crate) fn shadow_of(run: &Session, watch: Arc<dyn DayWatch>) -> Result<Session, RunError> {
         let params = Arc::new(run.manifest.params()?);
         let mut shadow = Session::unwritten(run.manifest.clone(), run.folder.clone(), params, None);
@@ -141,7 +136,7 @@ impl Session {
         Ok(shadow)
     }
 
-    /// A new run on day 0 that a recorder writes.
+    /// Creates a new run on day 0 with a recorder.
     pub(crate) fn written(
         (manifest, params): (Manifest, Arc<Params>),
         folder: Option<PathBuf>,
@@ -156,116 +151,116 @@ impl Session {
         session
     }
 
-    /// Lets a language model lend its voice.
     pub(crate) fn set_speaker(&mut self, speaker: Option<Speaker>) {
         self.voice = ModelVoice { speaker, ..ModelVoice::default() };
     }
 
-    /// The company as the player may see it.
+    /// Returns the company as the player may see it.
     pub fn company(&self) -> CompanyView<'_> {
         let Session { manifest, simulation, history, surroundings, derived, .. } = self;
         CompanyView { manifest, simulation, history, surroundings, derived }
     }
 
-    /// The lines of the run: clock, time that is left, answers, whether they are safe.
+    /// Returns the record of the run: clock, time limits, answers, durability.
     pub fn log(&self) -> &RunLog {
         &self.log
     }
 
-    /// Records what a person does besides acting.
+    /// Returns the log for activities of the user.
     pub fn activity(&mut self) -> ActivityLog<'_> {
         let (day, is_over) = self.stand();
         ActivityLog::new(&mut self.log, day, is_over)
     }
 
-    /// A value that a higher crate keeps with the run.
+    /// Returns the storage for a value of a higher crate.
     pub fn companion(&mut self) -> &mut Companion {
         &mut self.companion
     }
 
-    /// What the run is.
+    /// Returns the manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// By which rules it is played.
+    /// Returns the rules of the session.
     pub fn rules(&self) -> SessionRules {
         self.manifest.session_rules()
     }
 
-    /// Folder of the run; none in memory.
+    /// Returns the folder of the run; `None` in memory.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
-    /// Last simulated day.
+    /// Returns the last simulated day.
     pub fn day(&self) -> u32 {
         self.simulation.world.day
     }
 
-    /// How the run ended, if it did.
+    /// Returns how the run ended.
     pub fn ended(&self) -> Option<Ended> {
         self.history.ended
     }
 
-    /// Cash at the end of each day, day 0 first.
+    /// Returns the cash at the end of each day, day 0 first.
     pub fn cash_by_day(&self) -> &[f64] {
         &self.history.cash_by_day
     }
 
-    /// Figures of every week that ran.
+    /// Returns the figures of every simulated week.
     pub fn weeks(&self) -> &[WeekFigures] {
         &self.history.weeks
     }
 
-    /// What the person should know about the opening of the run.
+    /// Returns the problems found when the run was opened.
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 
-    /// Everything that was done, in order.
+    /// Returns the journal: all confirmed actions, in order.
     pub fn journal(&self) -> &[JournalEntry] {
         &self.history.journal
     }
 
-    /// The settings in force from tomorrow on.
+    /// Returns the settings in force from the next day.
     pub fn settings(&self) -> &Settings {
         &self.simulation.world.settings
     }
 
-    /// The numbers that documentation names, as they are in this run.
+    /// Returns the numbers that the documentation of the tools quotes, for this run.
     pub fn numbers(&self) -> Arc<Numbers> {
         self.derived.numbers(&self.simulation)
     }
 
-    /// Calculations and scripts of the run.
+    /// Returns the calculations and scripts of the run.
     pub fn notebook(&self) -> &Notebook {
         &self.surroundings.notebook
     }
 
-    /// The effective parameters.
+    /// Returns the parameters in force.
     pub fn params(&self) -> &Params {
         &self.simulation.params
     }
 
-    /// Score: cash after the last day, 0 after a bankruptcy, none before the end or when abandoned.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. `None` before the end and for abandoned
+    /// runs.
     pub fn score(&self) -> Option<f64> {
         self.company().score()
     }
 
-    /// Hash of the whole state with one hash per part, by name. Right after a week it is the one that the
-    /// trajectory recorded.
+    /// Returns the hash of the complete state, and the hash of each part by name. Right after a week it equals the
+    /// recorded one.
     pub fn state_hash(&self) -> (String, BTreeMap<String, String>) {
         self.simulation.state_hash()
     }
 
-    /// Whether its hidden state may be shown, as [`may_look_inside`](permission::may_look_inside) says.
+    /// Whether hidden state may be shown; see [`may_look_inside`](permission::may_look_inside).
     pub fn may_look_inside(&self) -> bool {
         permission::may_look_inside(&self.manifest, self.history.ended, self.folder())
     }
 
-    /// Refuses to look where hidden state stays hidden; the answer depends on nothing but the mode of the run, its study, its
-    /// lesson and whether they are over.
+    /// Rejects an inspection if hidden state must not be shown. The result depends only on the mode, the study, the
+    /// lesson and whether they have ended.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -273,7 +268,7 @@ impl Session {
         permission::refuse_to_look_inside(&self.manifest, self.history.ended, self.folder())
     }
 
-    /// The hidden state; only in debug runs.
+    /// Returns the hidden state of a debug run.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -284,72 +279,71 @@ impl Session {
         Ok(self.hidden_state())
     }
 
-    /// The hidden state, for a look that was permitted.
+    /// Returns the hidden state, for a permitted inspection.
     pub(crate) fn hidden_state(&self) -> Xray<'_> {
         Xray::new(&self.simulation, &self.history)
     }
 
-    /// The company and its words, for the parts of the session that build readings from it.
+    /// Returns the simulation.
     pub(crate) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// Passes the days that are simulated from now on to a watch.
+    /// Passes future simulated days to a watch.
     pub(crate) fn set_watch(&mut self, watch: Arc<dyn DayWatch>) {
         self.simulation.watch = watch;
     }
 
-    /// The last line that was written, or applied again.
+    /// Returns the position of the last written or replayed line.
     pub(crate) fn position(&self) -> &Position {
         self.log.position()
     }
 
-    /// What seals its snapshots.
+    /// Returns the key that seals the snapshots.
     pub(crate) fn seal_key(&self) -> &SealKey {
         &self.seal_key
     }
 
-    /// Makes everything handed over visible, as of the last line.
+    /// Makes all database entries visible, as of the last line.
     pub(crate) fn commit_projection(&self) {
         self.database.commit(self.log.position());
     }
 
-    /// Hands the set-up of day 0 to the database.
+    /// Writes the state of day 0 to the database.
     fn project_opening(&self) {
         self.database.entries().write(|| self.simulation.entry());
         self.commit_projection();
     }
 
-    /// Appends a line; a run that is only read has none.
+    /// Appends a line. Does nothing if the run is open read-only.
     pub(crate) fn append(&mut self, record: &Record, durability: Durability) -> Result<String, RunError> {
         self.log.append(self.stand(), record, durability)
     }
 
-    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
     fn append_done(&mut self, record: &Record) -> Option<String> {
         self.log.append_done(self.simulation.world.day, record)
     }
 
-    /// Records something that changes nothing; a disk that refuses it is no reason to stop.
+    /// Records an event without effect; ignores disk errors.
     fn note(&mut self, record: Record) {
         let _ = self.append(&record, Durability::Written);
     }
 
-    /// The last day, and whether the run is over.
+    /// Returns the last day, and whether the run has ended.
     fn stand(&self) -> (u32, bool) {
         (self.simulation.world.day, self.history.ended.is_some())
     }
 }
 
-/// Access of tests.
+/// Functions for tests.
 #[cfg(test)]
 impl Session {
-    /// Puts another medium in place of the trajectory.
+    /// Replaces the file of the trajectory.
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.log.write_to(medium);
     }
 
-    /// The manifest, to be changed.
     pub(crate) fn manifest_mut(&mut self) -> &mut Manifest {
         &mut self.manifest
     }

@@ -1,4 +1,4 @@
-//! Requests that carry an id run once: the first answer is kept and returned to each retry.
+//! Idempotent requests: a request with an id runs once, and retries return the first response.
 
 use serde_json::Value;
 
@@ -10,31 +10,31 @@ use crate::company::reports::Week;
 use novamind_record::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
 use novamind_tools::{Refusal, ToolId, find};
 
-/// Longest id, in characters.
+/// Maximum length of an id, characters.
 const MAX_ID_CHARACTERS: usize = 128;
 
-/// A request to let a week pass, as a program sends it.
+/// A request to simulate a week, from a program.
 #[derive(Debug, Clone, Copy)]
 pub struct WeekRequest<'a> {
-    /// Why.
+    /// Rationale.
     pub rationale: &'a Value,
-    /// Forecasts of four horizons.
+    /// Forecasts for four horizons.
     pub predictions: &'a Value,
-    /// The day on which the run must be; null if any will do.
+    /// The day on which the run must be; null for any.
     pub expected_day: &'a Value,
     /// The id of the request; null without one.
     pub id: &'a Value,
 }
 
-/// A request as the session receives it.
+/// Whether a request is new.
 enum Sent {
-    /// It was not answered before; the id with which it is recorded.
+    /// A new request, with the id to record.
     New(Option<RequestId>),
-    /// It was answered.
+    /// A retry, with the first response.
     Again(FirstAnswer),
 }
 
-/// Reads the id of a request.
+/// Parses the id of a request.
 fn id_of(id: &Value) -> Result<Option<&str>, Refusal> {
     match id {
         Value::Null => Ok(None),
@@ -47,11 +47,11 @@ fn id_of(id: &Value) -> Result<Option<&str>, Refusal> {
 }
 
 impl Session {
-    /// Calls a tool as [`Session::call`] does, once for each id: a retry returns the first answer. Tools that only read or run
-    /// code ignore the id.
+    /// Calls a tool as [`Session::call`] does, but only once per id: a retry returns the first response. Tools that
+    /// only read or run code ignore the id.
     ///
     /// # Errors
-    /// The refusals of the call; `request_id_invalid`, `request_id_payload_mismatch`.
+    /// The rejections of the call; `request_id_invalid`, `request_id_payload_mismatch`.
     pub fn call_once(
         &mut self,
         tool: impl AsRef<str>,
@@ -77,10 +77,10 @@ impl Session {
         }
     }
 
-    /// Lets a week pass as [`Session::advance_given`] does, once for each id, and only on the expected day.
+    /// Simulates a week as [`Session::advance_given`] does, but only once per id and only on the expected day.
     ///
     /// # Errors
-    /// The refusals of the week; `unexpected_day`, `request_id_invalid`, `request_id_payload_mismatch`.
+    /// The rejections of the week; `unexpected_day`, `request_id_invalid`, `request_id_payload_mismatch`.
     pub fn advance_once(&mut self, request: &WeekRequest<'_>, via: Via) -> Result<Week, RefusalRecord> {
         let WeekRequest { rationale, predictions, expected_day, id } = *request;
         let args = arguments_of_week(rationale, predictions, expected_day);
@@ -101,7 +101,7 @@ impl Session {
         }
     }
 
-    /// Tells a new request from one that was answered.
+    /// Returns whether a request is new or a retry.
     ///
     /// # Errors
     /// `request_id_invalid`, `request_id_payload_mismatch`.

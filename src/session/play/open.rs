@@ -1,4 +1,4 @@
-//! Going on with a run: reading its trajectory and simulating it again.
+//! Opening a run: reading its trajectory and simulating it again.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,23 +18,23 @@ use novamind_record::folder::runs::find_run;
 use novamind_record::trajectory::Trajectory;
 use novamind_world::params::Params;
 
-/// What may be done with an opened run.
+/// Access to an opened run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// Go on with it. One program at a time.
+    /// Continue the run. One program at a time.
     Write,
-    /// Look at it; nothing of it is changed.
+    /// Read the run without changing it.
     Read,
 }
 
-/// How a reading command keeps what it had to simulate.
+/// Functions with which a reading command stores what it had to simulate.
 #[derive(Clone, Copy)]
 pub(crate) struct Keeping {
-    /// Returns whether the end of the run may be kept.
+    /// Returns whether the end of the run may be stored.
     pub(crate) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
-    /// Keeps snapshot and database. Returns whether they were kept.
+    /// Stores snapshot and database. Returns whether it succeeded.
     pub(crate) keep_database: fn(&Path, &SealKey) -> bool,
-    /// Keeps the snapshot.
+    /// Stores the snapshot.
     pub(crate) keep_snapshot: fn(&Session, &Path),
 }
 
@@ -42,15 +42,15 @@ impl Session {
     /// Opens the run in a folder and simulates it up to its last line.
     ///
     /// # Errors
-    /// The run is missing, damaged, of another version, or in use; the error names the place and what is safe.
+    /// The run is missing, damaged, of another version, or in use. The error names the file and what is safe.
     pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// As [`Session::open`], for a run whose snapshots a key seals.
+    /// Like [`Session::open`], for a run whose snapshots are sealed with `key`.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Session::open`].
     pub fn open_sealed(
         folder: &Path,
         access: Access,
@@ -60,10 +60,10 @@ impl Session {
         Session::open_and_keep(folder, access, projection, key, None)
     }
 
-    /// As [`Session::open_sealed`]. If `keeping` is given, what a reading command had to simulate is kept.
+    /// Like [`Session::open_sealed`]. With `keeping`, stores what a reading command had to simulate.
     ///
     /// # Errors
-    /// The same.
+    /// As [`Session::open`].
     pub(crate) fn open_and_keep(
         folder: &Path,
         access: Access,
@@ -82,7 +82,7 @@ impl Session {
             }
             Access::Read => (
                 None,
-                derived.problem.map(|problem| format!("{problem}: the first line of the trajectory counts.")),
+                derived.problem.map(|problem| format!("{problem}: the first line of the trajectory is used instead.")),
             ),
         };
         let path = folder.join("trajectory.jsonl");
@@ -105,7 +105,7 @@ impl Session {
                 Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
             }
         };
-        // The number of the line up to which rows are there; rows that lack need the facts before them.
+        // The database has rows up to this line. Missing rows need the facts before them.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = integrity.usable_snapshot(&manifest, &trajectory, rows);
         let lines = &trajectory.lines;
@@ -127,7 +127,7 @@ impl Session {
             let bytes = trajectory.unfinished;
             let reason = match integrity.is_ahead_of(&trajectory) {
                 true => {
-                    ". world.db was made from the complete line: a power cut or an edit removed the end of the line."
+                    ". world.db contains the complete line: a power cut or an edit removed the end of the line."
                 }
                 false => ": it was never confirmed.",
             };
@@ -146,7 +146,7 @@ impl Session {
     }
 }
 
-/// Starts the database. What it holds already counts only if `sound` says so.
+/// Starts the database. Existing contents are used only if `sound` is true.
 pub(crate) fn open_projector(
     folder: &Path,
     access: Access,
@@ -156,7 +156,7 @@ pub(crate) fn open_projector(
 ) -> Result<(Projector, Option<Position>), RunError> {
     let location = match access {
         Access::Write => Location::File(folder.join("world.db")),
-        // Somebody else may be writing the file; a reader makes its own.
+        // Another program may write the file, so a reader creates its own database.
         Access::Read => Location::memory(),
     };
     let known = |position: &Position| {
@@ -166,10 +166,10 @@ pub(crate) fn open_projector(
     Ok(Projector::start(location, manifest.number(), params.clone(), known)?)
 }
 
-/// Ends an unfinished run for good.
+/// Abandons an unfinished run permanently.
 ///
 /// # Errors
-/// It is over already, in use, or cannot be read.
+/// The run has ended already, is in use, or cannot be read.
 pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
     let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
     session.end().map_err(|refusal| RunError::NotPossible(refusal.message))

@@ -1,4 +1,4 @@
-//! Setting parameters of a debug run while it goes on (docs/debugging.md#parameters).
+//! Parameter changes of a running debug run (docs/debugging.md#parameters).
 
 use serde_json::Value;
 
@@ -16,18 +16,18 @@ use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal};
 use novamind_world::params::ParameterError;
 
-/// Whether a value is a table, or tables in a table, without any parameter.
+/// Whether a value is a table without any parameter.
 fn names_nothing(value: &toml::Value) -> bool {
     value.as_table().is_some_and(|table| table.values().all(names_nothing))
 }
 
 impl Session {
-    /// Sets a parameter, or a list or table of them, from now on, or from a later day on. The change is recorded before it
-    /// acts.
+    /// Sets a parameter, or a list or table of parameters, immediately or from a later day. The change is recorded
+    /// before it takes effect.
     ///
     /// # Errors
-    /// `not_in_this_mode` where the run is no debug run, whatever is to be set; `run_over`, `read_only`, `day_unknown`,
-    /// `parameter_unknown`, `parameter_not_allowed`, `not_saved`. Nothing has changed then.
+    /// `not_in_this_mode` if the run is not a debug run; `run_over`, `read_only`, `day_unknown`, `parameter_unknown`,
+    /// `parameter_not_allowed`, `not_saved`. Nothing has changed then.
     pub fn set_parameter(
         &mut self,
         key: &str,
@@ -38,7 +38,7 @@ impl Session {
         self.set_parameter_anyway(key, value, from_day)
     }
 
-    /// Sets a parameter as the lesson of the run does, from now on.
+    /// Sets a parameter immediately, on behalf of the lesson.
     ///
     /// # Errors
     /// As [`Session::set_parameter`].
@@ -56,15 +56,15 @@ impl Session {
         let (today, last) = (self.simulation.world.day, self.manifest.days);
         if let Some(day) = from_day.filter(|day| !(today + 1..=last).contains(day)) {
             let message =
-                format!("a parameter is set from day {} to {last} on, not from day {day}", today + 1);
+                format!("the start day must be between {} and {last}, not {day}", today + 1);
             return Err(Refusal::at("from", "day_unknown", message));
         }
         let old = json_of_value(&self.simulation.params.value(key).map_err(unknown)?);
         let value = value_of_json(value).ok_or_else(|| {
-            Refusal::at(key, "parameter_not_allowed", format!("{key} cannot be null, nor hold it"))
+            Refusal::at(key, "parameter_not_allowed", format!("{key} cannot be or contain null"))
         })?;
         if names_nothing(&value) {
-            let message = format!("a table that names no parameter sets none; name one of {key}");
+            let message = format!("the table contains no parameter; name a parameter of {key}");
             return Err(Refusal::at(key, "parameter_not_allowed", message));
         }
         let change =
@@ -81,24 +81,24 @@ impl Session {
         Ok(ChangedParameter { key: key.to_owned(), old, new, from_day })
     }
 
-    /// Sets a parameter again as a line tells it.
+    /// Applies a recorded parameter change again.
     ///
     /// # Errors
-    /// The line does not follow from what is before it.
+    /// The line contradicts the state before it.
     pub(crate) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
         if self.manifest.mode != Mode::Debug && self.manifest.lesson.is_none() {
-            return Err("it sets a parameter, which only a debug run can, or a lesson by itself".to_owned());
+            return Err("it sets a parameter, which only debug runs and lessons can".to_owned());
         }
         let today = self.simulation.world.day;
         if line.from_day.is_some_and(|day| day <= today) {
-            return Err(format!("it sets a parameter from a day on that has passed on day {today}"));
+            return Err(format!("it sets a parameter from a day that is not after day {today}"));
         }
         let held = self.simulation.params.value(&line.key).map_err(|error| in_words(&error))?;
         if json_of_value(&held) != line.old {
             return Err(format!("{} was not {} before it", line.key, line.old));
         }
         self.enter_parameter(seq, line);
-        let change = ParameterChange::of(seq, line).ok_or("its value is none that a parameter can have")?;
+        let change = ParameterChange::of(seq, line).ok_or("its value is not valid for a parameter")?;
         let taken = self.simulation.overrides.take(&self.simulation.params, change);
         let Taken { now, .. } = taken.map_err(|unfit| in_words(&unfit.error))?;
         self.simulation.use_params(now, self.database.entries());
@@ -106,7 +106,8 @@ impl Session {
         Ok(())
     }
 
-    /// Enters a parameter of a debug run into the journal: what a lesson sets by itself was not decided by whom it shows.
+    /// Adds a parameter change to the journal of a debug run. Changes by a lesson are omitted, because the student
+    /// did not decide them.
     fn enter_parameter(&mut self, seq: u64, line: &Override) {
         if self.manifest.mode == Mode::Debug {
             let Override { key, old, new, from_day } = line.clone();

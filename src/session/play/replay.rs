@@ -1,4 +1,4 @@
-//! Applying the lines of a trajectory again.
+//! Replay of the lines of a trajectory.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_world::params::Params;
 
 impl Session {
-    /// A session that has seen no line yet, or everything up to a snapshot's; and how many it has seen.
+    /// Creates a session on day 0, or from a snapshot. Also returns the number of lines that it includes.
     pub(crate) fn before_replay(
         manifest: Manifest,
         folder: &Path,
@@ -40,8 +40,8 @@ impl Session {
         (Session { history, surroundings, ..session }, seen)
     }
 
-    /// Applies every line again but those the session has seen; the database gets only what it does not have yet.
-    /// `reached` is told the day after each line.
+    /// Applies all lines after the first `seen`. The database receives only missing rows. `reached` is called with
+    /// the day after each line.
     pub(crate) fn replay(
         &mut self,
         path: &Path,
@@ -66,7 +66,7 @@ impl Session {
         Ok(())
     }
 
-    /// From here on rows are made, with the parameters in force.
+    /// Writes rows to this database from now on, with the parameters in force.
     fn go_on_with(&mut self, projector: Option<Projector>) {
         self.database = RunDatabase::of(projector);
         if self.simulation.overrides.is_used() {
@@ -75,12 +75,12 @@ impl Session {
         }
     }
 
-    /// Applies a line of a file again.
+    /// Applies a line of a file.
     pub(crate) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
         self.apply_line_telling(path, line, &mut |_| {})
     }
 
-    /// The same, and tells of each day that it simulates.
+    /// Like [`Session::apply_line`]; calls `tell` for each simulated day.
     pub(crate) fn apply_line_telling(
         &mut self,
         path: &Path,
@@ -129,7 +129,7 @@ impl Session {
         Ok(())
     }
 
-    /// Settles the figures of days that ran again and compares the state with the recorded one.
+    /// Completes the figures of replayed days and compares the state with the recorded one.
     fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
         let figures = self.settle_figures();
         let reached = self.closing(from, &figures, state);
@@ -141,14 +141,14 @@ impl Session {
         let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
         let differing: Vec<&str> = differing.collect();
         Err(format!(
-            "the state on day {} is not the recorded one (different: {}); a line before it was changed, or another \
+            "the state on day {} is not the recorded one (different: {}); an earlier line was changed, or another \
              version recorded it",
             self.simulation.world.day,
             differing.join(", ")
         ))
     }
 
-    /// A week that was confirmed but not finished is simulated now.
+    /// Simulates a week that was confirmed but not completed.
     pub(super) fn finish_week(&mut self, trajectory: &Trajectory) {
         let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
             Record::Advance(_) => Some(true),
@@ -159,14 +159,14 @@ impl Session {
             let week = self.run_week(&mut |_| {});
             self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
         } else if self.history.ended.is_none() && self.simulation.world.is_over(&self.simulation.params) {
-            // The program ended between the last week and the line that closes the run.
+            // The program ended between the last week and the line that ends the run.
             let remark = self.close_if_over();
             self.commit_projection();
             self.remarks.extend(remark);
         }
     }
 
-    /// Applies what was kept after the end of the run. A file that is damaged is told and left alone.
+    /// Applies the lines recorded after the end of the run. Adds a remark if their file is damaged.
     pub(crate) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
         match lines_afterwards(&folder, trajectory) {
@@ -174,11 +174,11 @@ impl Session {
                 self.log.read_answers(trajectory.lines.iter().chain(&after.lines));
                 after.lines.iter().for_each(|line| self.keep_again(line));
             }
-            Err(problem) => self.remarks.push(format!("{problem} What was done after the end is not shown.")),
+            Err(problem) => self.remarks.push(format!("{problem} Lines recorded after the end are not shown.")),
         }
     }
 
-    /// Statements that were kept and answers to requests, and nothing else: the company is as it ended.
+    /// Applies a line recorded after the end of the run. It does not affect the company.
     fn keep_again(&mut self, line: &Line) {
         match &line.record {
             Record::Query(query) => self.remember_query(query),
@@ -193,7 +193,7 @@ impl Session {
     }
 }
 
-/// The figures that stand beside a state are derived from it.
+/// Compares the figures of the closing record, which are derived from the state.
 fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
     let name = if reached.days_run != recorded.days_run {
         "days_run"
@@ -204,5 +204,5 @@ fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
     } else {
         return Ok(());
     };
-    Err(format!("the recorded {name} does not belong to the recorded state: it was changed"))
+    Err(format!("the recorded {name} does not match the recorded state: it was changed"))
 }

@@ -1,33 +1,33 @@
-//! Keeping what an open run has reached: lines, database and snapshot.
+//! Saving an open run: lines, database and snapshot.
 
 use super::Session;
 use crate::snapshot::file::{KeptState, SnapshotPlace};
 use novamind_record::error::RunError;
 
 impl Session {
-    /// Puts everything on the disk.
+    /// Saves everything.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// The disk fails.
     pub fn save(&mut self) -> Result<(), RunError> {
         self.log.sync()?;
         self.keep_snapshot(|| self.state_hash().0, true);
         Ok(self.database.wait()?)
     }
 
-    /// Keeps the present state, which has this hash, as a snapshot, and has the database take in everything up to now; a
-    /// run without a folder keeps none. A closing one vouches for the database's file too. A disk that refuses it takes
-    /// away nothing but time.
+    /// Stores the current state as a snapshot and commits the database. A run without a folder has no snapshot. With
+    /// `closing`, the snapshot also contains the digest of the database file. Disk errors are ignored: without a
+    /// snapshot, opening only takes longer.
     pub(super) fn keep_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.log.is_written()) else {
             return self.commit_projection();
         };
-        // Lines without rows move the database on, too: a snapshot ahead of it could not be used.
+        // Commit lines without rows too: a snapshot ahead of the database could not be used.
         self.commit_projection();
         self.write_snapshot_of(state_hash(), SnapshotPlace::of(folder, &self.seal_key), closing);
     }
 
-    /// Writes the present state as a snapshot. If `closing`, it vouches for the database's file.
+    /// Writes a snapshot of the current state. With `closing`, it contains the digest of the database file.
     pub(crate) fn write_snapshot(&self, place: SnapshotPlace, closing: bool) {
         self.write_snapshot_of(self.state_hash().0, place, closing);
     }

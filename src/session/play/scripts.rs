@@ -1,8 +1,8 @@
-//! What is kept with a run besides its company: calculations and scripts, and running them.
+//! Calculations and scripts of a run.
 //!
-//! Both are read-only SQL under the guard and the limits of a query, or Python that asks such queries. What is kept follows
-//! from the calls of the trajectory; what calculations said before a week stands in its `advance` line, so a resumed run
-//! shows the same dashboard, and runs nothing for it.
+//! Both are read-only SQL under the guard and the limits of a query, or Python that sends such queries. Calls in the
+//! trajectory define them. The output of calculations before a week is in its `advance` line, so a resumed run shows
+//! the same dashboard without running them.
 
 use std::time::{Duration, Instant};
 
@@ -17,15 +17,15 @@ use novamind_database::{Rows, text};
 use novamind_record::trajectory::record::{Calculated, QuerySource, Via};
 use novamind_tools::{Kept, Language, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python};
 
-/// Characters of output that a script may give.
+/// Maximum output of a script, characters.
 const MOST_OUTPUT: usize = 5000;
-/// Characters of warnings and hints that a script may give.
+/// Maximum length of warnings and hints, characters.
 const MOST_REMARKS: usize = 2000;
 
-/// What is remarked of longer output.
+/// Remark on truncated output.
 const OUTPUT_IS_CUT: &str = "stdout is cut after 5,000 characters\n";
 
-/// Adds a result as a table, and its remarks, as long as they can be shown.
+/// Appends a result as a table, and its remarks, up to the limits.
 fn add(said: &mut Said, rows: &Rows) {
     if said.results.len() <= 4 * MOST_OUTPUT {
         said.results += &text::columns(rows);
@@ -37,21 +37,20 @@ fn add(said: &mut Said, rows: &Rows) {
     }
 }
 
-/// The first characters of a text.
 fn first(text: &str, most: usize) -> String {
     text.chars().take(most).collect()
 }
 
 impl Session {
-    /// From here on no Python is started: what is called was decided elsewhere.
+    /// Prevents Python from being started, because the calls were decided elsewhere.
     pub fn keep_python_out(&mut self) {
         self.surroundings.keeps_python_out = true;
     }
 
-    /// The answer of a tool that runs a script.
+    /// Runs the script of a tool call.
     ///
     /// # Errors
-    /// `script_failed`, `script_timeout`, saying where.
+    /// `script_failed`, `script_timeout`, with the location.
     pub(super) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Refusal> {
         let time = Duration::from_secs_f64(script.seconds);
         let said = match Language::of(&script.code) {
@@ -70,13 +69,13 @@ impl Session {
         })
     }
 
-    /// Refuses Python where nobody plays.
+    /// Rejects Python unless a player makes the call.
     fn refuse_python(&self, via: Via) -> Result<(), Refusal> {
         let is_played = !matches!(via, Via::Policy | Via::Branch | Via::Lesson);
         refuse_unless_played(is_played && !self.surroundings.keeps_python_out)
     }
 
-    /// What a script in Python says. Its statements are lines of the record where they are `noted`.
+    /// Runs a script in Python. Its statements are recorded if `noted` is true.
     fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<Said, Refusal> {
         let stop = self.complete_database().and_then(RunDatabase::interrupt);
         let stop = stop.map_err(|refusal| failed(refusal.message))?;
@@ -132,8 +131,8 @@ impl Session {
         }
     }
 
-    /// Runs all calculations on the company as it is. One that fails says why and does not keep the week; all together have the
-    /// time of one query, so that a week never waits longer for them.
+    /// Runs all calculations on the current company. The output of a failed one is its error message. All
+    /// calculations together have the time limit of one query.
     pub(super) fn run_calculations(&mut self, via: Via) -> Vec<Calculated> {
         let entries = self.surroundings.notebook.statements(Kept::Calculation).entries().to_vec();
         let (most, started) = (self.company().query_limits().time, Instant::now());
@@ -143,11 +142,11 @@ impl Session {
             let said = match Language::of(&code) {
                 _ if time.is_zero() => {
                     let message =
-                        format!("the calculations before it took the {} s of a week", most.as_secs());
+                        format!("the calculations before it used the {} s of a week", most.as_secs());
                     Err(Refusal::new("script_timeout", message))
                 }
                 Language::Sql => self.run_statements(&code, time),
-                // Nobody asks what it asks.
+                // Queries of calculations are not recorded.
                 Language::Python => {
                     self.refuse_python(via).and_then(|()| self.run_python(&code, time, false))
                 }
@@ -161,7 +160,7 @@ impl Session {
         entries.into_iter().map(run).collect()
     }
 
-    /// Names the calculations in Python to whoever goes on with a run: somebody else may have registered them.
+    /// Adds a remark that lists the calculations in Python, because another user may have registered them.
     pub(super) fn name_python_calculations(&mut self) {
         let kept = self.surroundings.notebook.statements(Kept::Calculation).entries();
         let python = kept.iter().filter(|(_, code)| Language::of(code) == Language::Python);
@@ -172,7 +171,7 @@ impl Session {
         }
     }
 
-    /// Keeps or forgets what an accepted call asks for.
+    /// Applies a change to the notebook.
     pub(super) fn keep(&mut self, change: &NotebookChange) {
         self.surroundings.notebook.apply(change);
     }

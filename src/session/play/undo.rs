@@ -1,7 +1,7 @@
-//! Taking settings of this week back, and setting them again.
+//! Undo and redo of this week's settings.
 //!
-//! Both are calls like any other: they restore old values with the tool that set them, and their lines name the call
-//! that they take back or repeat. Calls that changed nothing are passed over.
+//! Both are regular calls: they restore old values with the tool that set them, and their lines name the call that
+//! they undo or redo. Calls without effect are skipped.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use novamind_record::trajectory::record::{Reversal, Via};
 use novamind_tools::{Refusal, ToolId};
 use novamind_world::settings::Settings;
 
-/// Lines of the calls that were taken back. What redo repeated has a line of its own.
+/// Returns the lines of the calls that were undone. A redo has its own line.
 pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {
     let mut undone = BTreeSet::new();
     for entry in journal {
@@ -28,23 +28,22 @@ pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {
 }
 
 impl Session {
-    /// Takes back the last call of this week that changed a setting. Returns what changed by it.
+    /// Undoes the last call of this week that changed a setting. Returns the changes.
     ///
     /// # Errors
-    /// `nothing_to_undo`, `cannot_undo` where no call can restore the old value, and the refusals of the call.
+    /// `nothing_to_undo`, `cannot_undo` if no call can restore the old value, and the rejections of the call.
     pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.history.this_week.undo.last().cloned() else {
-            let message = "no setting has changed since the last week; purchases, posts and offers cannot be \
-                           taken back";
+            let message = "no setting has changed since the last week; purchases, posts and offers cannot be undone";
             return Err(Refusal::new("nothing_to_undo", message));
         };
         self.restore(&step, via, Reversal::Undoes(step.seq))
     }
 
-    /// Sets again what the last undo of this week took back. Returns what changed by it.
+    /// Redoes the last undone call of this week. Returns the changes.
     ///
     /// # Errors
-    /// `nothing_to_redo`, and the refusals of the call.
+    /// `nothing_to_redo`, and the rejections of the call.
     pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.history.this_week.redo.last().cloned() else {
             let message = "nothing has been undone since the last setting";
@@ -62,7 +61,7 @@ impl Session {
     }
 }
 
-/// The arguments with which a tool restores settings.
+/// Returns the arguments with which a tool restores settings.
 fn restoring_arguments(
     id: ToolId,
     now: &Settings,
@@ -75,7 +74,7 @@ fn restoring_arguments(
         arguments.retain(|plan, price| held.get(plan) != Some(price));
         if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {
             let message = format!(
-                "plan {plan} had no price before this call, and a price of 0 cannot be set; set another price instead"
+                "plan {plan} had no price before this call, and a price cannot be set to 0; set another price instead"
             );
             return Err(Refusal::at(plan.clone(), "cannot_undo", message));
         }

@@ -1,5 +1,5 @@
-//! The language model of a run: asking it how readers take a post of the player, on the day after it, and for the posts of a
-//! week in other words, at its end; applying again what it said; joining a run that began with it.
+//! The language model of a run: scores of the player's posts on the day after, rewording of posts at the end of a
+//! week, replay of its answers, and connection to a reopened run.
 
 use std::path::Path;
 
@@ -23,8 +23,8 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::PostJudge;
 
 impl Session {
-    /// Asks for scores of the player's posts that are judged next and have none on record. What is not on the disk afterwards
-    /// was never said: then the built-in judge judges.
+    /// Requests scores of the player's posts that are judged next and have no recorded scores. If the scores cannot
+    /// be recorded, the built-in judge is used.
     pub(super) fn ask_readers(&mut self) {
         let is_judged = self.simulation.params.fidelity.post_judge != PostJudge::None;
         let can_ask = self.voice.speaker.is_some() || !self.voice.inherited.is_empty();
@@ -46,7 +46,7 @@ impl Session {
         Group::all().filter(|group| self.simulation.world.market.is_known(*group)).collect()
     }
 
-    /// Positions of the player's posts that nobody has judged and of which no score is on record.
+    /// Returns the positions of the player's posts that are not judged and have no recorded scores.
     fn unscored_posts(&self) -> Vec<usize> {
         let (known, simulation) = (self.known_groups(), &self.simulation);
         let own = simulation.world.market.social.own.iter().enumerate();
@@ -55,7 +55,7 @@ impl Session {
             .collect()
     }
 
-    /// Uses recorded scores for posts that are published again.
+    /// Sets recorded scores for posts that are published again.
     pub fn inherit_scores(&mut self, judged: Vec<JudgedPost>) {
         self.voice.inherited = judged;
     }
@@ -109,7 +109,7 @@ impl Session {
         self.note(Record::Voice(VoiceAnswer::Failed(FailedAnswer { asked, problem, took_ms })));
     }
 
-    /// Asks for the newest posts after a day in other words. Without an answer all of them keep the words they have.
+    /// Requests other words for the newest posts after a day. Without a usable answer, the posts keep their texts.
     pub(super) fn word_days_after(&mut self, day: u32) {
         let Some(speaker) = self.voice.speaker.as_mut().filter(|speaker| speaker.settings.words) else {
             return;
@@ -137,7 +137,7 @@ impl Session {
         }
     }
 
-    /// Shows posts in these words from now on.
+    /// Replaces the texts of posts.
     fn take_words(&mut self, posts: &[WordedPost]) {
         for WordedPost { post, text } in posts {
             self.simulation.feed.reword(*post, text);
@@ -146,20 +146,20 @@ impl Session {
         self.database.entries().write(|| Entry { rewordings: rewordings(), ..Entry::default() });
     }
 
-    /// Applies a `voice` line again.
+    /// Applies a `voice` line.
     ///
     /// # Errors
-    /// The run has no model that could have said it, or none could have.
+    /// The line is not possible: the run has no language model for it, or no model could have produced it.
     pub(crate) fn replay_voice(&mut self, said: &VoiceAnswer) -> Result<(), String> {
         let Some(model) = &self.manifest.voice else {
-            return Err("the run has no language model: the line was put in".to_owned());
+            return Err("the run has no language model: the line was inserted".to_owned());
         };
         match said {
             VoiceAnswer::Scores(judged) => {
                 let fits =
                     model.judge && judged.scores.iter().all(|score: &ModelScore| score.check().is_ok());
                 if !fits {
-                    return Err("no language model of this run can have given these scores".to_owned());
+                    return Err("the language model of this run cannot have given these scores".to_owned());
                 }
                 self.simulation.scores.take_in(judged.clone());
             }
@@ -169,7 +169,7 @@ impl Session {
                 let mut posts = worded.posts.iter();
                 let fits = posts.all(|own| is_there(own.post) && wording::check(&own.text).is_ok());
                 if !(model.words && fits) {
-                    return Err("no language model of this run can have said these words".to_owned());
+                    return Err("the language model of this run cannot have written these texts".to_owned());
                 }
                 self.take_words(&worded.posts);
                 self.commit_projection();
@@ -179,7 +179,7 @@ impl Session {
         Ok(())
     }
 
-    /// Opens a run to go on with it, with its language model if the configuration names that.
+    /// Opens a run to continue it, with its language model if the configuration names it.
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -189,8 +189,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Lets a language model speak in a run that began with it; where it cannot, a remark says so and the built-in voice goes
-    /// on.
+    /// Connects the language model of the run. If that fails, adds a remark, and the built-in voice is used.
     pub fn join_model(&mut self, named: Option<&ModelSettings>) {
         if self.history.ended.is_some() || !self.log.is_written() {
             return;
@@ -199,13 +198,13 @@ impl Session {
             (None, None) => return,
             (None, Some(_)) => {
                 self.remarks.push(
-                    "This run began with the built-in voice and keeps it: --voice is not used.".to_owned(),
+                    "This run started with the built-in voice and keeps it: --voice is ignored.".to_owned(),
                 );
                 return;
             }
-            (Some(_), None) => "name its file with --voice to hear it".to_owned(),
+            (Some(_), None) => "to use it, name its file with --voice".to_owned(),
             (Some(model), Some(named)) if named.stamp() != *model => {
-                format!("--voice names another: {}", named.stamp().in_words())
+                format!("--voice names another model: {}", named.stamp().in_words())
             }
             (Some(_), Some(named)) => match Speaker::open(named) {
                 Ok(speaker) => {
@@ -217,11 +216,11 @@ impl Session {
         };
         let model = self.manifest.voice.as_ref().map(|model| model.in_words()).unwrap_or_default();
         self.remarks.push(format!(
-            "In this run {model}; from here on the built-in voice does ({problem}). What the model said is kept."
+            "In this run {model}; from now on the built-in voice does ({problem}). Existing texts and scores are kept."
         ));
     }
 
-    /// The settings of the language model that can be asked.
+    /// Returns the settings of the connected language model.
     pub fn model_settings(&self) -> Option<&ModelSettings> {
         self.voice.speaker.as_ref().map(|speaker| &speaker.settings)
     }

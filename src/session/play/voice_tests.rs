@@ -1,4 +1,4 @@
-//! A model speaks, is late, is broken or gone: what is recorded, what replays, what the player is told.
+//! Tests of a language model that works, is late, fails or is missing: record, replay and remarks.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -27,7 +27,7 @@ fn new_run(runs: &Path, mode: Mode) -> NewRun {
     NewRun { seed: Some(7), days: Some(60), mode, participant, storage, ..NewRun::default() }
 }
 
-/// A company that has customers.
+/// Starts a company with customers.
 fn begun(runs: &Path, configuration: &Configuration) -> Session {
     let mut session = Session::create(new_run(runs, Mode::Sandbox), configuration).expect("a run");
     for (tool, arguments) in [
@@ -46,13 +46,13 @@ fn post(session: &mut Session) {
     session.call("post_social_media", &json!({ "content": POST }), Via::Script).expect("a post");
 }
 
-/// Lets a week pass; returns what the player is told besides.
+/// Simulates a week. Returns the remark.
 fn week(session: &mut Session) -> Option<String> {
     let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").remark
 }
 
-/// Three weeks, with a post before the second.
+/// Simulates three weeks, with a post before the second.
 fn played(runs: &Path, configuration: &Configuration) -> (Session, Vec<Option<String>>) {
     let mut session = begun(runs, configuration);
     let mut told = vec![week(&mut session)];
@@ -74,7 +74,7 @@ fn shown(session: &Session) -> Vec<String> {
     session.company().posts().iter().map(|post| post.content.clone()).collect()
 }
 
-/// The texts of posts as the database has them.
+/// Returns the texts of posts in the database.
 fn queried(session: &mut Session) -> Vec<String> {
     let rows = session.query("SELECT content FROM social_media_posts ORDER BY post_id").expect("rows").rows;
     let text = |row: Vec<Cell>| match row.into_iter().next() {
@@ -109,7 +109,7 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
         answers.iter().filter(|said| matches!(said, VoiceAnswer::Scores(judged) if judged.post == 1));
     assert_eq!(scored.count(), 1);
     let asked = stub.asked();
-    assert_eq!(asked.len(), answers.len(), "one question for each answer");
+    assert_eq!(asked.len(), answers.len(), "one request for each answer");
     let all = serde_json::to_string(&asked).expect("JSON");
     assert!(asked.iter().all(|own| own["model"] == "stub") && !all.contains("satisfaction"), "{all}");
     session.save().expect("saved");
@@ -123,14 +123,14 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
     }
     let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!((again.state_hash().0, shown(&again)), (hash, words.clone()));
-    assert_eq!(queried(&mut again), words, "the database is made of what was said");
+    assert_eq!(queried(&mut again), words, "the database contains the recorded texts");
     again.join_model(None);
     assert!(
         again.remarks().iter().any(|remark| remark.contains("stub at 127.0.0.1")),
         "{:?}",
         again.remarks()
     );
-    assert_eq!(week(&mut again), None, "the built-in voice goes on");
+    assert_eq!(week(&mut again), None, "the built-in voice continues");
     again.save().expect("saved");
     drop(again);
     verify(&folder).expect("it replays");
@@ -165,7 +165,7 @@ fn a_model_that_does_not_serve_changes_nothing_and_is_told_of_once() {
         let stub = Stub::start(manner);
         let started = Instant::now();
         let (session, told) = played(runs.path(), &stub.named(true, true, 1));
-        assert!(started.elapsed() < Duration::from_secs(20), "a week waits a second");
+        assert!(started.elapsed() < Duration::from_secs(20), "a week waits one second at most");
         assert_eq!(session.state_hash(), plain.state_hash(), "{manner:?}");
         assert_eq!(shown(&session), shown(&plain), "{manner:?}");
         let notices: Vec<&String> = told.iter().flatten().collect();
@@ -177,7 +177,7 @@ fn a_model_that_does_not_serve_changes_nothing_and_is_told_of_once() {
         assert!(is_of(AskedOfModel::Scores) && is_of(AskedOfModel::Words), "{failed:?}");
         verify(&folder_of(&session)).expect("it replays");
     }
-    // Nobody answers at all.
+    // The server is gone.
     let gone = Stub::start(Manner::Well).named(true, true, 1);
     let (session, told) = played(runs.path(), &gone);
     assert_eq!(session.state_hash(), plain.state_hash());

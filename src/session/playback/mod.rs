@@ -1,7 +1,7 @@
-//! A recorded run, played again: its company at any moment, read-only, with what was decided there.
+//! Playback of a recorded run: its company at any position, read-only, with the decisions made there.
 //!
-//! The lines of the trajectory are applied one after the other to a session of its own, whose database is in memory;
-//! nothing on the disk changes. Forward means more lines for the same session, backward a new one from the start.
+//! Lines of the trajectory are applied to a separate session with a database in memory; nothing on disk changes.
+//! Seeking forward applies more lines, seeking back starts a new session.
 
 pub(crate) mod position;
 pub(crate) mod record_view;
@@ -21,20 +21,20 @@ use novamind_record::trajectory::record::{Ended, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;
 
-/// A line that closes a week or single steps.
+/// The end of a week or of single days.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stop {
-    /// Lines up to it, with the end of the run if that follows at once.
+    /// Number of lines up to it, including the end of the run if it follows directly.
     after: usize,
     day: u32,
     cash: f64,
 }
 
-/// A recorded run, played again.
+/// Playback of a recorded run.
 pub struct Playback {
     origin: Origin,
     trajectory: Trajectory,
-    /// Lines that can be applied: all, unless one of them turned out wrong.
+    /// Number of lines that can be applied: all, unless one does not reproduce.
     good: usize,
     stops: Vec<Stop>,
     session: Session,
@@ -43,10 +43,10 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// Opens the run of a folder, or a trajectory file, at its beginning.
+    /// Opens the run in a folder, or a trajectory file, at its start.
     ///
     /// # Errors
-    /// It is missing, damaged or of another version; the error names the place and what is safe.
+    /// The run is missing, damaged or of another version. The error names the file and what is safe.
     pub fn open(path: &Path) -> Result<Playback, RunError> {
         let (origin, trajectory) = read(path)?;
         let session = origin.begin()?;
@@ -58,35 +58,35 @@ impl Playback {
         Ok(playback)
     }
 
-    /// The lines that can be played, the first of the run included.
+    /// Returns the lines that can be applied, including the first.
     pub fn lines(&self) -> &[Line] {
         &self.trajectory.lines[..self.good]
     }
 
-    /// From now on new lines are awaited.
+    /// Starts to wait for new lines.
     pub fn follow(&mut self) {
         self.follows = !self.is_recorded_to_the_end();
     }
 
-    /// Whether new lines are awaited.
+    /// Whether the playback waits for new lines.
     pub fn follows(&self) -> bool {
         self.follows
     }
 
-    /// The company of this moment; it cannot be acted on.
+    /// Returns the session at this position; it is read-only.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// The same, for what needs it changeable: asking the database.
+    /// Returns the session mutably, for queries.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
     }
 
-    /// Goes somewhere. Going back is done with a new session beside the one that is shown, so that it can be stopped.
+    /// Seeks a target. Seeking back uses a new session, so that it can be stopped without an effect.
     ///
     /// # Errors
-    /// A line does not lead to the recorded state: the playback stands before it, and never goes beyond.
+    /// A line does not reproduce the recorded state. The playback then ends before this line.
     pub fn go(
         &mut self,
         goal: Goal,
@@ -96,7 +96,7 @@ impl Playback {
         let before = self.good;
         let went = if line < self.applied { self.back(line, progress) } else { self.forward(line, progress) };
         if went.is_err() && self.good < before {
-            // The session has taken a line that is wrong: only a new one is as it was before it.
+            // The session has applied the invalid line: restore the state before it with a new session.
             self.back(self.stop_before(self.good), &mut |_| ControlFlow::Continue(()))?;
         }
         went
@@ -127,7 +127,7 @@ impl Playback {
         self.stops.iter().rfind(|stop| stop.after <= line).map_or(1, |stop| stop.after)
     }
 
-    /// Applies further lines; whatever was applied when it is stopped stays.
+    /// Applies further lines. If stopped, keeps the lines applied so far.
     fn forward(
         &mut self,
         line: usize,
@@ -139,7 +139,7 @@ impl Playback {
         self.end(end)
     }
 
-    /// Goes to an earlier line with a session that begins before it.
+    /// Seeks an earlier line with a new session.
     fn back(
         &mut self,
         line: usize,
@@ -156,8 +156,7 @@ impl Playback {
         Ok(SeekResult::Anew)
     }
 
-    /// A session that stands before the line looked for, and the lines it holds: the beginning. Whatever is stored of
-    /// later moments may come in here.
+    /// Returns a session before any target line, and the number of lines that it includes.
     fn session_before(&self) -> Result<(Session, usize), RunError> {
         self.origin.begin().map(|session| (session, 0))
     }
@@ -173,7 +172,7 @@ impl Playback {
         }
     }
 
-    /// Takes lines that were written since. True if there are any.
+    /// Reads lines that were written since. Returns whether there are any.
     ///
     /// # Errors
     /// The file cannot be read, or its new lines are damaged.
@@ -204,7 +203,7 @@ impl Playback {
         Ok(self.good > before)
     }
 
-    /// Whether the playback stands after the last line.
+    /// Whether the playback is after the last line.
     pub fn at_end(&self) -> bool {
         self.applied == self.good
     }
@@ -213,8 +212,7 @@ impl Playback {
         self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
-    /// Whether hidden state of the recorded run may be shown, though this moment of it is not its end: what the record says
-    /// counts.
+    /// Whether hidden state of the recorded run may be shown. The end of the record counts, not the position.
     pub fn may_look_inside(&self) -> bool {
         let Origin { manifest, folder, .. } = &self.origin;
         let is_over = || self.is_recorded_to_the_end() && is_lesson_over(folder.as_deref(), manifest);
@@ -229,7 +227,7 @@ impl Playback {
                 Record::Week(closing) | Record::Step(closing) => {
                     self.stops.push(Stop { after, day: line.day, cash: closing.cash });
                 }
-                // Days that were the last are shown with the end they brought.
+                // The last days and the end of the run are one position.
                 Record::End(_) => {
                     if let Some(stop) = self.stops.last_mut().filter(|stop| stop.after + 1 == after) {
                         stop.after = after;
@@ -240,7 +238,7 @@ impl Playback {
         }
     }
 
-    /// Where it is, and what was decided there.
+    /// Returns the position and the decisions made there.
     pub fn place(&self) -> PlaybackPosition {
         let recorded_day = self.stops.last().map_or(0, |stop| stop.day);
         PlaybackPosition {
@@ -257,7 +255,7 @@ impl Playback {
         }
     }
 
-    /// What was decided before the next week; where none follows, what was decided last.
+    /// Returns the decisions before the next week, or before the last one at the end.
     fn chapter(&self) -> Chapter {
         let last = self.trajectory.lines.len();
         let at_end = self.stops.last().is_some_and(|stop| stop.after == last && self.applied == last);
@@ -275,7 +273,7 @@ impl Playback {
         }
     }
 
-    /// Cash on a day, also on one that is still to come, where that is recorded.
+    /// Returns cash on a day, including later days if they are recorded.
     fn outcome(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
             return self.session.cash_by_day().get(day as usize).copied();
@@ -283,8 +281,7 @@ impl Playback {
         self.stops.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }
 
-    /// The notes of the run as they were at this moment. Lines of format 1 do not hold them: their notes are known only
-    /// where they are the last.
+    /// Returns the notes at this position. Lines of format 1 do not contain them, so only the last notes are known.
     pub fn memo(&self) -> Option<String> {
         let lines = self.trajectory.lines[..self.applied].iter().rev();
         let kept = lines.map(|line| &line.record).find(|record| record.notes_digest().is_some())?;
@@ -301,13 +298,13 @@ impl Playback {
         }
         let unfinished = !self.is_recorded_to_the_end();
         (self.origin.manifest.mode == Mode::Baseline && unfinished).then(|| {
-            let message = "an unfinished baseline run cannot be branched, so that nobody can look into its \
-                           future and come back: end it first (novamind runs end)";
+            let message = "an unfinished baseline run cannot be branched, because that would reveal its future: end it \
+                           first (novamind runs end)";
             Refusal::new("not_in_this_mode", message)
         })
     }
 
-    /// Takes over here: a new run that shares everything up to this moment, open to go on with.
+    /// Creates a branch with all lines up to this position and opens it.
     ///
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `not_possible`, `run_over`, `not_saved`.
@@ -316,15 +313,15 @@ impl Playback {
             (None, Some(folder)) => folder,
             (refusal, _) => return Err(refusal.unwrap_or_else(stands_alone)),
         };
-        // What was given up can be gone on with; what reached its end cannot.
+        // An abandoned run can be continued in a branch; a run that reached its end cannot.
         if self.session.ended().is_some() && self.session.ended() != Some(Ended::Abandoned) {
-            let message = "nothing comes after this moment: go back to a week first";
+            let message = "the run has ended at this position: go back to a week first";
             return Err(Refusal::new("run_over", message));
         }
         crate::resume::branch::branch_of(folder, &self.origin.manifest, &self.shared(), mode)
     }
 
-    /// The lines up to here without a week that was about to run: that decision is taken anew.
+    /// Returns the lines up to this position, without a week that was submitted but not simulated.
     fn shared(&self) -> Vec<Line> {
         let mut lines = self.trajectory.lines[..self.applied].to_vec();
         if let Some(last) = lines.iter().rposition(|line| matches!(line.record, Record::Advance(_))) {
@@ -339,11 +336,11 @@ impl Playback {
 
 fn stands_alone() -> Refusal {
     let message =
-        "this trajectory stands alone, without the folder of its run: import the run to take it over";
+        "this trajectory has no run folder: import the run to branch it";
     Refusal::new("not_possible", message)
 }
 
-/// Applies lines after those that were applied; returns how many are applied then, and how it ended.
+/// Applies lines after the first `applied`. Returns the number of applied lines, and how it ended.
 fn apply(
     session: &mut Session,
     path: &Path,

@@ -1,67 +1,67 @@
-//! Where a playback is, and where it can be sent.
+//! Positions and seek targets of a playback.
 
 use super::record_view::RecordView;
 
-/// Where a playback is to go.
+/// The target of a seek.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Goal {
     /// Before the first action.
     First,
     /// After the last line.
     Last,
-    /// So many weeks on, or back if negative. Single steps of debug runs count for themselves.
+    /// This number of weeks forward, or back if negative. Single steps of debug runs count as weeks.
     Weeks(i32),
-    /// So many lines on, or back if negative.
+    /// This number of lines forward, or back if negative.
     Lines(i32),
-    /// After a week, by its number; 0 is the beginning.
+    /// The end of a week, by number; 0 is the start.
     Week(u32),
 }
 
-/// What became of going somewhere.
+/// The result of a seek.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeekResult {
-    /// It is there.
+    /// The target was reached.
     There,
-    /// It is there with a new session: connections to the old one's database show nothing new.
+    /// The target was reached with a new session; connections to the old database are stale.
     Anew,
-    /// It was stopped on the way; what was reached is shown, and going back leaves everything where it was.
+    /// The seek was stopped. Forward, the reached position is kept; back, the old position is kept.
     Stopped,
 }
 
-/// Where a playback is.
+/// The position of a playback.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlaybackPosition {
-    /// Lines that were applied.
+    /// Number of applied lines.
     pub line: usize,
-    /// Lines that there are.
+    /// Number of lines.
     pub lines: usize,
-    /// Day of the company.
+    /// Day of the run.
     pub day: u32,
-    /// Weeks that have passed.
+    /// Number of weeks that have passed.
     pub week: u32,
-    /// Last day that was recorded.
+    /// Last recorded day.
     pub recorded_day: u32,
-    /// Weeks that were recorded.
+    /// Number of recorded weeks.
     pub weeks: u32,
-    /// New lines are awaited: somebody else is playing.
+    /// Whether the playback waits for new lines of a running session.
     pub follows: bool,
-    /// Nothing comes after this moment.
+    /// Whether the playback is after the last line.
     pub at_end: bool,
-    /// What was decided before the next week, or before the last one at the end.
+    /// Decisions before the next week, or before the last one at the end.
     pub chapter: Chapter,
-    /// Why the run cannot be taken over here.
+    /// Reason why the run cannot be branched here.
     pub no_branch: Option<String>,
 }
 
-/// What was decided before a week.
+/// Decisions before a week.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chapter {
     /// Number of the week, from 1.
     pub week: u32,
     /// Decision day.
     pub day: u32,
-    /// What was done, in order, up to the line that closes the week.
+    /// Lines up to the end of the week, in order.
     pub entries: Vec<RecordView>,
-    /// How many of them were applied: the others are still to come.
+    /// Number of these lines that are applied.
     pub done: usize,
 }

@@ -1,28 +1,28 @@
-//! A line of a trajectory as somebody looks back at it: what it says, and what came of its forecasts.
+//! A recorded line with the outcomes of its forecasts.
 
 use crate::figures::scored_forecast::ScoredForecast;
 use novamind_record::trajectory::{Line, Record};
 use novamind_tools::Forecast;
 
-/// A line, and what is known by now of what it foresaw.
+/// A line with the outcomes of its forecasts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordView {
     /// Number of the line.
     pub seq: u64,
     /// Day of the run.
     pub day: u32,
-    /// When it was written, RFC 3339.
+    /// Time of writing, RFC 3339.
     pub at: String,
-    /// What it says.
+    /// The record.
     pub record: Record,
-    /// Its forecasts. Their outcomes are taken from the whole record, also those that nobody knew at the moment.
+    /// Its forecasts, with outcomes from the complete record, including later ones.
     pub forecasts: Vec<ScoredForecast>,
-    /// The day from which is looked back: what came after it was not known yet.
+    /// Current day of the playback; later outcomes were not known on this day.
     pub today: u32,
 }
 
 impl RecordView {
-    /// A line as it is seen on a day. `outcome` knows cash on a day, where that is recorded.
+    /// Creates the view of a line. `outcome` returns cash on a day, if it is recorded.
     pub(crate) fn of(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
         let scored = |forecast: Forecast| {
             let open = ScoredForecast { forecast, day: line.day, outcome: None };
@@ -36,7 +36,7 @@ impl RecordView {
         RecordView { seq, day, at, record, forecasts, today }
     }
 
-    /// Whether nobody knew yet what came of a forecast.
+    /// Whether the outcome of a forecast was unknown on the current day.
     pub fn is_later(&self, forecast: &ScoredForecast) -> bool {
         forecast.due() > self.today
     }

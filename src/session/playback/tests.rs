@@ -1,4 +1,4 @@
-//! Played again: every week has the recorded state, in every direction, and the disk stays as it was.
+//! Tests of playback: every seek reaches the recorded state, and nothing on disk changes.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,14 +14,14 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{Call, Outcome, Via};
 use novamind_record::trajectory::{Durability, Record};
 
-/// A run that was recorded into a folder.
+/// A recorded run in a folder.
 pub(crate) struct Recorded {
     _runs: tempfile::TempDir,
     pub folder: PathBuf,
     pub id: String,
 }
 
-/// A run of some weeks, with calls, a refusal, a question, notes and a look at a screen; closed.
+/// Records a run with calls, a rejection, a query, notes and a view of a screen, and closes it.
 pub(crate) fn recorded(mode: Mode, weeks: u32) -> Recorded {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play(runs.path(), mode, weeks);
@@ -60,7 +60,7 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
     session
 }
 
-/// Every file of a folder with what it holds.
+/// Reads all files of a folder.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     entries.map(|path| (path.clone(), std::fs::read(path).expect("a file"))).collect()
@@ -70,7 +70,7 @@ fn go(playback: &mut Playback, goal: Goal) -> SeekResult {
     playback.go(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
 }
 
-/// Hashes that the trajectory recorded, by day.
+/// Returns the recorded state hashes by day.
 fn hashes(folder: &Path) -> BTreeMap<u32, String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
     let hash = |line: &Line| Some((line.day, line.record.closing()?.state_hash.clone()));
@@ -98,7 +98,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     assert_eq!(
         playback.session().ended(),
         Some(novamind_record::trajectory::record::Ended::Horizon),
-        "the end comes with its week"
+        "the end of the run belongs to its last week"
     );
     assert!(playback.at_end());
     for week in [4, 3] {
@@ -120,7 +120,7 @@ fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
     go(&mut playback, Goal::First);
     assert_eq!(playback.place().line, 1);
     drop(playback);
-    assert_eq!(files(&run.folder), before, "something on the disk was changed");
+    assert_eq!(files(&run.folder), before, "a file changed");
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn single_actions_show_the_company_between_the_weeks() {
     assert_eq!(price(&playback), Some(0.0));
     go(&mut playback, Goal::Lines(5));
     assert!(matches!(playback.place().chapter.entries[4].record, Record::Advance(_)));
-    assert_eq!(playback.session().day(), 0, "the week is filed, but has not run");
+    assert_eq!(playback.session().day(), 0, "the week is submitted, but not simulated");
     go(&mut playback, Goal::Lines(1));
     assert_eq!((playback.session().day(), playback.place().chapter.done), (7, 0));
 }
@@ -205,7 +205,7 @@ fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
     assert_eq!(
         branch.company().current("set_daily_spend")["operations"],
         10.0,
-        "this week's first call is in it"
+        "the branch includes this week's first call"
     );
     assert_eq!(branch.manifest().parent.as_ref().map(|parent| parent.run.as_str()), Some(run.id.as_str()));
     let forecasts = branch.company().naive_forecasts();
@@ -213,7 +213,7 @@ fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
     let folder = branch.folder().expect("a folder").to_owned();
     drop(branch);
     assert_eq!(verify(&folder).expect("an intact run").day, 21);
-    // A week that was filed and has not run is decided anew.
+    // A week that was submitted but not simulated is not part of the branch.
     go(&mut playback, Goal::First);
     go(&mut playback, Goal::Lines(5));
     assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
@@ -255,7 +255,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut played = play(runs.path(), Mode::Sandbox, 2);
     let folder = played.folder().expect("a folder").to_owned();
-    let mut playback = Playback::open(&folder).expect("it opens beside the writer");
+    let mut playback = Playback::open(&folder).expect("it opens while the run is being written");
     playback.follow();
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().day(), 14);
@@ -264,7 +264,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     assert!(playback.look_for_more().expect("no problem"));
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().company().current("set_prices")["A"], 15.0);
-    // A line that is half written is not there yet.
+    // A partial line is ignored.
     let path = folder.join("trajectory.jsonl");
     let whole = std::fs::read(&path).expect("a trajectory");
     let forecasts: Forecasts = played.company().naive_forecasts();
@@ -285,7 +285,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
 fn a_state_that_is_not_reached_again_stops_before_it() {
     let run = recorded(Mode::Sandbox, 4);
     let path = run.folder.join("trajectory.jsonl");
-    // A chain that holds and tells something else: the price of the first call, chained anew.
+    // Creates a valid hash chain with a changed call.
     let read = Trajectory::read(&path).expect("a trajectory");
     let mut lines = read.lines.clone();
     let last_call = lines.iter_mut().rev().find_map(|line| match &mut line.record {
@@ -307,5 +307,5 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
     assert!(reached == 21, "{reached}");
     assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
     go(&mut playback, Goal::Last);
-    assert_eq!(playback.session().day(), 21, "it never goes beyond");
+    assert_eq!(playback.session().day(), 21, "the playback does not pass it");
 }

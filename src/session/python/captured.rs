@@ -1,4 +1,4 @@
-//! What a process writes: read to its end, whatever it is, and kept as far as it is shown.
+//! Captured output of a process: reads everything, keeps the start and the end.
 
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read};
@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Bytes that are kept of the beginning: 5,000 characters, however long they are.
+/// Bytes kept from the start: 5,000 characters of at most 4 bytes.
 const FIRST: usize = 4 * 5000;
-/// Bytes that are kept of the end.
+/// Bytes kept from the end: 2,000 characters of at most 4 bytes.
 const LAST: usize = 4 * 2000;
 
-/// The beginning and the end of what was written.
+/// The start and the end of the output.
 #[derive(Debug, Default)]
 struct Kept {
     first: Vec<u8>,
@@ -30,7 +30,7 @@ impl Kept {
     }
 }
 
-/// A pipe that a thread reads.
+/// The output of a pipe, read by a thread.
 #[derive(Debug)]
 pub(super) struct Captured {
     kept: Arc<Mutex<Kept>>,
@@ -38,33 +38,33 @@ pub(super) struct Captured {
 }
 
 impl Captured {
-    /// Begins to read.
+    /// Starts to read.
     ///
     /// # Errors
-    /// The system has no thread left.
+    /// The system cannot create a thread.
     pub fn of(pipe: impl Read + Send + 'static) -> std::io::Result<Captured> {
         let kept = Arc::<Mutex<Kept>>::default();
         let (tell, end) = channel();
         let own = Arc::clone(&kept);
         thread::Builder::new().name("script output".to_owned()).spawn(move || {
             read(pipe, &own);
-            // Nobody waits for the output of a script that was given up.
+            // Fails if the script was terminated and nothing waits for its output.
             let _ = tell.send(());
         })?;
         Ok(Captured { kept, end })
     }
 
-    /// Waits for the end of the pipe; whether it came in this time.
+    /// Waits for the end of the pipe. Returns whether it came in time.
     pub fn ends_within(&self, time: Duration) -> bool {
         self.end.recv_timeout(time) != Err(RecvTimeoutError::Timeout)
     }
 
-    /// What was written first.
+    /// Returns the start of the output.
     pub fn first(&self) -> String {
         String::from_utf8_lossy(&lock(&self.kept).first).into_owned()
     }
 
-    /// The last characters that were written.
+    /// Returns the last `most` characters of the output.
     pub fn last(&self, most: usize) -> String {
         let bytes: Vec<u8> = lock(&self.kept).last.iter().copied().collect();
         let text = String::from_utf8_lossy(&bytes);

@@ -1,4 +1,5 @@
-//! The socket between the session and a script: requests come up, answers go down, a line of JSON each.
+//! The socket between session and script: one JSON value per line, requests from the script and answers from the
+//! session.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
@@ -11,41 +12,41 @@ use serde_json::Value;
 
 use super::ScriptRequest;
 
-/// A request may have this many bytes.
+/// Maximum size of a request, bytes.
 const MOST_REQUEST: usize = 1 << 20;
-/// Time between two attempts to write to a socket that is full.
+/// Time between two attempts to write to a full socket.
 const BETWEEN_WRITES: Duration = Duration::from_millis(2);
 
-/// What came up.
+/// The result of waiting for a request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Heard {
-    /// A request; none if the line is none.
+    /// A request; `None` if the line is not valid.
     Request(Option<ScriptRequest>),
-    /// Nothing yet.
+    /// No complete line yet.
     Nothing,
-    /// Nothing any more.
+    /// The other end is closed.
     End,
 }
 
-/// The end of the socket that the session holds.
+/// The session's end of the socket.
 #[derive(Debug)]
 pub(super) struct Channel {
     socket: UnixStream,
-    /// What came up and is no whole line yet.
+    /// Start of an incomplete line.
     begun: Vec<u8>,
 }
 
 impl Channel {
-    /// A channel, and the end of it that a process gets.
+    /// Creates a channel, and the end for the process.
     ///
     /// # Errors
-    /// The system has no socket left.
+    /// The system cannot create a socket.
     pub fn pair() -> std::io::Result<(Channel, OwnedFd)> {
         let (socket, other) = UnixStream::pair()?;
         Ok((Channel { socket, begun: Vec::new() }, OwnedFd::from(other)))
     }
 
-    /// Waits at most this long for a request.
+    /// Waits for a request, at most `time`.
     pub fn hear(&mut self, time: Duration) -> Heard {
         if let Some(request) = self.whole_line() {
             return Heard::Request(request);
@@ -73,14 +74,14 @@ impl Channel {
         Some(serde_json::from_slice(&line).ok())
     }
 
-    /// Sends a line. Asks `is_over` before each attempt to write, so a reader cannot delay the end, however slowly it reads. After
+    /// Sends a line. Calls `is_over` before each attempt to write, so that a slow reader cannot delay the end. After
     /// an error nothing more can be sent.
     ///
     /// # Errors
-    /// The other end is closed; `TimedOut` if it was over before everything was sent.
+    /// The other end is closed, or `TimedOut` if `is_over` returned true before everything was sent.
     pub fn say(&mut self, message: &Value, is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
         let line = format!("{message}\n");
-        // The timeout of a blocking socket starts again with every part that was written.
+        // The timeout of a blocking socket restarts after every partial write.
         self.socket.set_nonblocking(true)?;
         let sent = self.send(line.as_bytes(), is_over);
         self.socket.set_nonblocking(false)?;
@@ -102,14 +103,14 @@ impl Channel {
         Ok(())
     }
 
-    /// Hangs up: whoever waits for an answer learns that none will come.
+    /// Closes the socket, so that the script does not wait for an answer.
     pub fn close(&self) {
-        // It may be closed already.
+        // The other end may have closed it already.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }
 
-/// A socket waits without end for no time at all.
+/// A socket timeout of zero would wait forever.
 fn at_least(time: Duration) -> Duration {
     time.max(Duration::from_millis(1))
 }

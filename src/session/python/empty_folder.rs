@@ -1,4 +1,4 @@
-//! The folder that a script works in: new, empty, gone afterwards.
+//! The temporary working folder of a script.
 
 use std::fs::DirBuilder;
 use std::io::ErrorKind;
@@ -8,21 +8,21 @@ use std::sync::Once;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// What the folders begin with.
+/// Prefix of the folder names.
 const NAME: &str = "novamind-script-";
 
-/// No script lives nearly as long: a folder that was not touched since was left by a program that was killed.
+/// Age after which a folder was left by a killed program: no script runs as long.
 const LEFT_BEHIND: Duration = Duration::from_secs(60 * 60);
 
-/// A folder of its own for as long as this lives.
+/// An empty temporary folder; removed on drop.
 #[derive(Debug)]
 pub(super) struct EmptyFolder(PathBuf);
 
 impl EmptyFolder {
-    /// Makes one among the temporary files.
+    /// Creates a folder among the temporary files.
     ///
     /// # Errors
-    /// It cannot be made there.
+    /// The folder cannot be created.
     pub fn create() -> std::io::Result<EmptyFolder> {
         static MADE: AtomicU32 = AtomicU32::new(0);
         static SWEPT: Once = Once::new();
@@ -33,20 +33,20 @@ impl EmptyFolder {
             let path = place.join(format!("{NAME}{}-{number}", std::process::id()));
             match DirBuilder::new().mode(0o700).create(&path) {
                 Ok(()) => return Ok(EmptyFolder(path)),
-                // A program that was killed left it.
+                // A killed program with the same process id left it.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// Where it is.
+    /// Returns its path.
     pub fn path(&self) -> &Path {
         &self.0
     }
 }
 
-/// Removes what killed programs have left; what belongs to somebody else cannot be removed, and stays.
+/// Removes folders left by killed programs, as far as permissions allow.
 fn sweep(place: &Path, left_behind: Duration) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let is_ours = entry.file_name().to_string_lossy().starts_with(NAME);
@@ -60,7 +60,7 @@ fn sweep(place: &Path, left_behind: Duration) {
 
 impl Drop for EmptyFolder {
     fn drop(&mut self) {
-        // What cannot be removed is an empty folder among temporary files.
+        // A remaining empty folder among temporary files does no harm.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -77,7 +77,7 @@ mod tests {
         }
         std::fs::write(place.path().join("novamind-script-3-0"), "a file").expect("a file");
         sweep(place.path(), LEFT_BEHIND);
-        assert_eq!(std::fs::read_dir(place.path()).expect("a folder").count(), 5, "they are young");
+        assert_eq!(std::fs::read_dir(place.path()).expect("a folder").count(), 5, "new folders are kept");
         std::thread::sleep(Duration::from_millis(5));
         sweep(place.path(), Duration::ZERO);
         let names = std::fs::read_dir(place.path()).expect("a folder").flatten();

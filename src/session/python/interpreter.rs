@@ -1,4 +1,4 @@
-//! Which Python runs a script.
+//! The Python interpreter of scripts.
 
 use std::ffi::OsString;
 use std::io::{Error, ErrorKind};
@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use novamind_record::mode::Mode;
 
-/// Where baseline runs look for Python, in this order. On macOS `/usr/bin/python3` may be a stub that opens an installer.
+/// Locations of Python for baseline runs, in this order. On macOS `/usr/bin/python3` may be a stub that opens an
+/// installer.
 #[cfg(target_os = "macos")]
 const SYSTEM_PYTHONS: [&str; 5] = [
     "/Library/Developer/CommandLineTools/usr/bin/python3",
@@ -15,14 +16,14 @@ const SYSTEM_PYTHONS: [&str; 5] = [
     "/usr/local/bin/python3",
     "/opt/local/bin/python3",
 ];
-/// Where baseline runs look for Python, in this order.
+/// Locations of Python for baseline runs, in this order.
 #[cfg(not(target_os = "macos"))]
 const SYSTEM_PYTHONS: [&str; 4] =
     ["/usr/bin/python3", "/usr/local/bin/python3", "/run/current-system/sw/bin/python3", "/opt/bin/python3"];
 /// The search path of scripts in baseline runs.
 const SYSTEM_PATH: &str = "/usr/bin:/bin";
 
-/// Which Python runs a script.
+/// The Python interpreter of a script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Interpreter {
     /// The first on `PATH`.
@@ -32,12 +33,12 @@ pub(super) enum Interpreter {
 }
 
 impl Interpreter {
-    /// Returns the interpreter of a run in this mode. Runs of studies are baseline runs.
+    /// Returns the interpreter for a mode. Runs of studies are baseline runs.
     pub fn of(mode: Mode) -> Interpreter {
         if mode == Mode::Baseline { Interpreter::OfSystem } else { Interpreter::OfPath }
     }
 
-    /// Returns the program to start and the `PATH` that it gets, given the `PATH` of this process.
+    /// Returns the program to start and its `PATH`, given the `PATH` of this process.
     ///
     /// # Errors
     /// None of the fixed paths exists.
@@ -51,7 +52,7 @@ impl Interpreter {
             .ok_or_else(|| Error::from(ErrorKind::NotFound))
     }
 
-    /// Returns the message for a player whose machine has no such Python.
+    /// Returns the message for a player if this Python does not exist.
     pub fn missing(self) -> String {
         match self {
             Interpreter::OfPath => {

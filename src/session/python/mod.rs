@@ -1,9 +1,9 @@
-//! Scripts in Python: a process of their own, which asks the session while it runs and changes nothing
+//! Scripts in Python: separate processes that query the session and change nothing
 //! (docs/interfaces/tools.md#scripts-in-python).
 //!
-//! The process gets its code and the answers to its questions over a socket, line by line as JSON; the session waits for it and
-//! answers, so no server has to run and no thread waits for another. What a script says is recorded with the call, or with the
-//! week: whatever reads a record starts no process.
+//! The process receives its code and the answers to its requests over a socket, as lines of JSON. The session waits
+//! for the process and answers, without a server or another thread. The output of a script is recorded with the call
+//! or the week, so reading a record starts no process.
 
 #[cfg(unix)]
 mod captured;
@@ -25,45 +25,46 @@ use serde_json::Value;
 
 use novamind_tools::Refusal;
 
-/// What a script asks.
+/// A request of a script.
 #[derive(Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(not(unix), allow(dead_code))]
 #[serde(tag = "ask", rename_all = "lowercase")]
 pub(crate) enum ScriptRequest {
-    /// A statement to the database.
+    /// A database query.
     Query {
         /// The statement.
         sql: String,
     },
-    /// Where the run stands.
+    /// The state of the run.
     Vars,
 }
 
-/// What runs a script: whether the player has stopped it, and the answers to its requests, given the time that is left.
+/// The host of a script: whether the player has stopped it, and the answers to its requests within the remaining
+/// time.
 pub(crate) struct ScriptHost<'a> {
     pub(crate) is_stopped: &'a dyn Fn() -> bool,
     pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Refusal>,
 }
 
-/// What code said.
+/// The output of a script.
 #[derive(Debug, Default)]
 pub(crate) struct Said {
-    /// Results as tables, or what was printed.
+    /// Results as tables, or printed text.
     pub results: String,
     /// Warnings and hints.
     pub remarks: String,
 }
 
-/// Says why a script in Python was not run, or not to its end.
+/// Returns the rejection for a script in Python that failed or was not run.
 pub(crate) fn failed(message: impl Into<String>) -> Refusal {
     Refusal::at("code", "script_failed", message)
 }
 
-/// What is said where a program in Python is not run.
+/// Message if Python is not allowed.
 pub const PYTHON_NOT_RUN: &str =
-    "Python is not run for policies, nor for decisions that somebody made elsewhere";
+    "Python is not run for policies or for decisions that were made elsewhere";
 
-/// Refuses where nobody plays: a record, a policy or a lesson must not start programs.
+/// Rejects Python unless a player makes the call: records, policies and lessons must not start programs.
 ///
 /// # Errors
 /// `script_failed`.
@@ -76,7 +77,7 @@ pub(crate) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
 
 #[cfg(not(unix))]
 pub(crate) mod run {
-    //! Systems on which a process cannot be held within bounds.
+    //! Stand-in for systems on which a process cannot be limited.
 
     use std::time::Duration;
 
@@ -84,7 +85,7 @@ pub(crate) mod run {
     use novamind_record::mode::Mode;
     use novamind_tools::Refusal;
 
-    /// Refuses a script in Python.
+    /// Rejects every script in Python.
     pub(crate) fn run_python(_: &str, _: Duration, _: Mode, _: &mut ScriptHost<'_>) -> Result<Said, Refusal> {
         Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
     }

@@ -1,4 +1,5 @@
-//! The process of a script: started with nothing of its surroundings, served while it runs, ended with all that it started.
+//! The process of a script: started in a clean environment, served while it runs, terminated with its child
+//! processes.
 
 use std::ffi::OsString;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -14,27 +15,27 @@ use super::channel::{Channel, Heard};
 use super::empty_folder::EmptyFolder;
 use super::interpreter::Interpreter;
 
-/// What runs before the script, within the process.
+/// Python code that runs before the script.
 const BOOTSTRAP: &str = include_str!("../../../assets/scripts/python.py");
-/// Memory of a script, bytes.
+/// Memory limit of a script, bytes.
 const MOST_MEMORY: u64 = 1 << 30;
-/// Time between two looks at clock and process.
+/// Time between two checks of clock and process.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
-/// Time between two looks at a process that has nothing more to ask.
+/// Time between two checks of a process that has closed its socket.
 const BETWEEN_LAST_LOOKS: Duration = Duration::from_millis(2);
-/// A process that has ended may take this long to leave its pipes.
+/// Time that an ended process may take to close its pipes.
 const LEAVING: Duration = Duration::from_millis(500);
-/// The signal by which the kernel tells that processor time is over, on every system that has python3.
+/// Number of the signal SIGXCPU (processor time limit), on every system with python3.
 const TIME_IS_OVER: i32 = 24;
 
 /// How a script ended.
 #[derive(Debug)]
 pub(super) enum ScriptEnd {
-    /// By itself, or by a signal.
+    /// It exited, or was ended by a signal.
     Ended(ExitStatus),
-    /// Its time was over.
+    /// It reached its time limit.
     TimedOut,
-    /// Somebody stopped it.
+    /// The player stopped it.
     Stopped,
 }
 
@@ -46,16 +47,16 @@ pub(super) struct ScriptProcess {
     pub stdout: Captured,
     pub stderr: Captured,
     deadline: Instant,
-    /// The first line that it gets: its code and its limits.
+    /// The first message to the process: code and limits.
     given: Value,
     _folder: EmptyFolder,
 }
 
 impl ScriptProcess {
-    /// Starts Python with this code; it has to end in this time.
+    /// Starts Python with this code and time limit.
     ///
     /// # Errors
-    /// There is no python3, or the system has no process, socket or folder for it.
+    /// python3 does not exist, or the system cannot create a process, socket or folder.
     pub fn start(code: &str, interpreter: Interpreter, time: Duration) -> std::io::Result<ScriptProcess> {
         let deadline = Instant::now() + time;
         let folder = EmptyFolder::create()?;
@@ -64,14 +65,14 @@ impl ScriptProcess {
         let (program, path) = interpreter.program(path)?;
         let mut command = Command::new(program);
         command.args(["-I", "-B", "-X", "utf8", "-c", BOOTSTRAP]).current_dir(folder.path());
-        // A library that splits its work over threads would find none.
+        // The process cannot start threads, so numerical libraries must not use them.
         command.env_clear().env("PATH", path).envs([("OPENBLAS_NUM_THREADS", "1"), ("OMP_NUM_THREADS", "1")]);
         command.stdin(other).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
         let mut process = command.spawn()?;
-        // Its end of the socket is closed here, so that its death is heard.
+        // Closes the child's end of the socket here, so that its exit can be detected.
         drop(command);
         let pipes = (process.stdout.take(), process.stderr.take());
-        let (Some(stdout), Some(stderr)) = pipes else { unreachable!("both were asked for") };
+        let (Some(stdout), Some(stderr)) = pipes else { unreachable!("both pipes were requested") };
         let captured = Captured::of(stdout).and_then(|stdout| Ok((stdout, Captured::of(stderr)?)));
         let (stdout, stderr) = match captured {
             Ok(both) => both,
@@ -84,18 +85,18 @@ impl ScriptProcess {
         Ok(ScriptProcess { process, channel, stdout, stderr, deadline, given, _folder: folder })
     }
 
-    /// Time that is left.
+    /// Returns the remaining time.
     pub fn left(&self) -> Duration {
         self.deadline.saturating_duration_since(Instant::now())
     }
 
-    /// Answers what it asks until it ends, its time is over, or somebody stops it.
+    /// Answers requests until the script ends, reaches its time limit or is stopped.
     pub fn serve(
         &mut self,
         is_stopped: &dyn Fn() -> bool,
         answer: &mut dyn FnMut(Option<ScriptRequest>, Duration) -> Value,
     ) -> ScriptEnd {
-        // A process that does not take its code has something to say of itself.
+        // If the process does not read its code, its own error is reported.
         let given = self.given.take();
         let _ = self.say(&given, is_stopped);
         let mut is_heard = true;
@@ -137,7 +138,7 @@ impl ScriptProcess {
         })
     }
 
-    /// A process that has ended leaves its pipes, unless it left others behind.
+    /// Handles the exit of the process. Kills its group if a child process keeps the pipes open.
     fn ended(&mut self, status: ExitStatus) -> ScriptEnd {
         if !self.has_left_pipes() {
             self.kill_group();
@@ -162,12 +163,12 @@ impl ScriptProcess {
         self.stdout.ends_within(left()) && self.stderr.ends_within(left())
     }
 
-    /// Ends what the process started; its own number is that of their group.
+    /// Kills the process group, whose number is the process id.
     fn kill_group(&self) {
         let command = format!("kill -s KILL -- -{}", self.process.id());
         let mut shell = Command::new("/bin/sh");
         shell.args(["-c", &command]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        // A group that is gone is what was wanted.
+        // The group may have ended already.
         let _ = shell.status();
     }
 }
@@ -186,7 +187,7 @@ mod tests {
 
     use super::*;
 
-    /// Finds the socket to the program and asks once.
+    /// Finds the socket to the program and sends one request.
     const ASK: &str = r#"
 import os, stat, time
 def is_socket(number):
@@ -198,7 +199,7 @@ socket = next(number for number in range(3, 64) if is_socket(number))
 os.write(socket, b'{"ask":"vars"}\n')
 "#;
 
-    /// Serves a script that asks once, and is answered more than a socket holds.
+    /// Serves a script that sends one request, with an answer larger than the socket buffer.
     fn served(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
         let mut process =
             ScriptProcess::start(&format!("{ASK}{code}"), Interpreter::OfPath, time).expect("python3");

@@ -1,4 +1,4 @@
-//! Running a script in Python: its process, and what its end tells the player.
+//! Running a script in Python, and the result for the player.
 
 use std::io::ErrorKind;
 use std::os::unix::process::ExitStatusExt;
@@ -12,14 +12,14 @@ use super::{Said, ScriptHost, failed};
 use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 
-/// Statements that one script may ask.
+/// Maximum number of requests of a script.
 const MOST_QUERIES: u32 = 10_000;
-/// Characters of the end of a traceback that a refusal tells.
+/// Maximum length of a traceback in a rejection, characters.
 const MOST_TRACEBACK: usize = 2000;
-/// Characters of what was printed before that.
+/// Maximum length of printed output in a rejection, characters.
 const MOST_PRINTED: usize = 1000;
 
-/// What a script in Python says.
+/// Runs a script in Python and returns its output.
 ///
 /// # Errors
 /// `script_failed`, `script_timeout`.
@@ -38,10 +38,10 @@ pub(crate) fn run_python(
         asked += 1;
         let answer = match request {
             _ if asked > MOST_QUERIES => {
-                Err(Refusal::new("sql_error", "a script may ask 10,000 times; ask for more at once"))
+                Err(Refusal::new("sql_error", "a script can send 10,000 queries; select more rows per query"))
             }
             Some(request) => answer(request, left),
-            None => Err(Refusal::new("sql_error", "a script can ask query(sql) and get_vars()")),
+            None => Err(Refusal::new("sql_error", "a script can call query(sql) and get_vars()")),
         };
         answer.unwrap_or_else(
             |refusal| json!({ "error": { "code": refusal.code, "message": refusal.message } }),
@@ -57,7 +57,7 @@ fn not_started(interpreter: Interpreter, error: &std::io::Error) -> Refusal {
     }
 }
 
-/// What the player is told of a script that has ended.
+/// Returns the result of an ended script.
 fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said, Refusal> {
     match end {
         ScriptEnd::Ended(status) if status.success() => {
@@ -69,7 +69,7 @@ fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said
                 (None, signal) => format!("python3 was ended by signal {}", signal.unwrap_or_default()),
             };
             let traceback = process.stderr.last(MOST_TRACEBACK);
-            // The error itself stands last; whoever shows one line shows that.
+            // The error message is in the last line; it comes first for displays of one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
             let what = what.map_or_else(|| how.clone(), |what| format!("{}; {how}", what.trim()));
             Err(failed(format!("{what}{}{}", part("", &traceback), printed(process))))
@@ -91,7 +91,7 @@ fn printed(process: &ScriptProcess) -> String {
     part("before that it printed:\n", &process.stdout.last(MOST_PRINTED))
 }
 
-/// A paragraph of a message; nothing where there is nothing to say.
+/// Returns a paragraph of a message; empty if `text` is empty.
 fn part(heading: &str, text: &str) -> String {
     match text.trim_end() {
         "" => String::new(),

@@ -1,4 +1,4 @@
-//! Tests of what is derived from the first line of a run.
+//! Tests of the manifest, which is derived from the first line of a run.
 
 use crate::play::Session;
 use crate::play::open::Access;
@@ -9,7 +9,7 @@ use novamind_record::mode::Mode;
 use std::path::Path;
 use toml::Table;
 
-/// Opens a run whose `run.toml` holds a text, or is missing; returns what the person is told.
+/// Opens a run with this text as `run.toml`, or without the file. Returns the remarks.
 fn opened(folder: &Path, text: Option<&str>) -> String {
     let path = folder.join("run.toml");
     match text {
@@ -22,8 +22,8 @@ fn opened(folder: &Path, text: Option<&str>) -> String {
     assert_eq!((listed.len(), &listed[0].id, listed[0].seed), (1, &id, 7));
     assert_eq!((listed[0].problem.as_ref(), listed[0].participant.as_ref()), (None, None));
     assert_eq!(find_run(runs, "latest").expect("a run"), folder);
-    assert!(verify(folder).is_ok(), "it verifies as it is");
-    assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "who only reads changes nothing");
+    assert!(verify(folder).is_ok(), "it verifies unchanged");
+    assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "reading changes nothing");
     let reader = Session::open(folder, Access::Read, false).expect("it opens");
     assert!(reader.remarks().join(" ").contains("the first line of the trajectory counts"));
     let session = Session::open(folder, Access::Write, true).expect("it opens");
@@ -57,12 +57,12 @@ fn whatever_is_done_to_the_manifest_the_first_line_counts() {
         let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
         let mut expected: Table = good.parse().expect("TOML");
         if text.is_none_or(|text| !text.contains("created")) {
-            // Nothing else tells the moment before the first line.
+            // The creation time is recorded nowhere else.
             expected["created"] = restored["created"].clone();
         }
         assert_eq!(restored, expected, "{told}");
         let again = Session::open(&run.folder, Access::Write, true).expect("it opens");
-        assert_eq!(again.remarks(), [""; 0], "it is told once");
+        assert_eq!(again.remarks(), [""; 0], "the remark appears once");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Failed syncs: what was confirmed before and after them survives a power cut (docs/formats/trajectory.md#durability).
+//! Tests of failed syncs: confirmed lines survive a power cut (docs/formats/trajectory.md#durability).
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use novamind_record::folder::manifest::start_of;
 use novamind_record::trajectory::record::Memo;
 use novamind_record::trajectory::{Durability, PageCache, Record, Trajectory, TrajectoryWriter};
 
-/// A trajectory with its first line, on a disk whose syncs can fail.
+/// Creates a trajectory with its first line, on a disk whose syncs can fail.
 fn writer(folder: &Path) -> (TrajectoryWriter, PageCache) {
     let path = folder.join("trajectory.jsonl");
     let run = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
@@ -25,7 +25,7 @@ fn memo(length: u64) -> Record {
     Record::Memo(Memo { digest: "größer".to_owned(), length })
 }
 
-/// The lengths of the memos among the lines of a file, every line of which must be whole.
+/// Returns the lengths of the memos in a file without unfinished lines.
 fn memos(bytes: &[u8]) -> Vec<u64> {
     let read = Trajectory::parse(bytes).unwrap_or_else(|(line, problem)| panic!("line {line}: {problem}"));
     assert_eq!(read.unfinished, 0);
@@ -59,9 +59,9 @@ fn a_line_that_no_sync_takes_does_not_exist_and_loses_no_other() {
         assert!(writer.append(1, &memo(2), Durability::Synced).is_err());
         assert_eq!(writer.position(), position);
         assert!(!writer.is_complete() && writer.has_unsynced_lines());
-        assert_eq!(memos(&cache.after_a_kill()).last(), Some(&1), "a kill loses nothing");
+        assert_eq!(memos(&cache.after_a_kill()).last(), Some(&1), "killing the program loses nothing");
         cache.fail_syncs(0);
-        // The next line is not synced by itself, but follows a rewrite that is.
+        // The next line is not synced itself, but follows a rewrite that is.
         writer.append(1, &memo(1), Durability::Written).expect("a line");
         assert!(memos(&cache.after_a_power_cut()).iter().all(|length| *length == 1));
     }
@@ -81,7 +81,7 @@ fn a_line_that_cannot_be_taken_back_waits_with_those_before_it() {
     assert!(writer.append_done(1, &memo(3)).is_err());
     cache.set_full(false);
     writer.append(1, &memo(4), Durability::Written).expect("a line");
-    assert_eq!(memos(&cache.after_a_power_cut()), [1, 2, 3, 4], "the lines that waited are synced");
+    assert_eq!(memos(&cache.after_a_power_cut()), [1, 2, 3, 4], "the pending lines are synced");
 }
 
 #[test]
@@ -97,8 +97,8 @@ fn a_sync_succeeds_only_after_a_rewrite() {
         cache.fail_syncs(2);
         assert!(writer.sync_written().is_err());
         match length {
-            2 => writer.sync_written().expect("the disk is well again"),
-            _ => writer.sync().expect("the disk is well again"),
+            2 => writer.sync_written().expect("the disk works again"),
+            _ => writer.sync().expect("the disk works again"),
         }
         assert_eq!(memos(&cache.after_a_power_cut()).last(), Some(&length));
     }

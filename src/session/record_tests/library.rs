@@ -1,4 +1,3 @@
-//! Tests of the library of saved queries.
 
 use crate::create::NewRun;
 use crate::play::Session;
@@ -10,7 +9,7 @@ use serde_json::json;
 fn all_answer(session: &mut Session) {
     for query in Library::shipped().queries() {
         let rows = session.query(&query.sql).unwrap_or_else(|refusal| panic!("{}: {refusal}", query.name));
-        assert!(!rows.truncated, "{} is cut", query.name);
+        assert!(!rows.truncated, "{} is truncated", query.name);
         let head = Head::of(&query.sql);
         assert!(head.title.is_some(), "{}", query.name);
         assert!(head.what.is_some_and(|what| what.ends_with('.')), "{}", query.name);

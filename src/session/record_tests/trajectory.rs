@@ -20,7 +20,7 @@ fn start() -> Record {
     novamind_record::folder::manifest::start_of(&manifest)
 }
 
-/// A start, and memos after it.
+/// Writes a start line and memos after it.
 fn written(folder: &Path, count: u32) -> PathBuf {
     let path = folder.join("trajectory.jsonl");
     let mut writer = TrajectoryWriter::create(&path).expect("a file");
@@ -69,8 +69,8 @@ fn a_file_that_is_gone_or_grew_elsewhere_takes_no_line() {
     let note = |writer: &mut TrajectoryWriter| writer.append(9, &memo(), Durability::Synced);
     note(&mut second).expect("a line");
     let kept = std::fs::read(&path).expect("bytes");
-    assert!(matches!(note(&mut first), Err(RunError::Astray { .. })), "somebody else has written");
-    assert_eq!(std::fs::read(&path).expect("bytes"), kept, "and keeps the line");
+    assert!(matches!(note(&mut first), Err(RunError::Astray { .. })), "another writer has appended a line");
+    assert_eq!(std::fs::read(&path).expect("bytes"), kept, "the other writer's line is kept");
     std::fs::rename(&path, folder.path().join("aside")).expect("moved");
     assert!(matches!(note(&mut second), Err(RunError::Astray { .. })), "it was moved");
     std::fs::copy(folder.path().join("aside"), &path).expect("a copy");
@@ -106,7 +106,7 @@ fn what_was_confirmed_is_written_beside_a_file_that_is_gone() {
     }
     let confirmed = std::fs::read(&path).expect("bytes");
     std::fs::remove_dir_all(&folder).expect("the whole folder is gone");
-    // A week that ran cannot be taken back: its line is kept with the others.
+    // A simulated week cannot be reverted: its line is saved with the others.
     let aside = kept(writer.append_done(9, &memo()).expect_err("there is no file"));
     assert_eq!(aside.parent(), Some(folder.as_path()));
     let told = writer.loss().expect("it is lost").to_owned();
@@ -114,7 +114,7 @@ fn what_was_confirmed_is_written_beside_a_file_that_is_gone() {
     let saved = std::fs::read(&aside).expect("a copy");
     assert!(saved.starts_with(&confirmed) && saved.len() > confirmed.len());
     assert_eq!(kept(writer.append(9, &memo(), Durability::Synced).expect_err("still")), aside, "one file");
-    // A copy that cannot be replaced by a whole one is kept.
+    // An earlier copy is kept if it cannot be replaced.
     let draft = aside.with_extension("draft");
     std::fs::create_dir(&draft).expect("in the way");
     let error = writer.append_done(9, &memo()).expect_err("there is no file");
@@ -123,7 +123,7 @@ fn what_was_confirmed_is_written_beside_a_file_that_is_gone() {
     assert_eq!(std::fs::read(&aside).expect("a copy"), saved);
     std::fs::remove_dir(&draft).expect("removed");
     kept(writer.append_done(9, &memo()).expect_err("there is no file"));
-    // With the name of the trajectory it is one.
+    // The renamed copy is a valid trajectory.
     std::fs::rename(&aside, &path).expect("renamed");
     let read = Trajectory::read(&path).expect("a whole chain");
     assert_eq!(read.lines.last().map(Line::position), Some(writer.position()));
@@ -138,7 +138,7 @@ fn every_flipped_byte_and_every_missing_line_is_found() {
     for at in 0..bytes.len() - 1 {
         let mut damaged = bytes.clone();
         damaged[at] ^= 0x04;
-        assert!(Trajectory::parse(&damaged).is_err(), "byte {at} was changed unseen");
+        assert!(Trajectory::parse(&damaged).is_err(), "the change of byte {at} was not detected");
     }
     let mut lines: Vec<&[u8]> = bytes.split_inclusive(|byte| *byte == b'\n').collect();
     lines.remove(1);

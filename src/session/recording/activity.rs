@@ -1,5 +1,4 @@
-//! What a person does besides acting, as lines: taking up and leaving a run, looking at screens, stopping the clock, reaching
-//! limits of time.
+//! The log of user activities other than calls: sessions, views, the clock, time limits.
 
 use std::time::Duration;
 
@@ -12,22 +11,23 @@ use novamind_record::trajectory::record::{
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::Refusal;
 
-/// Rationale of a week that is filed because its time is over.
+/// Rationale of a week that is submitted because its time limit was reached.
 pub const TIME_LIMIT: &str = "time limit";
 
-/// Time without a key after which a person counts as idle, where keys are watched.
+/// Time without a key after which a user is idle, if keys are watched.
 pub const IDLE_AFTER: Duration = Duration::from_secs(60);
 
-/// What a person plays with, and in which window.
+/// The interface of a session, and its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Interface {
-    /// `console`, `plain`, `http`.
+    /// `console`, `plain` or `http`.
     pub name: &'static str,
-    /// Columns and rows of the terminal, where there is one.
+    /// Columns and rows of the terminal, if there is one.
     pub window: Option<(u16, u16)>,
 }
 
-/// Records what a person does besides acting. The lines change nothing, so a disk that refuses one is no reason to stop.
+/// Records activities of the user other than calls. Ignores disk errors, because these lines have no effect on the
+/// run.
 pub struct ActivityLog<'a> {
     log: &'a mut RunLog,
     day: u32,
@@ -39,7 +39,7 @@ impl<'a> ActivityLog<'a> {
         ActivityLog { log, day, is_over }
     }
 
-    /// Records something that a person did besides acting, unless the rules leave it out.
+    /// Records an activity, unless the rules exclude its kind.
     pub fn note(&mut self, activity: Activity) {
         if !self.log.rules.records(activity.kind()) {
             return;
@@ -49,7 +49,7 @@ impl<'a> ActivityLog<'a> {
         let _ = self.log.append((self.day, self.is_over), &Record::Activity(activity), durability);
     }
 
-    /// Records that a person takes up the run.
+    /// Records that a user attaches to the run.
     pub fn take_up(&mut self, interface: Interface) {
         let presence = Presence {
             interface: Some(interface.name.to_owned()),
@@ -58,46 +58,46 @@ impl<'a> ActivityLog<'a> {
             ..presence(PresenceEvent::Opened)
         };
         self.note(Activity::Session(Box::new(presence)));
-        // The clock stood when the program left the run.
+        // The clock was stopped when the program closed the run.
         self.start_after(ClockEvent::Forgotten);
     }
 
-    /// Records that the program leaves the run.
+    /// Records that the program closes the run.
     pub fn leave(&mut self, cause: LeavingCause) {
         let presence = Presence { cause: Some(cause), ..presence(PresenceEvent::Closed) };
         self.note(Activity::Session(Box::new(presence)));
     }
 
-    /// Records that the person went away or came back, or that the window changed.
+    /// Records that the user became idle or returned, or that the window changed.
     pub fn note_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
         let presence = Presence { idle_ms, window, ..presence(event) };
         self.note(Activity::Session(Box::new(presence)));
     }
 
-    /// Records what the person looked at, and for how long.
+    /// Records a view and its duration.
     pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
         let view = View { screen: screen.to_owned(), from: from.to_owned(), for_ms };
         self.note(Activity::View(view));
     }
 
-    /// Stops the clock: the time from now on is nobody's.
+    /// Stops the clock: from now on, time does not count.
     ///
     /// # Errors
-    /// `clock_stands`, and `reason_needed` where the rules ask for a reason and none is given.
+    /// `clock_stands`, and `reason_needed` if the rules require a reason and none is given.
     pub fn stop_clock(&mut self, reason: Option<&str>) -> Result<(), Refusal> {
         let reason = reason.map(str::trim).filter(|reason| !reason.is_empty());
         if self.log.clock_stands() {
             return Err(Refusal::new("clock_stands", "the clock is stopped already"));
         }
         if self.log.rules.pause_reason && reason.is_none() {
-            return Err(Refusal::new("reason_needed", "say why you stop the clock"));
+            return Err(Refusal::new("reason_needed", "give a reason for stopping the clock"));
         }
         let reason = reason.map(str::to_owned);
         self.note_clock(Clock { event: ClockEvent::Stopped, reason, stood_ms: None });
         Ok(())
     }
 
-    /// Starts it again; returns the seconds that it stood.
+    /// Starts the clock again. Returns the seconds that it was stopped.
     ///
     /// # Errors
     /// `clock_runs`.
@@ -115,12 +115,12 @@ impl<'a> ActivityLog<'a> {
         let event = clock.event;
         let stopped = (event == ClockEvent::Stopped).then(|| seconds(&now()));
         self.note(Activity::Clock(clock));
-        // Where the rules leave clocks out of the record, the screen is covered all the same.
+        // Set even if the rules exclude clock lines from the record, because the screen is covered in any case.
         self.log.clock.stopped = stopped;
         self.log.clock.held &= event != ClockEvent::Started;
     }
 
-    /// Limits that are near or reached and were not told yet; each is recorded once.
+    /// Returns limits that are near or reached and not reported yet. Records each once.
     pub fn check_limits(&mut self) -> Vec<Limit> {
         if self.is_over || self.log.clock_stands() {
             return Vec::new();
@@ -131,7 +131,7 @@ impl<'a> ActivityLog<'a> {
             let used_ms = ((f64::from(left.minutes) * 60.0 - left.seconds) * 1e3) as u64;
             let limit = Limit { limit: left.scope, event, minutes: left.minutes, used_ms };
             self.note(Activity::Limit(limit.clone()));
-            // Also where the rules leave limits out of the record.
+            // Set even if the rules exclude limit lines from the record.
             self.log.clock.told.insert((limit.limit, event != LimitEvent::Warned));
             self.log.clock.held |= event == LimitEvent::Paused;
             told.push(limit);

@@ -1,11 +1,11 @@
-//! Names of new folders of runs, and folders that were never finished.
+//! Identifiers of new runs, and removal of unfinished folders.
 
 use std::path::Path;
 
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::runs::is_unnamed;
 
-/// Eight hexadecimal digits that no other run has, as good as certainly.
+/// Returns eight hexadecimal digits that are almost certainly unique.
 pub fn new_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
@@ -15,7 +15,7 @@ pub fn new_id() -> String {
     blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
 }
 
-/// Removes what programs have left that ended while they made a branch. What somebody makes at this moment is locked.
+/// Removes staging folders that a stopped program left. Staging folders in use are locked.
 pub(crate) fn remove_leftovers(runs: &Path) {
     let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
     for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {

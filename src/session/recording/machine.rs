@@ -1,26 +1,26 @@
-//! The machine a run is played on, and its clock that nobody sets.
+//! The machine of a run, and its monotonic clock.
 
 use std::time::Instant;
 
 use novamind_record::clock::scripted_steady;
 
-/// The machine, as records name it: nobody learns from them which one it is, but two records of one machine agree.
+/// The machine, as a hash: records of one machine have the same value, but do not identify it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     /// 16 hexadecimal digits.
     pub id: String,
-    /// The time since it was started, likewise.
+    /// Hash of the time since the machine was started.
     pub boot: String,
 }
 
 impl Machine {
-    /// This machine.
+    /// Returns this machine.
     pub fn here() -> Machine {
         let read = |path: &str| std::fs::read_to_string(path).ok().filter(|text| !text.trim().is_empty());
         let name = read("/etc/machine-id").or_else(|| read("/var/lib/dbus/machine-id"));
         let name = name.or_else(|| std::env::var("COMPUTERNAME").ok()).or_else(|| read("/etc/hostname"));
         let boot = read("/proc/sys/kernel/random/boot_id");
-        // Where the system does not tell, each start of the program counts as one of the machine.
+        // Without a boot id, each start of the program counts as a start of the machine.
         let boot = boot.unwrap_or_else(|| format!("{} {:?}", std::process::id(), began()));
         Machine {
             id: hashed("novamind machine", name.unwrap_or_default().trim()),
@@ -28,7 +28,8 @@ impl Machine {
         }
     }
 
-    /// Milliseconds since the machine was started; since the program was, where the system does not tell.
+    /// Returns milliseconds since the machine was started, or since the program was, if the system does not provide
+    /// this.
     pub fn monotonic_ms() -> u64 {
         if let Some(scripted) = scripted_steady() {
             return scripted.as_millis() as u64;
@@ -44,7 +45,7 @@ fn hashed(context: &str, name: &str) -> String {
     blake3::hash(&key).to_hex()[..16].to_owned()
 }
 
-/// When the program first asked.
+/// Returns the time of the first call.
 fn began() -> Instant {
     static BEGAN: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
     *BEGAN.get_or_init(Instant::now)

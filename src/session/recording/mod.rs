@@ -1,4 +1,4 @@
-//! The lines of an open run: what writes them, when they have to be on the disk, and what they say about the person who plays.
+//! The record of an open run: recorder, durability, and what it contains about the user.
 
 pub(crate) mod activity;
 pub(crate) mod folders;
@@ -19,23 +19,23 @@ use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LimitScope};
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory};
 
-/// The lines of an open run, and what follows from them besides the company.
+/// The record of an open run, and the state that follows from it besides the company.
 pub struct RunLog {
     rules: SessionRules,
-    /// The last line that was written, or applied again.
+    /// The last line that was written or replayed.
     position: Position,
-    /// Whether the person has stopped the clock, and what was told of limits.
+    /// The user's clock and reported time limits.
     clock: PersonalClock,
     /// Answers to the questions of a study.
     answers: AnswerBook,
-    /// The last day on which each screen of the console was left, in the sittings before this one.
+    /// The last day on which each screen of the console was left, in earlier sessions.
     viewed: BTreeMap<String, u32>,
-    /// What writes the lines; none when the run is only read.
+    /// The recorder; `None` if the run is open read-only.
     recorder: Option<Recorder>,
 }
 
 impl RunLog {
-    /// The log of a run of which no line was read, and which nothing writes.
+    /// Creates the log of a run without lines and without a recorder.
     pub(crate) fn unwritten(rules: SessionRules) -> RunLog {
         RunLog {
             rules,
@@ -47,39 +47,39 @@ impl RunLog {
         }
     }
 
-    /// The log of a new run.
+    /// Creates the log of a new run.
     pub(crate) fn written(rules: SessionRules, recorder: Recorder) -> RunLog {
         RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::unwritten(rules) }
     }
 
-    /// Continues to write with a recorder.
+    /// Sets the recorder that writes further lines.
     pub(crate) fn resume(&mut self, recorder: Recorder) {
         self.recorder = Some(recorder);
     }
 
-    /// Takes in what the lines of the run say about clock, screens and answers.
+    /// Reads clock, screens and answers from the lines of the run.
     pub(crate) fn read(&mut self, trajectory: &Trajectory) {
         self.clock = PersonalClock::of(trajectory);
         self.viewed = trajectory.lines.iter().filter_map(view).collect();
         self.answers = AnswerBook::of(&trajectory.lines);
     }
 
-    /// Takes in the answers of all lines, those after the end of the run included.
+    /// Reads the answers from all lines, including those after the end of the run.
     pub(crate) fn read_answers<'a>(&mut self, lines: impl IntoIterator<Item = &'a Line>) {
         self.answers = AnswerBook::of(lines);
     }
 
-    /// Whether the person has stopped the clock.
+    /// Whether the user has stopped the clock.
     pub fn clock_stands(&self) -> bool {
         self.clock.stopped.is_some()
     }
 
-    /// Whether a limit has stopped it, and nobody has started it since: leaving the run does not.
+    /// Whether a time limit has stopped the clock and it was not started since. Closing the run does not start it.
     pub fn is_held(&self) -> bool {
         self.clock.held
     }
 
-    /// Time that is left to each limit of the rules; while the clock stands, as when it was stopped.
+    /// Returns the time left for each limit of the rules. While the clock is stopped, this time does not change.
     pub fn time_left(&self) -> Vec<TimeLeft> {
         let limits = &self.rules.limits;
         let all = [
@@ -95,60 +95,60 @@ impl RunLog {
         all.into_iter().filter_map(left).collect()
     }
 
-    /// What was spent of what a time limit is on, up to now; nothing of a run that is only read.
+    /// Returns the time spent in the scope of a limit; nothing if the run is open read-only.
     pub fn time_spent(&self, scope: LimitScope) -> TimeSpent {
         let attendance = self.recorder.as_ref().map(Recorder::attendance);
         attendance.map(|time| time.so_far(scope, nanoseconds(&now()))).unwrap_or_default()
     }
 
-    /// Answers to the questions of a study that the record holds.
+    /// Returns the recorded answers to the questions of a study.
     pub fn answer_book(&self) -> &AnswerBook {
         &self.answers
     }
 
-    /// The last day on which each screen of the console was left in an earlier sitting.
+    /// Returns the last day on which each screen of the console was left in an earlier session.
     pub fn viewed(&self) -> &BTreeMap<String, u32> {
         &self.viewed
     }
 
-    /// Whether everything that happened stands in the run's trajectory: not where a run is only read, or its file took no
-    /// more lines.
+    /// Whether all events are in the trajectory: false if the run is open read-only, or if its file accepts no more
+    /// lines.
     pub fn is_complete(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_complete)
     }
 
-    /// Why the run has to stop: its file is no longer the one it was, so nothing more is saved. None while all is well.
+    /// Returns why nothing more can be saved: the file was replaced or changed. `None` while lines are saved.
     pub fn loss(&self) -> Option<&str> {
         self.recorder.as_ref()?.loss()
     }
 
-    /// Whether lines are written: not where the run is only read, or played again.
+    /// Whether lines are written: false if the run is open read-only or replayed.
     pub fn is_written(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Whether a file holds the lines.
+    /// Whether the lines are in a file.
     pub(crate) fn is_on_disk(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_on_disk)
     }
 
-    /// The last line that was written, or applied again.
+    /// Returns the last line that was written or replayed.
     pub(crate) fn position(&self) -> &Position {
         &self.position
     }
 
-    /// Continues after a line that was applied again.
+    /// Sets the position after a replayed line.
     pub(crate) fn move_to(&mut self, position: Position) {
         self.position = position;
     }
 
-    /// When the line of an accepted call has to be on the disk; a run that is only read keeps its database as one that is
-    /// played.
+    /// Returns when the line of an accepted call must be synced. A run that is open read-only has the value of a
+    /// played one.
     pub(crate) fn durability_of_calls(&self) -> Durability {
         self.recorder.as_ref().map_or(Durability::Synced, Recorder::durability_of_calls)
     }
 
-    /// Appends a line; a run that is only read has none.
+    /// Appends a line. Does nothing if the run is open read-only.
     pub(crate) fn append(
         &mut self,
         (day, is_over): (u32, bool),
@@ -157,7 +157,7 @@ impl RunLog {
     ) -> Result<String, RunError> {
         let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
         if is_over {
-            // The end is the last line.
+            // The trajectory has no lines after the end.
             return recorder.append_afterwards(day, record, durability);
         }
         let at = recorder.append(day, record, durability)?;
@@ -166,7 +166,7 @@ impl RunLog {
         Ok(at)
     }
 
-    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
     pub(crate) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
         let recorder = self.recorder.as_mut()?;
         let problem = recorder.append_done(day, record);
@@ -175,12 +175,12 @@ impl RunLog {
         problem
     }
 
-    /// Puts everything on the disk.
+    /// Syncs all lines.
     pub(crate) fn sync(&mut self) -> Result<(), RunError> {
         self.recorder.as_mut().map_or(Ok(()), Recorder::sync)
     }
 
-    /// Puts the lines of calls on the disk that wait for the week. Returns whether there can be any.
+    /// Syncs pending lines of calls. Returns whether there can be any.
     pub(crate) fn sync_waiting_calls(&self) -> Result<bool, RunError> {
         match self.recorder.as_ref().filter(|recorder| !recorder.syncs_calls()) {
             Some(recorder) => recorder.sync_calls().map(|()| true),
@@ -188,14 +188,14 @@ impl RunLog {
         }
     }
 
-    /// Puts another medium in place of the file.
+    /// Replaces the file.
     #[cfg(test)]
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.recorder.as_mut().expect("it is written").write_to(medium);
     }
 }
 
-/// The screen that a line says was left, and the day.
+/// Returns the screen that a line records, and the day.
 fn view(line: &Line) -> Option<(String, u32)> {
     match &line.record {
         Record::Activity(Activity::View(view)) => Some((view.screen.clone(), line.day)),

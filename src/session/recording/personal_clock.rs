@@ -1,4 +1,4 @@
-//! What the lines of a run tell of its person's clock: whether it was stopped, and what was told of limits.
+//! The user's clock according to the lines of a run, and the reported time limits.
 
 use std::collections::BTreeSet;
 
@@ -6,37 +6,37 @@ use novamind_record::rules::{AtLimit, TimeLimits};
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
 use novamind_record::trajectory::{Record, Trajectory};
 
-/// What the lines of a run tell of the clock.
+/// The user's clock according to the lines of a run.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PersonalClock {
-    /// When it was stopped, in seconds since 1970; none while it runs.
+    /// When it was stopped, in seconds since 1970; `None` while it runs.
     pub(super) stopped: Option<f64>,
-    /// A limit has stopped it, and nobody has started it since.
+    /// A limit has stopped it, and it was not started since.
     pub(super) held: bool,
-    /// What was told of limits, so that it is told once.
+    /// Reported limits: whether each was reached.
     pub(super) told: BTreeSet<(LimitScope, bool)>,
 }
 
-/// A limit, and the time that is left to it.
+/// A limit, and the time left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeLeft {
-    /// What the limit is on.
+    /// The scope of the limit.
     pub scope: LimitScope,
-    /// Minutes that are allowed.
+    /// Allowed minutes.
     pub minutes: u32,
-    /// Seconds that are left; below zero once it is exceeded.
+    /// Seconds left; negative once the limit is exceeded.
     pub seconds: f64,
 }
 
 impl PersonalClock {
-    /// What the lines of a run tell.
+    /// Reads the clock from the lines of a run.
     pub(crate) fn of(trajectory: &Trajectory) -> PersonalClock {
         let mut clock = PersonalClock::default();
         trajectory.lines.iter().for_each(|line| clock.pass(&line.record, line.moment()));
         clock
     }
 
-    /// Goes on to a line that was written at a moment, in seconds since 1970.
+    /// Applies a line written at `at`, in seconds since 1970.
     pub(crate) fn pass(&mut self, record: &Record, at: f64) {
         match record {
             Record::Branch(_) => *self = PersonalClock::default(),
@@ -56,14 +56,14 @@ impl PersonalClock {
         }
     }
 
-    /// What has to be told of a limit now.
+    /// Returns the event of a limit that must be reported now.
     pub(super) fn due(&self, left: TimeLeft, limits: &TimeLimits) -> Option<LimitEvent> {
         let is_told = |reached| self.told.contains(&(left.scope, reached));
         if left.seconds <= 0.0 {
             return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
                 (AtLimit::Remind, _) => LimitEvent::Reminded,
                 (AtLimit::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
-                // A week can be filed; a sitting cannot.
+                // A week can be submitted automatically; a session cannot.
                 (AtLimit::Naive | AtLimit::Pause, _) => LimitEvent::Paused,
             });
         }
@@ -73,12 +73,12 @@ impl PersonalClock {
 }
 
 impl TimeLeft {
-    /// Minutes that are left, the last one begun.
+    /// Returns the minutes left, rounded up.
     pub fn whole_minutes(&self) -> i64 {
         (self.seconds / 60.0).ceil() as i64
     }
 
-    /// What the limit is on, and how much is left, in words.
+    /// Describes the limit and the time left.
     pub fn in_words(&self) -> String {
         let scope = match self.scope {
             LimitScope::Week => "this week",
@@ -86,17 +86,17 @@ impl TimeLeft {
             LimitScope::Study => "the study",
         };
         match self.whole_minutes() {
-            minutes if minutes <= 0 => format!("the {} min for {scope} are over", self.minutes),
+            minutes if minutes <= 0 => format!("the {} min for {scope} are used up", self.minutes),
             minutes => format!("{minutes} of {} min left for {scope}", self.minutes),
         }
     }
 
-    /// What happens when none is left, in words.
+    /// Describes what happens when no time is left.
     pub fn what_follows(&self, at_limit: AtLimit) -> &'static str {
         match at_limit {
-            AtLimit::Remind => "then you are asked to come to an end",
+            AtLimit::Remind => "then you are asked to finish",
             AtLimit::Naive if self.scope == LimitScope::Week => {
-                "then the week is filed with the naive projection, and what you typed is not"
+                "then the week is submitted with the naive projection, without your text"
             }
             AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
         }
@@ -133,7 +133,7 @@ mod tests {
         own.pass(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
         assert_eq!(own.due(left(LimitScope::Week, 100.0), &limits), Some(LimitEvent::Warned), "a new week");
         let paused = own.due(left(LimitScope::Session, 0.0), &limits);
-        assert_eq!(paused, Some(LimitEvent::Paused), "a sitting cannot be filed");
+        assert_eq!(paused, Some(LimitEvent::Paused), "a session cannot be submitted");
         assert_eq!(left(LimitScope::Week, 61.0).in_words(), "2 of 10 min left for this week");
     }
 
@@ -147,7 +147,7 @@ mod tests {
         ] {
             own.pass(&record, 5.0);
         }
-        assert!(own.held && own.stopped.is_none(), "leaving the run does not start it");
+        assert!(own.held && own.stopped.is_none(), "closing the run does not start it");
         own.pass(&clock(ClockEvent::Started), 6.0);
         assert!(!own.held);
     }

@@ -1,4 +1,4 @@
-//! Writing a run: its trajectory, when a line has to be on the disk, and the lock that keeps other programs out.
+//! The recorder of a run: its trajectory, the durability of lines, and the lock against other programs.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -13,30 +13,30 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest::start_of;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
-/// File in the folder of a run with what is done once it is over: lines like those of the trajectory that go on from its last.
+/// File in the run folder with lines recorded after the end of the run. Their hash chain continues the trajectory.
 ///
-/// The end is the last line of a trajectory, so that a finished run never changes. Notes, statements that are kept, looks and
-/// answers to questions come after it.
+/// The end is the last line of a trajectory, so a finished run never changes. Notes, saved statements, inspections
+/// and answers to questions can follow it.
 pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";
 
-/// What a run has that is played, and a run that is only read has not.
+/// The parts of a played run that a read-only run does not have.
 pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
-    /// When the line of an accepted call has to be on the disk: before the call is confirmed, or, in headless runs,
-    /// with the week.
+    /// Durability of an accepted call's line: synced before the call is confirmed, or, in headless runs, with the
+    /// week.
     calls: Durability,
-    /// Folder of the run; none in memory.
+    /// Folder of the run; `None` in memory.
     folder: Option<PathBuf>,
-    /// What is done once the run is over, from the first line of it on.
+    /// Writer of lines after the end of the run, once there are any.
     afterwards: Option<TrajectoryWriter>,
-    /// Where the time went, line by line.
+    /// Time by kind, line by line.
     attendance: Attendance,
-    /// Held while the run may be written; none in memory.
+    /// Lock of the run; `None` in memory.
     _lock: Option<File>,
 }
 
 impl Recorder {
-    /// Begins the trajectory of a new run, in its folder or in memory, with the line that says what the run is.
+    /// Creates the trajectory of a new run, in its folder or in memory, with its first line.
     pub(crate) fn begin(
         manifest: &Manifest,
         folder: Option<&Path>,
@@ -60,7 +60,7 @@ impl Recorder {
         Ok(Recorder { trajectory, calls, folder, afterwards: None, attendance, _lock: lock })
     }
 
-    /// Goes on with the trajectory of a run whose lock is held.
+    /// Continues the trajectory of a run whose lock is held.
     pub(crate) fn resume(path: &Path, read: &Trajectory, lock: File) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
         let folder = path.parent().map(Path::to_owned);
@@ -74,30 +74,30 @@ impl Recorder {
         })
     }
 
-    /// Whether a file holds the lines.
+    /// Whether the lines are in a file.
     pub(crate) fn is_on_disk(&self) -> bool {
         self.folder.is_some()
     }
 
-    /// Number and hash of the last line.
+    /// Returns number and hash of the last line.
     pub(crate) fn position(&self) -> Position {
         self.trajectory.position()
     }
 
-    /// When the line of an accepted call has to be on the disk.
+    /// Returns the durability of an accepted call's line.
     pub(crate) fn durability_of_calls(&self) -> Durability {
         self.calls
     }
 
-    /// Whether every call is on the disk before it is confirmed.
+    /// Whether every call is synced before it is confirmed.
     pub(crate) fn syncs_calls(&self) -> bool {
         self.calls == Durability::Synced
     }
 
-    /// Appends a line and returns the moment it carries.
+    /// Appends a line and returns its time.
     ///
     /// # Errors
-    /// The disk refuses: then the line does not exist.
+    /// The disk fails; then the line does not exist.
     pub(crate) fn append(
         &mut self,
         day: u32,
@@ -109,10 +109,10 @@ impl Recorder {
         Ok(at)
     }
 
-    /// Appends a line about something that is done once the run is over, to a separate file. In memory it is not kept.
+    /// Appends a line after the end of the run, to a separate file. In memory the line is not kept.
     ///
     /// # Errors
-    /// The disk refuses, or the file is damaged: then the line does not exist.
+    /// The disk fails, or the file is damaged; then the line does not exist.
     pub(crate) fn append_afterwards(
         &mut self,
         day: u32,
@@ -121,7 +121,8 @@ impl Recorder {
     ) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(now()) };
         if self.trajectory.has_unsynced_lines() {
-            // The line names the hash of the end, which would be another one if the last week had to be simulated again.
+            // The new line contains the hash of the end, which would differ if the last week had to be simulated
+            // again.
             self.trajectory.sync()?;
         }
         if self.afterwards.is_none() {
@@ -132,47 +133,47 @@ impl Recorder {
         writer.append(day, record, durability)
     }
 
-    /// Appends a line about something that cannot be taken back. Returns what keeps it from the disk for now.
+    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
     pub(crate) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
         let problem = self.trajectory.append_done(day, record).err().map(|error| error.to_string());
         self.attendance.note(nanoseconds(self.trajectory.last_at()), record);
         problem
     }
 
-    /// Where the time went, up to the last line.
+    /// Returns the time by kind, up to the last line.
     pub(crate) fn attendance(&self) -> &Attendance {
         &self.attendance
     }
 
-    /// Puts everything on the disk, also lines that it has refused so far.
+    /// Syncs all lines, including those that could not be written before.
     pub(crate) fn sync(&mut self) -> Result<(), RunError> {
         self.trajectory.sync()?;
         self.afterwards.as_mut().map_or(Ok(()), TrajectoryWriter::sync)
     }
 
-    /// Puts the lines of calls on the disk that are confirmed already. The database must not know more than the disk.
+    /// Syncs the lines of confirmed calls. The database must not be ahead of the disk.
     pub(crate) fn sync_calls(&self) -> Result<(), RunError> {
         self.trajectory.sync_written()
     }
 
-    /// Why nothing is saved any more, from the moment on at which that was noticed.
+    /// Returns why nothing more can be saved, once this was detected.
     pub(crate) fn loss(&self) -> Option<&str> {
         self.trajectory.loss()
     }
 
-    /// Whether the file still stands where it is looked for, and no line waits for it.
+    /// Whether the file is still in its place and no line is pending.
     pub(crate) fn is_complete(&self) -> bool {
         self.trajectory.is_complete()
     }
 
-    /// Puts another medium in place of the file.
+    /// Replaces the file.
     #[cfg(test)]
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.trajectory.write_to(medium);
     }
 }
 
-/// Lines after the end of a run; none if nothing was done. They go on from the last line of the trajectory.
+/// Reads the lines after the end of a run; empty if there are none. Their hash chain continues the trajectory.
 ///
 /// # Errors
 /// The file cannot be read, or is damaged.

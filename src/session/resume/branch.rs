@@ -1,4 +1,4 @@
-//! Branches: a new run that shares the past of another up to a decision day.
+//! Branches: new runs that share the lines of another run up to a decision day.
 
 use std::path::Path;
 
@@ -17,22 +17,22 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Refusal;
 
 impl Session {
-    /// Starts a branch at the beginning of a week, counted from 1, and opens it.
+    /// Creates a branch at the start of a week, counted from 1, and opens it.
     ///
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run, a baseline branch, and one that is no debug run though parameters
-    /// were set in its past or a fault was planted; `guess_first` while the question of a lesson is open; `week_unknown`,
-    /// `not_saved`.
+    /// `not_in_this_mode` for an unfinished baseline run, for a baseline branch, and for a branch in another mode
+    /// than debug if the shared lines change parameters or the run has a seeded fault; `guess_first` while the
+    /// question of a lesson has no answer; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
         UnnamedBranch::begin(self, week, mode)?.name().map_err(not_saved)
     }
 }
 
 impl UnnamedBranch {
-    /// Begins a branch that has no name yet.
+    /// Creates a branch in a staging folder.
     ///
     /// # Errors
-    /// As for [`Session::branch`].
+    /// As [`Session::branch`].
     pub fn begin(run: &Session, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
         if run.manifest().mode == Mode::Baseline && run.ended().is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
@@ -58,17 +58,16 @@ impl UnnamedBranch {
     }
 }
 
-/// The refusal for a write that failed.
+/// Returns the rejection for a failed write.
 pub fn not_saved(error: RunError) -> Refusal {
     Refusal::new("not_saved", error.to_string())
 }
 
-/// Starts a run beside another that shares some of its lines, and opens it.
+/// Creates a branch next to its parent that shares some of its lines, and opens it.
 ///
 /// # Errors
-/// `not_in_this_mode` for a baseline branch, and for one that is no debug run though parameters were set in its past or a fault
-/// was planted;
-/// `not_saved`.
+/// `not_in_this_mode` for a baseline branch, and for a branch in another mode than debug if the shared lines change
+/// parameters or the run has a seeded fault; `not_saved`.
 pub(crate) fn branch_of(
     folder: &Path,
     parent: &Manifest,
@@ -88,7 +87,7 @@ fn unnamed_branch(
         return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
     }
     if mode != Mode::Debug && parent.fault.is_some() {
-        let message = "it has a planted fault, so a branch of it is a debug run";
+        let message = "the run has a seeded fault, so its branches must be debug runs";
         return Err(Refusal::new("not_in_this_mode", message));
     }
     let shared = shared_lines(lines);
@@ -96,7 +95,7 @@ fn unnamed_branch(
         && parent.lesson.is_none()
         && shared.iter().any(|line| matches!(line.record, Record::Override(_)))
     {
-        let message = "parameters were set in its past, so a branch of it is a debug run";
+        let message = "the run has changed parameters, so its branches must be debug runs";
         return Err(Refusal::new("not_in_this_mode", message));
     }
     let manifest = Manifest {
@@ -115,7 +114,7 @@ fn unnamed_branch(
     UnnamedBranch::write(folder, &manifest, &shared).map_err(not_saved)
 }
 
-/// Starts a run that is another try of a lesson from a day on, and opens it.
+/// Creates another attempt at a lesson from a day on, and opens it.
 ///
 /// # Errors
 /// `not_saved`.
@@ -141,8 +140,8 @@ pub fn branch_of_lesson(
     UnnamedBranch::write(folder, &manifest, &shared).and_then(UnnamedBranch::name).map_err(not_saved)
 }
 
-/// What the lesson does on the day on which a step begins, before it does: the calls of its start, and what the step before
-/// came to.
+/// Returns the lesson's lines on the first day of a step, before the step starts: the calls of its start, and the
+/// judgement of the step before.
 fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
@@ -155,8 +154,7 @@ fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     lines.iter().take_while(move |line| line.day == day && !begins(line)).filter(is_of_lesson)
 }
 
-/// The lines before a decision day: those of the days before it and the week that ends on it, without what was
-/// decided on that day itself.
+/// Returns the lines before a decision day, including the end of the week on that day, without decisions made on it.
 fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
         let said_on_it = line.day == day && is_of_model(line);
@@ -166,12 +164,12 @@ fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
-/// Whether a language model said it: that is written before anything is decided on its day.
+/// Whether a language model produced the line. Such lines are written before the decisions of their day.
 fn is_of_model(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }
 
-/// Those lines that make a company what it is.
+/// Returns the lines that determine the state of the company.
 fn shared_lines(lines: &[Line]) -> Vec<&Line> {
     lines.iter().filter(|line| makes_company(line)).collect()
 }
@@ -185,7 +183,7 @@ fn makes_company(line: &Line) -> bool {
         )
 }
 
-/// Writes the files of a branch that shares some lines with its parent; nothing is opened.
+/// Writes the files of a branch that shares some lines with its parent, without opening it.
 ///
 /// # Errors
 /// The folder cannot be written.

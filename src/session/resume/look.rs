@@ -1,5 +1,5 @@
-//! Reading an unfinished baseline run by a command, without playing it: what its participant could learn by that stands in
-//! its trajectory.
+//! Reading an unfinished baseline run with a command. The read is recorded in the trajectory, because the participant
+//! can learn from the output.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{Activity, Look};
 use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
-/// Records that a command reads the run in a folder. Does nothing for runs that are over, or no baseline, or stand where
-/// nobody can go on with them.
+/// Records that a command reads the run in a folder. Does nothing for ended runs, for other modes, and for folders
+/// that cannot be written.
 ///
 /// # Errors
-/// Somebody plays the run; it is damaged; the disk refuses the line.
+/// The run is in use or damaged, or the line cannot be written.
 pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), RunError> {
     let manifest = manifest_of(folder)?;
     if manifest.mode != Mode::Baseline || !manifest.session_rules().records("look") {
@@ -30,15 +30,15 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
         Ok(lock) => lock,
         Err(RunError::NotWritable { .. }) => return Ok(()),
         Err(RunError::InUse { id, holder }) => {
-            // A run of a study is watched by nobody but its experimenter.
+            // Only the experimenter can watch a run of a study.
             let watch = if manifest.study.is_none() {
                 format!(", or watch it with `novamind play --run {id} --watch`")
             } else {
                 String::new()
             };
             return Err(RunError::NotPossible(format!(
-                "baseline run {id} is being played ({holder}), and {command} would show what its record does not tell; \
-                 try again when it is closed{watch}"
+                "baseline run {id} is being played ({holder}), and the output of {command} would not be recorded; try \
+                 again when the run is closed{watch}"
             )));
         }
         Err(error) => return Err(error),
@@ -46,7 +46,7 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
     let look = Activity::Look(Look { command: command.to_owned(), detail: detail.to_owned() });
     let trajectory = Trajectory::read(&path)?;
     if trajectory.unfinished > 0 || lacks_its_week(&trajectory) {
-        // What a stopped program has left has to be healed first, as when the run is opened for play.
+        // An interrupted run must be completed first, as when it is opened to play.
         drop(lock);
         let mut session = Session::open(folder, Access::Write, true)?;
         session.activity().note(look);
@@ -59,7 +59,7 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
     Ok(())
 }
 
-/// Whether a week was confirmed and not simulated.
+/// Whether a week was confirmed but not simulated.
 fn lacks_its_week(trajectory: &Trajectory) -> bool {
     let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
         Record::Advance(_) => Some(true),
@@ -108,19 +108,19 @@ mod tests {
     fn looks_stand_in_the_record_and_the_run_goes_on_from_them() {
         let runs = tempfile::tempdir().expect("a folder");
         let (folder, mut session) = baseline(runs.path(), 1);
-        let refused = record_look(&folder, "query", "SELECT 1").expect_err("it is played");
+        let refused = record_look(&folder, "query", "SELECT 1").expect_err("the run is in use");
         assert!(refused.to_string().contains("being played"), "{refused}");
         session.save().expect("saved");
         drop(session);
         record_look(&folder, "query", "SELECT 1").expect("recorded");
-        // `run.toml` may say what it likes: the first line says that it is a baseline.
+        // `run.toml` does not matter: the first line defines the mode.
         let manifest = folder.join("run.toml");
         let text = std::fs::read_to_string(&manifest).expect("a manifest");
         std::fs::write(&manifest, text.replace("\"baseline\"", "\"sandbox\"")).expect("written");
         record_look(&folder, "report", "markdown").expect("recorded");
         std::fs::write(&manifest, text).expect("written");
         let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
-        assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are as they were left");
+        assert_eq!(session.remarks(), [] as [&str; 0], "database and snapshot are unchanged");
         let rows = session.query("SELECT max(day) FROM ledger").expect("rows");
         assert_eq!(rows.rows.len(), 1);
         session.call(novamind_tools::ToolId::SetPrices, &json!({"A": 12}), Via::Script).expect("a call");
@@ -140,7 +140,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).expect("lines");
         let lines: Vec<&str> = text.lines().collect();
         let advance = lines.iter().position(|line| line.contains("\"kind\":\"advance\"")).expect("a week");
-        // Killed between the two lines of a week, and with half a line.
+        // The program was killed between the two lines of a week, while writing a line.
         std::fs::write(&path, lines[..=advance].join("\n") + "\n{\"seq\"").expect("written");
         for name in ["world.db", "snapshot.bin"] {
             let _ = std::fs::remove_file(folder.join(name));

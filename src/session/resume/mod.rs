@@ -1,4 +1,4 @@
-//! Runs on the disk that are not simply continued: branches, damaged runs, verification, the database of a run that nobody plays.
+//! Operations on stored runs: branches, recovery, verification, rebuilding of databases.
 
 pub(crate) mod branch;
 pub(crate) mod look;

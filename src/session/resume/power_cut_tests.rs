@@ -1,5 +1,4 @@
-//! Power cuts: whatever was not synced is gone, and nothing that was confirmed is
-//! (docs/formats/trajectory.md#durability).
+//! Tests of power cuts: unsynced data is lost, confirmed lines are not (docs/formats/trajectory.md#durability).
 
 use std::path::Path;
 
@@ -20,7 +19,7 @@ fn new_run(runs: &Path) -> NewRun {
     NewRun { seed: Some(8), storage: Storage::Runs(runs.to_owned()), ..NewRun::default() }
 }
 
-/// A run whose trajectory is on a disk that can fail.
+/// Creates a run whose trajectory is on a disk that can fail.
 fn session(new: NewRun) -> (Session, PageCache) {
     let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
@@ -29,7 +28,7 @@ fn session(new: NewRun) -> (Session, PageCache) {
     (session, cache)
 }
 
-/// A number below `sides`.
+/// Returns a random number below `sides`.
 fn roll(state: &mut u64, sides: u64) -> u64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 33) % sides
@@ -53,10 +52,10 @@ fn week(session: &mut Session) {
     session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 
-/// The run's folder as a disk shows it after the cut: a part of what was not synced may have reached it, in any file.
+/// Copies the run folder as it can be after a power cut: unsynced data of any file can be partly on the disk.
 fn after_the_cut(session: &Session, to: &Path, cache: &PageCache, chance: &mut u64) {
     let folder = session.folder().expect("a folder");
-    // The database's own care for power cuts is SQLite's affair; here its files are copied while they rest.
+    // SQLite handles power cuts of the database itself; its files are copied while nothing writes them.
     session.database().wait().expect("it is written");
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
@@ -116,7 +115,7 @@ fn headless_runs_keep_every_complete_week() {
             session.call("set_prices", &prices, Via::Policy).expect("prices");
         }
         if roll(&mut chance, 2) == 0 {
-            // A policy that asks gets what it has done; the database never knows more than the disk.
+            // A query of a policy returns the effects of its calls; the database is never ahead of the disk.
             session.query("SELECT COUNT(*) FROM config_history").expect("rows");
         }
         let place = places.path().join(number.to_string());
@@ -177,7 +176,7 @@ fn a_last_week_whose_lines_miss_the_disk_ends_the_run() {
     assert!(last.remark.expect("the disk is full").contains("simulated again"));
     let refused = session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect_err("it is over");
     assert_eq!((refused.code, session.weeks().len(), session.day()), ("run_over", 4, 28));
-    // Nothing follows an end that is not on the disk.
+    // No line can follow an end that is not on the disk.
     let afterwards = session.folder().expect("a folder").join("afterwards.jsonl");
     assert_eq!(session.set_memo("after the end").expect_err("no room").code, "not_saved");
     assert!(!afterwards.exists());
@@ -217,7 +216,7 @@ fn names_of_runs_and_archives_are_on_the_disk() {
     let runs = place.path().join("new/runs");
     probe::reset(true);
     assert!(Session::create(new_run(&runs), &Configuration::shipped()).is_err());
-    assert!(!place.path().join("new").exists(), "nothing is left");
+    assert!(!place.path().join("new").exists(), "no folder remains");
     probe::reset(false);
     let mut session = Session::create(new_run(&runs), &Configuration::shipped()).expect("a run");
     let folder = session.folder().expect("a folder").to_owned();

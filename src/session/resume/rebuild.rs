@@ -1,4 +1,4 @@
-//! The database of a run that nobody plays, brought up to date on its disk; the run itself is only read.
+//! Rebuilding the database file of a stored run; the run itself is only read.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,11 +17,11 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_tools::Refusal;
 
-/// Brings `world.db` up to the last line of the trajectory, or makes it anew. `progress` is told each day that is reached
-/// and the last day of the run. The key is that of the run's snapshots.
+/// Brings `world.db` up to the last line of the trajectory, or rebuilds it. `progress` is called with each day
+/// reached and the last day of the run. `key` is the key of the run's snapshots.
 ///
 /// # Errors
-/// The run is damaged, of another version, or in use; its folder cannot be written.
+/// The run is damaged, of another version or in use, or its folder cannot be written.
 pub fn rebuild_database(
     folder: &Path,
     key: &SealKey,
@@ -48,14 +48,14 @@ pub fn rebuild_database(
     if end_may_be_kept(folder, &manifest, &trajectory, key) {
         session.write_snapshot(place, true);
     } else if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
-        // The file is another one now: what vouched for the old one would call it damaged.
+        // The database file has changed: update its digest in the snapshot.
         session.database().then(true, move |digest| closed.vouch_for(&place, digest));
     }
     Ok(session.database().wait()?)
 }
 
-/// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown, and the
-/// file is not one that only the secret of a study opens.
+/// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown,
+/// and the existing snapshot is not sealed with the secret of a study.
 fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
     let ended = trajectory.end().and_then(|line| match &line.record {
         Record::End(end) => Some(end.reason),
@@ -64,11 +64,11 @@ fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, 
     ended.is_some() && may_look_inside(manifest, ended, Some(folder)) && SnapshotPlace::may_write(folder, key)
 }
 
-/// A connection to the database file of a run as it stands, and the line of the trajectory that it stands at. The key is
-/// that of the run's snapshots.
+/// Opens a connection to the database file of a run as it is, and returns the line of the trajectory that it
+/// corresponds to. `key` is the key of the run's snapshots.
 ///
 /// # Errors
-/// The file is missing, no database of a run, or not the one that the program left when the run was closed.
+/// The file is missing, is not the database of a run, or was changed after the run was closed.
 pub fn connection_to_file(folder: &Path, key: &SealKey) -> Result<(QueryConnection, Position), Refusal> {
     if !is_as_left(folder, key) {
         return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
@@ -78,8 +78,8 @@ pub fn connection_to_file(folder: &Path, key: &SealKey) -> Result<(QueryConnecti
 }
 
 impl Session {
-    /// Opens a run to read it. If the run has ended and had to be simulated, snapshot and database are kept in its folder, if it
-    /// can be written: the next command opens it at once.
+    /// Opens a run for reading. If the run has ended and had to be simulated, stores snapshot and database in its
+    /// folder, if possible, so that the next command opens it immediately.
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -92,7 +92,7 @@ impl Session {
         Session::open_and_keep(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
-    /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if another program uses the run, or if
+    /// Writes the snapshot of an ended run that was simulated for reading. Does nothing if the run is in use, or if
     /// its folder cannot be written.
     fn keep_end(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
@@ -114,7 +114,7 @@ mod tests {
 
     const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];
 
-    /// A run of two weeks whose files that can be made again are removed, as after an import.
+    /// Creates a run of two weeks without derived files, as after an import.
     fn imported(runs: &Path, mode: Mode, ends: bool) -> PathBuf {
         let storage = Storage::Runs(runs.to_owned());
         let participant = Some("P01".to_owned());
@@ -140,7 +140,7 @@ mod tests {
         DERIVED.into_iter().filter(|file| folder.join(file).exists()).collect()
     }
 
-    /// How many lines the next command simulates again, and whether it asks the database in the folder.
+    /// Returns the number of lines that the next command simulates, and whether it uses the database file.
     fn next_opening(folder: &Path) -> (usize, bool) {
         let manifest = Derived::of(folder).expect("a manifest").manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
@@ -158,7 +158,7 @@ mod tests {
             let runs = tempfile::tempdir().expect("a folder");
             let folder = imported(runs.path(), mode, true);
             let whole = Session::open(&folder, Access::Read, true).expect("it opens");
-            assert_eq!(derived_files(&folder), [""; 0], "an ordinary opening writes nothing");
+            assert_eq!(derived_files(&folder), [""; 0], "Session::open writes nothing");
             let first = Session::open_to_read(&folder, true).expect("it opens");
             assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
             let second = Session::open_to_read(&folder, true).expect("it opens");
@@ -180,7 +180,7 @@ mod tests {
         let folder = imported(runs.path(), Mode::Sandbox, true);
         Session::open_to_read(&folder, false).expect("it opens");
         assert_eq!((derived_files(&folder), next_opening(&folder)), (vec!["snapshot.bin"], (0, false)));
-        // The database follows when it is needed.
+        // The database is stored when it is needed.
         Session::open_to_read(&folder, true).expect("it opens");
         assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
     }

@@ -1,4 +1,4 @@
-//! A recorded run to be simulated again: where its lines come from, and what it began with.
+//! The origin of a recorded run: its lines, manifest and parameters.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,31 +12,31 @@ use novamind_record::trajectory::record::Activity;
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_world::params::Params;
 
-/// Where the lines come from.
+/// The origin of recorded lines.
 pub struct Origin {
     /// The trajectory.
     pub path: PathBuf,
-    /// Folder of the run; none for a trajectory that stands alone.
+    /// Folder of the run; `None` for a trajectory without a run folder.
     pub folder: Option<PathBuf>,
     /// The manifest.
     pub manifest: Manifest,
-    /// The parameters that the run was recorded with.
+    /// The parameters at the start of the run.
     pub params: Arc<Params>,
 }
 
 impl Origin {
-    /// A session before the first line, whose database is in memory.
+    /// Creates a session before the first line, with a database in memory.
     pub(crate) fn begin(&self) -> Result<Session, RunError> {
         let (projector, _) = Projector::start(Location::memory(), 0, self.params.clone(), |_| false)?;
         let (manifest, params) = (self.manifest.clone(), self.params.clone());
         Ok(Session::unwritten(manifest, self.folder.clone(), params, Some(projector)))
     }
 
-    /// Simulates recorded lines again in memory. After each line, `after_line` sees the session as it was then. With
-    /// `has_database`, the database is complete at each note of a lesson.
+    /// Replays recorded lines in memory. Calls `after_line` after each line, with the session at this point. With
+    /// `has_database`, the database is complete at each lesson note.
     ///
     /// # Errors
-    /// The first line whose recorded state does not reproduce, or the first error of `after_line`.
+    /// The first line that does not reproduce, or the first error of `after_line`.
     pub fn replay(
         &self,
         lines: &[Line],
@@ -57,7 +57,7 @@ impl Origin {
     }
 }
 
-/// Reads the lines of a run's folder, or of a trajectory file that stands alone.
+/// Reads the lines of a run folder, or of a trajectory file without one.
 pub fn read(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     let (file, folder) = match path.is_dir() {
         true => (path.join("trajectory.jsonl"), Some(path.to_owned())),

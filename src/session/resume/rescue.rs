@@ -1,4 +1,4 @@
-//! The undamaged beginning of a damaged run, as a branch; the run itself is not touched.
+//! Recovery of the undamaged prefix of a damaged run, as a branch. The run itself is not changed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,26 +13,26 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::{DOES_NOT_FOLLOW, Line, Trajectory};
 
-/// What was saved of a damaged run.
+/// The result of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rescued {
     /// The new run.
     pub run: String,
     /// Its mode.
     pub mode: Mode,
-    /// Lines of the damaged one that are in it, from its first.
+    /// Number of recovered lines, from the first.
     pub lines: usize,
-    /// Day on which the new run stands.
+    /// Last day of the new run.
     pub day: u32,
-    /// What is wrong with the damaged run.
+    /// The damage.
     pub problem: String,
 }
 
-/// Makes a branch of the lines that are good beyond doubt: their own sums vouch for them, or the state that was
-/// reached again. A baseline run becomes a sandbox. The key is that of the run's snapshots.
+/// Creates a branch from the lines that are certainly valid, by their checksums or by a reproduced state. A baseline
+/// run becomes a sandbox. `key` is the key of the run's snapshots.
 ///
 /// # Errors
-/// The run is not damaged; nothing of it can be used; the branch cannot be written.
+/// The run is not damaged, no line of it can be used, or the branch cannot be written.
 pub fn rescue(folder: &Path, key: &SealKey) -> Result<Rescued, RunError> {
     let path = folder.join("trajectory.jsonl");
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
@@ -47,7 +47,7 @@ pub fn rescue(folder: &Path, key: &SealKey) -> Result<Rescued, RunError> {
         None => match Integrity::of(folder, &manifest, key).check(&path, &trajectory) {
             Err(problem) => problem.to_string(),
             Ok(()) => {
-                let message = format!("run {} is not damaged; there is nothing to rescue", manifest.id);
+                let message = format!("run {} is not damaged; there is nothing to recover", manifest.id);
                 return Err(RunError::NotPossible(message));
             }
         },
@@ -59,7 +59,7 @@ pub fn rescue(folder: &Path, key: &SealKey) -> Result<Rescued, RunError> {
     Ok(Rescued { run, mode, lines: good, day, problem: words })
 }
 
-/// Number of lines that are good beyond doubt; a line whose state is another one is a problem too.
+/// Returns the number of certainly valid lines. Sets `problem` if a state does not reproduce.
 fn replayed(
     path: &Path,
     manifest: &Manifest,
@@ -68,7 +68,7 @@ fn replayed(
 ) -> Result<usize, RunError> {
     let params = Arc::new(manifest.params()?);
     let mut session = Session::unwritten(manifest.clone(), None, params, None);
-    // The start, and lines up to the last state that was reached again.
+    // Number of lines up to the last reproduced state; at least the first.
     let mut reached = 1;
     for (at, line) in lines.iter().enumerate() {
         if let Err(error) = session.apply_line(path, line) {
@@ -77,8 +77,8 @@ fn replayed(
                 other => other.to_string(),
             };
             *problem = Some((at + 1, words));
-            // Nothing vouches for the last line: it may be the wrong one itself. Another one that contradicts its past
-            // makes everything doubtful since the last state that was reached.
+            // If the last line fails, only this line is invalid. If an earlier line fails, all lines since the last
+            // reproduced state are doubtful.
             return Ok(if at + 1 == lines.len() { at } else { reached });
         }
         if line.closes_days() {
@@ -86,7 +86,8 @@ fn replayed(
         }
     }
     let summed = lines.first().is_some_and(Line::promises_sums);
-    // A line's own sum vouches for it, unless the next one contradicts it. Without sums only its state does.
+    // A checksum validates a line, unless the next line contradicts it. Lines without checksums are validated only by
+    // their state.
     let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == DOES_NOT_FOLLOW);
     Ok(if doubtful { reached.max(lines.len() - 1) } else { lines.len() })
 }
@@ -97,7 +98,7 @@ mod tests {
     use crate::playback::tests::{Recorded, recorded};
     use crate::resume::verify::verify;
 
-    /// Damages a copy of a run's trajectory and rescues it.
+    /// Damages a copy of a run's trajectory and recovers it.
     fn rescued(run: &Recorded, damage: impl Fn(&mut Vec<u8>)) -> Result<Rescued, RunError> {
         let path = run.folder.join("trajectory.jsonl");
         let whole = std::fs::read(&path).expect("a trajectory");
@@ -105,7 +106,7 @@ mod tests {
         damage(&mut bytes);
         std::fs::write(&path, &bytes).expect("written");
         let rescued = rescue(&run.folder, &SealKey::default());
-        assert_eq!(std::fs::read(&path).expect("a trajectory"), bytes, "the run itself was changed");
+        assert_eq!(std::fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");
         std::fs::write(&path, whole).expect("written");
         rescued
     }
@@ -122,11 +123,11 @@ mod tests {
         let whole = Trajectory::parse(&bytes).expect("it is whole");
         for line in 1..whole.lines.len() {
             let (from, to) = (start_of(&bytes, line), start_of(&bytes, line + 1));
-            // Somewhere in every line: early, in the middle and late by turns.
+            // A position at the start, in the middle or at the end of the line.
             let at = [from + 2, from + (to - from) / 2, to - 3][line % 3];
             let found = rescued(&run, |bytes| bytes[at] ^= 0x04);
             let Ok(found) = found else {
-                // Of the last line only what the state or the database vouches for can be wrong.
+                // Damage in the last line is detected only by its state or by the database.
                 assert_eq!(line + 1, whole.lines.len(), "{found:?}");
                 continue;
             };
@@ -156,12 +157,12 @@ mod tests {
         let run = recorded(Mode::Sandbox, 2);
         std::fs::write(run.folder.join("run.toml"), "seed = [").expect("written");
         let whole = rescue(&run.folder, &SealKey::default())
-            .expect_err("the first line tells what it is")
+            .expect_err("the first line replaces the manifest")
             .to_string();
         assert!(whole.contains("not damaged"), "{whole}");
         let found =
             rescued(&run, |bytes| bytes.truncate(bytes.len() - 1)).err().map(|error| error.to_string());
-        assert!(found.is_some_and(|words| words.contains("not damaged")), "an unfinished line is no damage");
+        assert!(found.is_some_and(|words| words.contains("not damaged")), "an unfinished line is not damage");
         let found = rescued(&run, |bytes| {
             let at = start_of(bytes, 9) + 20;
             bytes[at] ^= 4;

@@ -1,5 +1,5 @@
-//! Branches that are being made: they lie in a folder that no list shows, and get the name of a run once they are whole. A
-//! program that ends before that leaves nothing that looks like a run.
+//! Branches under construction. They are in a staging folder that is not listed, and are renamed once complete. A
+//! program that stops before leaves nothing that looks like a run.
 
 use std::path::{Path, PathBuf};
 
@@ -16,18 +16,18 @@ use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Branch;
 use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 
-/// The folder of a branch without a name; it goes with this, unless the branch was named.
+/// A branch in a staging folder, which is removed on drop unless the branch was published.
 pub struct UnnamedBranch {
     folder: PathBuf,
-    /// Where it will lie.
+    /// Folder after publication.
     named: PathBuf,
 }
 
 impl UnnamedBranch {
-    /// Writes a branch beside its parent: what it is, the lines it shares, and that it is a branch.
+    /// Writes a branch next to its parent: manifest, shared lines and the branch line.
     ///
     /// # Errors
-    /// The disk refuses; then there is nothing.
+    /// The disk fails; then no folder remains.
     pub(crate) fn write(
         parent: &Path,
         manifest: &Manifest,
@@ -51,18 +51,18 @@ impl UnnamedBranch {
         write_branch(folder, manifest, shared)
     }
 
-    /// Opens it where it lies.
+    /// Opens the branch in its staging folder.
     ///
     /// # Errors
-    /// It cannot be opened.
+    /// The branch cannot be opened.
     pub fn open(&self) -> Result<Session, RunError> {
         Session::open(&self.folder, Access::Write, true)
     }
 
-    /// Makes it a run: it gets its name, and is opened. Nothing else may have it open.
+    /// Publishes the branch as a run and opens it. No other session may have it open.
     ///
     /// # Errors
-    /// The disk refuses, or it cannot be opened; then there is no branch.
+    /// The disk fails, or the branch cannot be opened; then no branch remains.
     pub fn name(self) -> Result<Session, RunError> {
         let UnnamedBranch { folder, named } = &self;
         std::fs::rename(folder, named).map_err(RunError::io(named))?;
@@ -71,17 +71,17 @@ impl UnnamedBranch {
             .map_or(Ok(()), sync_folder)
             .and_then(|()| Session::open(named, Access::Write, true));
         if opened.is_err() {
-            // A branch that cannot be opened is nobody's run.
+            // Remove a branch that cannot be opened.
             drop(std::fs::remove_dir_all(named));
         }
         opened
     }
 }
 
-/// Writes the files of a branch into its folder: what it is, the lines it shares, and that it is a branch.
+/// Writes the files of a branch into its folder: manifest, shared lines and the branch line.
 ///
 /// # Errors
-/// The disk refuses.
+/// The disk fails.
 pub(super) fn write_branch(folder: &Path, manifest: &Manifest, shared: &[&Line]) -> Result<(), RunError> {
     manifest.write(folder)?;
     let mut writer = TrajectoryWriter::create(&folder.join("trajectory.jsonl"))?;

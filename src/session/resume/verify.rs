@@ -1,4 +1,4 @@
-//! Whether a recorded run is what its decisions make of it.
+//! Verification of recorded runs.
 
 use std::path::Path;
 
@@ -8,14 +8,14 @@ use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 
-/// What a verification found out.
+/// The result of a verification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verification {
-    /// Run.
+    /// Identifier of the run.
     pub run: String,
-    /// Lines that were checked.
+    /// Number of checked lines.
     pub lines: usize,
-    /// Weeks and steps whose state was reached again.
+    /// Number of weeks and steps whose state was reproduced.
     pub states: usize,
     /// Last day.
     pub day: u32,
@@ -23,19 +23,19 @@ pub struct Verification {
     pub state_hash: String,
 }
 
-/// Simulates a recorded run again, the one of a folder or a trajectory file that stands alone, and compares every
-/// recorded state; nothing is changed.
+/// Simulates a recorded run again, from a folder or a trajectory file, and compares every recorded state. Changes
+/// nothing.
 ///
 /// # Errors
-/// The first line that does not fit; or the run is missing or of another version.
+/// The first line that does not reproduce, or the run is missing or of another version.
 pub fn verify(path: &Path) -> Result<Verification, RunError> {
     verify_sealed(path, &SealKey::default())
 }
 
-/// As [`verify`], for a run whose snapshots a key seals.
+/// Like [`verify`], for a run whose snapshots are sealed with `key`.
 ///
 /// # Errors
-/// The same.
+/// As [`verify`].
 pub fn verify_sealed(path: &Path, key: &SealKey) -> Result<Verification, RunError> {
     let (origin, trajectory) = read(path)?;
     let Origin { path, folder, manifest, params } = origin;

@@ -1,11 +1,11 @@
-//! `snapshot.bin`: the whole state at one line of the trajectory, so that a long run opens at once.
+//! `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
 //!
-//! Never the truth: a snapshot is used only if it is whole, was written by this version for this run and these
-//! parameters, and stands at a line that the trajectory still has. Otherwise the run is simulated from its
-//! beginning, which costs time and nothing else (docs/formats/snapshot.md).
+//! A snapshot is used only if it is intact, was written by this version for this run and these parameters, and
+//! belongs to a line that is in the trajectory. Otherwise the run is simulated from its start, which only takes
+//! longer (docs/formats/snapshot.md).
 //!
-//! The file is a title line, an envelope, and the sealed rest, which is canonical bytes: header and notes as JSON texts,
-//! the notes deflated, then what the world and the session hold as numbers.
+//! The file has a title line, an envelope and sealed canonical bytes: header and history as JSON, the history
+//! deflated, then the numbers of world and session.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -40,36 +40,36 @@ use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Res
 use novamind_world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
-/// After the title: whether the secret of a study is needed to open it.
+/// After the title: whether the secret of a study is needed.
 const OF_RUN: u8 = b'r';
 const OF_STUDY: u8 = b's';
-/// The file whose first line the keys are made of.
+/// The keys are derived from its first line.
 const TRAJECTORY: &str = "trajectory.jsonl";
-/// Name of the file in a run's folder.
+/// File name in the run folder.
 pub(crate) const FILE: &str = "snapshot.bin";
-/// Room for a subscriber: columns and the facts of a day need 190 bytes or so. Room that nobody takes costs nothing;
-/// room that is too small costs a copy of everything.
+/// Initial capacity per subscriber: columns and a day's facts need about 190 bytes. Unused capacity costs nothing;
+/// too little costs a copy of everything.
 const BYTES_OF_A_SUBSCRIBER: usize = 320;
-/// Weeks between two snapshots of a run that is played.
+/// Weeks between two snapshots of a played run.
 pub(crate) const WEEKS_BETWEEN: usize = 4;
 
-/// What a snapshot is of.
+/// Identifies the state of a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Header {
     /// Version of the program that wrote it.
     version: String,
     run: String,
     parameters_digest: String,
-    /// Line of the trajectory it stands at.
+    /// Line of the trajectory.
     seq: u64,
     line_hash: String,
-    /// Hash of the state it holds.
+    /// Hash of the state.
     state_hash: String,
-    /// Digest of the database's file as it was then, if the run was closed in order.
+    /// Digest of the database file at this line, if the run was closed properly.
     database: Option<String>,
 }
 
-/// What a session knows in words: borrowed when it is kept, owned when it is read back.
+/// The history of a session: borrowed for writing, owned for reading.
 #[derive(Serialize, Deserialize)]
 struct Notes<'a> {
     weeks: Cow<'a, [WeekFigures]>,
@@ -86,13 +86,13 @@ struct Notes<'a> {
     last_dashboard: Option<Cow<'a, str>>,
     facts_chain: (String, bool),
     ended: Option<Ended>,
-    /// Answers to weeks whose requests carried an id.
+    /// Responses to weeks whose requests have an id.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     answered_weeks: Vec<(RequestId, Week)>,
 }
 
 impl Notes<'_> {
-    /// Deflated JSON: a journal of thousands of offers repeats itself.
+    /// Compresses, because a journal with thousands of offers is repetitive.
     fn packed(&self) -> Vec<u8> {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(&serde_json::to_vec(self).unwrap_or_default());
@@ -105,22 +105,21 @@ impl Notes<'_> {
         serde_json::from_str(&text).ok()
     }
 
-    /// No days have run yet.
     fn cannot_have_a_dashboard(&self) -> bool {
         self.weeks.is_empty() && self.running_week.days_run == 0
     }
 }
 
-/// A snapshot file that is whole.
+/// An intact snapshot file.
 pub(crate) struct Snapshot {
     header: Header,
-    /// Title, envelope and everything after them, opened.
+    /// Title, envelope and the unsealed rest.
     file: Vec<u8>,
-    /// Where the notes begin.
+    /// Offset of the history.
     notes_at: usize,
 }
 
-/// What a session gets back from a snapshot.
+/// The restored parts of a session.
 pub(crate) struct Recalled {
     pub(crate) simulation: Simulation,
     pub(crate) history: History,
@@ -128,10 +127,10 @@ pub(crate) struct Recalled {
 }
 
 impl Snapshot {
-    /// The snapshot in a run's folder; none if there is none.
+    /// Reads the snapshot in a run folder; `None` if there is none.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// A description of the problem with the file.
     pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
         let mut file = match std::fs::read(folder.join(FILE)) {
             Ok(file) => file,
@@ -147,34 +146,35 @@ impl Snapshot {
         Ok(Some(Snapshot { header, file, notes_at }))
     }
 
-    /// The line of the trajectory it stands at.
+    /// Returns the line of the trajectory.
     pub(crate) fn position(&self) -> Position {
         Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
     }
 
-    /// Digest of the database's file as it was then, if the run was closed in order.
+    /// Returns the digest of the database file at this line, if the run was closed properly.
     pub(crate) fn database(&self) -> Option<&str> {
         self.header.database.as_deref()
     }
 
-    /// Vouches for a database that was made anew as of the same line.
+    /// Replaces the digest of the database, which was rebuilt up to the same line.
     pub(crate) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
         let header = Header { database, ..self.header };
         place.write(&header, &mut self.file[self.notes_at..]);
     }
 
-    /// Whether it is one of this run.
+    /// Whether the snapshot is of this run.
     pub(crate) fn is_of(&self, run: &str) -> bool {
         self.header.run == run
     }
 
-    /// Whether it was written by this version under these parameters.
+    /// Whether it was written by this version with these parameters.
     pub(crate) fn fits(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
-    /// The state of a run that began with some parameters and has these lines; none if it is not the one it claims to be.
+    /// Restores the state of a run that started with `params` and has these lines. Returns `None` if the state does
+    /// not match its hash.
     pub(crate) fn recall(
         &self,
         manifest: &Manifest,
@@ -183,7 +183,8 @@ impl Snapshot {
     ) -> Option<Recalled> {
         let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
         let notes = Notes::unpacked(&reader.read::<Vec<u8>>()?)?;
-        // Snapshots of earlier builds lack it, and it cannot be made of a state that was changed since.
+        // Snapshots of earlier builds lack the dashboard, and it cannot be rebuilt from a state that has changed
+        // since.
         if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
             return None;
         }
@@ -243,19 +244,19 @@ impl Restore for Step {
     }
 }
 
-/// The state of a session as a snapshot keeps it.
+/// The state of a session to store in a snapshot.
 pub(crate) struct KeptState<'a> {
     pub(crate) manifest: &'a Manifest,
     pub(crate) simulation: &'a Simulation,
     pub(crate) history: &'a History,
     pub(crate) notebook: &'a Notebook,
-    /// The line of the trajectory at which it stands.
+    /// Line of the trajectory.
     pub(crate) position: Position,
 }
 
 impl KeptState<'_> {
-    /// Returns a function that writes the snapshot, given the digest of the database's file if it vouches for that. The state
-    /// is copied now, so the function can run on another thread while the company changes.
+    /// Returns a function that writes the snapshot, given the digest of the database file or `None`. The state is
+    /// copied now, so the function can run on another thread while the company changes.
     pub(crate) fn writer(
         &self,
         state_hash: String,
@@ -313,7 +314,7 @@ impl KeptState<'_> {
     }
 }
 
-/// Opens the sealed part of a file in its place; returns where it begins.
+/// Unseals a file in place. Returns the offset of the unsealed part.
 fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
     let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
     let (&of, rest) = rest.split_first().ok_or("is cut short")?;
@@ -329,44 +330,44 @@ fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'s
     own.for_run(&first).open(&envelope, &mut file[at..]).then_some(at).ok_or("is damaged or of another run")
 }
 
-/// Where the snapshots of a run go, and what seals them.
+/// The path of a run's snapshot, and the keys that seal it.
 pub(crate) struct SnapshotPlace {
     path: PathBuf,
     of: u8,
-    /// None where the trajectory is not in its place: then nothing is kept of the run.
+    /// `None` if the trajectory is missing; then no snapshot is written.
     keys: Option<RunKeys>,
 }
 
 impl SnapshotPlace {
-    /// That of the run in a folder.
+    /// Returns the target for the run in a folder.
     pub(crate) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
         let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
         let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
         SnapshotPlace { path: folder.join(FILE), of, keys }
     }
 
-    /// Whether a program with a key may replace the snapshot of a folder: without the secret of a study it keeps one that only the
-    /// secret opens.
+    /// Whether a program with this key may replace the snapshot in a folder. A snapshot sealed with the secret of a
+    /// study is replaced only with that secret.
     pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];
         let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut begin));
         key.has_secret() || read.is_err() || begin[TITLE.len()] != OF_STUDY
     }
 
-    /// Writes a snapshot in place of the old one; the state is sealed in its place. Not synced: after a power cut its tag
-    /// tells whether it is whole.
+    /// Writes a snapshot in place of the old one and seals the state in place. Does not sync: after a power cut the
+    /// tag shows whether the file is intact.
     fn write(&self, header: &Header, state: &mut [u8]) {
         let Some(keys) = &self.keys else { return };
         let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
         let envelope = keys.seal(&mut header, state).bytes();
         let draft = self.path.with_extension("draft");
-        // Piece by piece: a large state is a good part of the memory already.
+        // Written in pieces, because a large state is a large part of the memory.
         let pieces = [TITLE, &[self.of], &envelope, &header, state];
         let written = File::create(&draft)
             .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
             .and_then(|()| std::fs::rename(&draft, &self.path));
         if written.is_err() {
-            // Half a file helps nobody, least of all on a disk that is full.
+            // A partial file is useless and takes space on a full disk.
             let _ = std::fs::remove_file(&draft);
         }
     }

@@ -1,7 +1,6 @@
-//! What vouches for the end of a trajectory, and for the database.
+//! Checks of the end of a trajectory and of the database.
 //!
-//! Nothing follows the last line, but the database and the snapshot remember how far it went: a cut at a line end
-//! shows here.
+//! Database and snapshot store the last line, so that a trajectory cut at a line end is detected.
 
 use std::path::Path;
 
@@ -16,39 +15,39 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::VoiceAnswer;
 use novamind_record::trajectory::{BRANCH_THEM, Record, Trajectory};
 
-/// What stood beside the trajectory before it was read.
+/// Snapshot and database position, read before the trajectory.
 pub struct Integrity {
-    /// The snapshot, if there is one that is whole.
+    /// The snapshot, if it is intact.
     pub(crate) snapshot: Option<Snapshot>,
-    /// How far the database has come, if it can be read.
+    /// Last line of the database, if it can be read.
     database: Option<Position>,
-    /// The database is one of another run.
+    /// Whether the database belongs to another run.
     foreign: bool,
-    /// What the person should know about them.
+    /// Problems that the user should know.
     pub remarks: Vec<String>,
 }
 
 impl Integrity {
-    /// Asks them. Has to come before the trajectory is read, which may grow in between.
+    /// Reads snapshot and database position. Must be called before the trajectory is read, which can grow in between.
     pub fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
             remarks
-                .push(format!("{FILE} {problem} and is not used: the run was simulated from its beginning."));
+                .push(format!("{FILE} {problem} and is not used: the run was simulated from its start."));
             None
         });
-        // A stranger's snapshot says nothing about this run.
+        // A snapshot of another run is irrelevant.
         let snapshot = snapshot.filter(|snapshot| snapshot.is_of(&manifest.id));
         let foreign = owner_of(&location(folder)).is_some_and(|owner| owner != manifest.number());
-        // Nor does a stranger's database.
+        // So is a database of another run.
         let database = if foreign { None } else { position_of(&location(folder)) };
         Integrity { snapshot, database, foreign, remarks }
     }
 
-    /// Whether the trajectory goes as far as they remember.
+    /// Checks that the trajectory contains the lines of database and snapshot.
     ///
     /// # Errors
-    /// The first line that is missing or is not the one they saw.
+    /// [`RunError::Damaged`] with the first missing or changed line.
     pub fn check(&self, path: &Path, trajectory: &Trajectory) -> Result<(), RunError> {
         let database = self.database.clone().map(|position| ("world.db", position));
         let snapshot = self.snapshot.as_ref().map(|snapshot| (FILE, snapshot.position()));
@@ -60,20 +59,20 @@ impl Integrity {
                 line: line as usize,
                 problem: format!("{problem} ({file} was made from it)"),
                 safe: format!(
-                    "Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}. To continue this run, restore the \
-                     whole trajectory from a copy"
+                    "Lines 1 to {good} are intact; nothing was changed{BRANCH_THEM}. To continue this run, restore the \
+                     complete trajectory from a copy"
                 ),
             })
         })
     }
 
-    /// Whether the database was made from more lines than the trajectory has.
+    /// Whether the database has lines that the trajectory lacks.
     pub(crate) fn is_ahead_of(&self, trajectory: &Trajectory) -> bool {
         let last = trajectory.lines.last().map(|line| line.seq);
         self.database.as_ref().is_some_and(|position| Some(position.seq) > last)
     }
 
-    /// Whether the database's file is the one that an orderly end left; none where no end tells.
+    /// Whether the database file is the one that was left when the run was closed; `None` if this is unknown.
     fn is_as_closed(&self, folder: &Path) -> Option<bool> {
         let position = self.database.as_ref()?;
         let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position)?;
@@ -81,7 +80,7 @@ impl Integrity {
         Some(file_digest(&folder.join("world.db")).as_deref() == Some(digest))
     }
 
-    /// The database of a run that has ended, if its file is the one that the end left and holds every line.
+    /// Returns the database of an ended run, if its file is unchanged and complete.
     pub(crate) fn finished_database(&self, folder: &Path, trajectory: &Trajectory) -> Option<Location> {
         let last = trajectory.lines.last().filter(|line| matches!(line.record, Record::End(_)))?;
         let position = self.database.as_ref()?;
@@ -90,7 +89,7 @@ impl Integrity {
         (complete && has_layout_of_now(&own) && self.is_as_closed(folder) == Some(true)).then_some(own)
     }
 
-    /// The snapshot from which the run can go on: its line is in the trajectory, and the database lacks no row before it.
+    /// Returns the snapshot, if its line is in the trajectory and the database lacks no row before it.
     pub(crate) fn usable_snapshot(
         &self,
         manifest: &Manifest,
@@ -104,8 +103,8 @@ impl Integrity {
         (line.hash == position.line_hash && complete).then_some(snapshot)
     }
 
-    /// Whether the database can be gone on with. After an orderly end its whole file is compared; after a crash
-    /// its structure is.
+    /// Whether the database can be continued. Compares the digest of the file if the run was closed properly,
+    /// otherwise checks its structure.
     pub(crate) fn vouch_for_database(&mut self, folder: &Path) -> bool {
         let file = folder.join("world.db");
         if !file.exists() {
@@ -128,19 +127,19 @@ fn location(folder: &Path) -> Location {
     Location::File(folder.join("world.db"))
 }
 
-/// Whether nobody has changed the database's file since the run was closed.
+/// Whether the database file is unchanged since the run was closed.
 pub(crate) fn is_as_left(folder: &Path, key: &SealKey) -> bool {
     let Ok(Derived { manifest, .. }) = Derived::of(folder) else { return false };
     Integrity::of(folder, &manifest, key).is_as_closed(folder).unwrap_or(true)
 }
 
-/// Line, from 1, that a remembered position shows to be missing or changed.
+/// Returns the line, from 1, that is missing or changed according to a stored position.
 fn contradiction(trajectory: &Trajectory, position: &Position) -> Option<(u64, &'static str)> {
     let last = trajectory.lines.last()?;
-    // A torn line is cut off with a notice, and a week that lacks its closing lines is simulated again: week and end.
+    // An incomplete line is removed with a notice. A week without its closing lines is simulated again: week and end.
     let is_open = matches!(last.record, Record::Advance(_) | Record::Voice(VoiceAnswer::Scores(_)));
     let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
-    // A language model that is not asked again leaves out the line of its words, and of its scores.
+    // A language model that is not asked again writes no line for its texts and its scores.
     let of_week = if has_model { 4 } else { 2 };
     let healing = if is_open { of_week } else { u64::from(trajectory.unfinished > 0) };
     match trajectory.lines.get(position.seq as usize) {

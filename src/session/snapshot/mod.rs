@@ -1,4 +1,4 @@
-//! The snapshot of a run: its file, what seals it, and what it says about trajectory and database.
+//! Snapshots of a run: file format, sealing, and checks of trajectory and database.
 
 pub(crate) mod file;
 pub(crate) mod integrity;

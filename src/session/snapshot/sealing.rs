@@ -1,37 +1,37 @@
-//! Sealing the state of a run: encrypted and authenticated, so that neither `strings` nor a parser reads what is hidden
-//! (docs/formats/snapshot.md#sealing).
+//! Sealing: the state of a run is encrypted and authenticated, so that neither `strings` nor a parser can read hidden
+//! state (docs/formats/snapshot.md#sealing).
 //!
-//! Keys are derived from the first line of the trajectory and, in a study, from a secret that stays with the experimenter.
-//! The nonce is a keyed hash of what is sealed, so no two states of a run share a key stream; the tag is a keyed hash of
-//! nonce and sealed bytes.
+//! Keys are derived from the first line of the trajectory and, in a study, from a secret of the experimenter. The
+//! nonce is a keyed hash of the plain bytes, so that no two states of a run have the same key stream. The tag is a
+//! keyed hash of nonce and sealed bytes.
 
 use std::fmt;
 
-/// Separates these keys from every other use of the same hash.
+/// Separates these keys from other uses of the same hash.
 const CONTEXT: &str = "novamind 2026-11 sealed state of a run";
-/// Bytes of a key stream that are made at a time.
+/// Bytes of the key stream generated at a time.
 const PIECE: usize = 1 << 12;
-/// Bytes of a nonce, a tag, a key.
+/// Size of a nonce, a tag or a key, bytes.
 const SIZE: usize = 32;
 
-/// What seals the snapshots of a run besides the run itself.
+/// The secret part of the keys that seal snapshots.
 #[derive(Clone, Default, PartialEq, Eq)]
 pub struct SealKey {
     study: Option<[u8; SIZE]>,
 }
 
 impl SealKey {
-    /// The secret of a study: without it nobody opens what was sealed with it.
+    /// Creates the key from the secret of a study, which is needed to unseal.
     pub fn of_study(secret: &[u8; SIZE]) -> SealKey {
         SealKey { study: Some(*secret) }
     }
 
-    /// Whether a secret of a study is part of it.
+    /// Whether it contains the secret of a study.
     pub(super) fn has_secret(&self) -> bool {
         self.study.is_some()
     }
 
-    /// The keys of a run, by the hash of the first line of its trajectory.
+    /// Derives the keys of a run from the hash of the first line of its trajectory.
     pub(super) fn for_run(&self, first_line: &str) -> RunKeys {
         let mut hasher = blake3::Hasher::new_derive_key(CONTEXT);
         hasher.update(first_line.as_bytes());
@@ -51,14 +51,14 @@ impl fmt::Debug for SealKey {
     }
 }
 
-/// Keys that seal and open the states of one run.
+/// Keys that seal and unseal the states of a run.
 pub(super) struct RunKeys {
     nonce: [u8; SIZE],
     stream: [u8; SIZE],
     tag: [u8; SIZE],
 }
 
-/// What stands before sealed bytes.
+/// Nonce and tag, stored before the sealed bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Envelope {
     nonce: [u8; SIZE],
@@ -66,15 +66,15 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// Bytes of an envelope.
+    /// Size in bytes.
     pub(super) const LENGTH: usize = 2 * SIZE;
 
-    /// As a file holds it.
+    /// Returns the bytes for a file.
     pub(super) fn bytes(&self) -> [u8; Envelope::LENGTH] {
         std::array::from_fn(|at| if at < SIZE { self.nonce[at] } else { self.tag[at - SIZE] })
     }
 
-    /// From the bytes of a file.
+    /// Parses the bytes of a file.
     pub(super) fn of(bytes: &[u8; Envelope::LENGTH]) -> Envelope {
         let part = |from: usize| std::array::from_fn(|at| bytes[from + at]);
         Envelope { nonce: part(0), tag: part(SIZE) }
@@ -82,7 +82,7 @@ impl Envelope {
 }
 
 impl RunKeys {
-    /// Seals two pieces, one after the other, in their place.
+    /// Seals header and state in place.
     pub(super) fn seal(&self, header: &mut [u8], state: &mut [u8]) -> Envelope {
         let mut hasher = blake3::Hasher::new_keyed(&self.nonce);
         let nonce = *hasher.update(header).update(state).finalize().as_bytes();
@@ -91,7 +91,7 @@ impl RunKeys {
         Envelope { nonce, tag: *self.tag_of(&nonce, &[header, state]).as_bytes() }
     }
 
-    /// Opens what was sealed with these keys, in its place; otherwise leaves it as it is and says so.
+    /// Unseals in place and returns true if the tag is valid. Otherwise leaves the bytes unchanged.
     pub(super) fn open(&self, envelope: &Envelope, sealed: &mut [u8]) -> bool {
         // Hashes are compared in constant time.
         let genuine = self.tag_of(&envelope.nonce, &[sealed]) == blake3::Hash::from_bytes(envelope.tag);
@@ -110,8 +110,8 @@ impl RunKeys {
         hasher.finalize()
     }
 
-    /// Adds the key stream of a nonce, from a place of it on, to bytes: twice is never. On this thread alone: the writer
-    /// of the database seals, and a day that is simulated on all others may be waiting for it.
+    /// Applies (XOR) the key stream of a nonce to bytes, starting at offset `from`. Uses only this thread: the
+    /// database writer calls it, and a simulation on all other threads may wait for the writer.
     fn stream_over(&self, nonce: &[u8; SIZE], from: usize, bytes: &mut [u8]) {
         let mut stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
         stream.set_position(from as u64);
@@ -146,7 +146,7 @@ mod tests {
         let opened = |keys: &RunKeys, envelope: &Envelope, sealed: &[u8]| {
             let mut bytes = sealed.to_vec();
             let genuine = keys.open(envelope, &mut bytes);
-            assert!(genuine || bytes == sealed, "what is not genuine stays sealed");
+            assert!(genuine || bytes == sealed, "invalid bytes stay sealed");
             genuine.then_some(bytes)
         };
         assert_eq!(opened(&keys, &envelope, &sealed).as_deref(), Some(whole.as_slice()));
@@ -177,14 +177,14 @@ mod tests {
         };
         let (one, two) = (seal(1), seal(2));
         assert_ne!(one.0.nonce, two.0.nonce);
-        // Where nothing but zeros was sealed the key stream itself is left: no two of its blocks are equal.
+        // Sealed zeros are the key stream itself: no two of its blocks are equal.
         let mut blocks: Vec<&[u8]> =
             [&one.1, &two.1].into_iter().flat_map(|bytes| bytes.chunks(32)).collect();
         let count = blocks.len();
         blocks.sort_unstable();
         blocks.dedup();
         assert_eq!(blocks.len(), count);
-        assert_eq!(seal(1), one, "the same state is the same file");
+        assert_eq!(seal(1), one, "equal states result in equal files");
         assert_eq!(
             format!("{:?}", SealKey::of_study(&[9; 32])),
             "SealKey(of a study)",

@@ -1,4 +1,4 @@
-//! Plans that differ in nothing but price: whoever pays for the dearer one gets what the cheaper one gives.
+//! Plans that differ only in price: subscribers of the more expensive one get nothing more.
 
 use serde::Serialize;
 
@@ -6,25 +6,25 @@ use super::CompanyView;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::settings::{PerPlan, Settings};
 
-/// Two plans whose model tier, quota, promotions and targeted operations are the same.
+/// Two plans with the same model tier, quota, promotions and targeted operations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AlikePlans {
-    /// The cheaper one; of equal prices the first.
+    /// The less expensive one; the first if the prices are equal.
     pub cheap: Plan,
     /// The other one.
     pub dear: Plan,
-    /// List price of the cheaper one, dollars a month.
+    /// List price of the less expensive plan, dollars a month.
     pub cheap_price: f64,
-    /// List price of the other one, dollars a month.
+    /// List price of the other plan, dollars a month.
     pub dear_price: f64,
-    /// Active subscriptions of the dearer one.
+    /// Active subscriptions of the other plan.
     pub subscribers: u32,
-    /// They were alike already when the last week ended.
+    /// Whether they differed only in price already at the end of the last week.
     pub before: bool,
 }
 
 impl CompanyView<'_> {
-    /// Plans on sale that differ in nothing but price under the settings in force from tomorrow on.
+    /// Returns pairs of plans on sale that differ only in price under the settings in force from the next day.
     pub(crate) fn alike_plans(&self) -> Vec<AlikePlans> {
         let (now, before) = (&self.simulation.world.settings, &self.history.this_week.settings);
         let pairs = [(Plan::A, Plan::B), (Plan::A, Plan::C), (Plan::B, Plan::C)];
@@ -44,7 +44,7 @@ impl CompanyView<'_> {
         alike.map(of).collect()
     }
 
-    /// Active subscriptions by plan, of individuals and companies.
+    /// Returns the active subscriptions by plan, of individuals and enterprises.
     fn subscriptions(&self) -> ByPlan<u32> {
         let mut subscriptions = ByPlan([0; 3]);
         for (_, block) in self.simulation.world.customers.blocks() {
@@ -54,7 +54,7 @@ impl CompanyView<'_> {
     }
 }
 
-/// Whether two plans are on sale and nothing that can be set for a plan tells them apart but the list price.
+/// Whether two plans are on sale and have equal settings except for the list price.
 fn are_alike(settings: &Settings, left: Plan, right: Plan) -> bool {
     let (core, operations) = (&settings.core, &settings.targeted_operations);
     let of =
@@ -110,6 +110,6 @@ mod tests {
         assert_eq!(alike("set_targeted_ops_spend", json!({"by_group_plan": scope("A")})), [b_c]);
         assert_eq!(alike("set_targeted_ops_spend", json!({"by_group_plan": {}, "by_plan": {"C": 4}})), [a_b]);
         assert_eq!(alike("set_targeted_ops_spend", json!({"by_plan": {}})), all);
-        assert_eq!(alike("set_promotion", json!({"by_group": {"S1": 3}})), all, "it is for every plan");
+        assert_eq!(alike("set_promotion", json!({"by_group": {"S1": 3}})), all, "it applies to every plan");
     }
 }

@@ -1,4 +1,4 @@
-//! The parameters of a debug run, as its player may read them (docs/debugging.md#parameters).
+//! The parameters of a debug run, as its player can read them (docs/debugging.md#parameters).
 
 use serde::Serialize;
 use serde_json::Value;
@@ -9,27 +9,27 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_tools::Refusal;
 use novamind_world::params::Params;
 
-/// A parameter whose value is, or will be, another than that of the scenario.
+/// A parameter whose current or scheduled value differs from the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameter {
     /// Full key.
     pub key: String,
-    /// Value before, or in the scenario.
+    /// Value before the change, or in the scenario.
     pub old: Value,
-    /// Value from then on.
+    /// New value.
     pub new: Value,
-    /// First day that is simulated with it; none: it is in force.
+    /// First simulated day with the new value; `None` if it is in force.
     pub from_day: Option<u32>,
 }
 
-/// What differs from the scenario of a run.
+/// Differences between the parameters of a run and its scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameters {
-    /// What the values are held against: a shipped scenario, or none: the start of the run.
+    /// The bundled scenario that values are compared with; `None` if they are compared with the start of the run.
     pub scenario: Option<String>,
-    /// Parameters in force with another value, by key.
+    /// Differing parameters in force, by key.
     pub in_force: Vec<ChangedParameter>,
-    /// Changes that wait for their day, the first one first.
+    /// Scheduled changes, by day.
     pub waiting: Vec<ChangedParameter>,
 }
 
@@ -37,7 +37,7 @@ pub struct ChangedParameters {
 pub struct DebugParameters<'a>(CompanyView<'a>);
 
 impl<'a> CompanyView<'a> {
-    /// The parameters of a debug run, to be read; whether it may be depends on nothing but the mode of the run.
+    /// Returns the parameters for reading. Depends only on the mode of the run.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -47,7 +47,7 @@ impl<'a> CompanyView<'a> {
 }
 
 impl DebugParameters<'_> {
-    /// The value of a parameter, or of a list or table of them, as it is in force.
+    /// Returns the value in force of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
     /// `parameter_unknown`.
@@ -55,10 +55,10 @@ impl DebugParameters<'_> {
         self.0.simulation.params.value(key).map(|value| json_of_value(&value)).map_err(unknown)
     }
 
-    /// Everything that differs from the scenario, and what waits for its day.
+    /// Returns the parameters that differ from the scenario, and scheduled changes.
     ///
     /// # Errors
-    /// `not_readable`: the parameters at the start of the run.
+    /// `not_readable`: the parameters at the start of the run cannot be read.
     pub fn changed(&self) -> Result<ChangedParameters, Refusal> {
         let CompanyView { manifest, simulation, .. } = self.0;
         let shipped = Configuration::shipped();

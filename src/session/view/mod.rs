@@ -1,4 +1,4 @@
-//! What a player may read of a company at a moment: a read-only view without files, lines or hidden state.
+//! A read-only view of a company for its player: no files, records or hidden state.
 
 pub(crate) mod alike_plans;
 pub(crate) mod debug_parameters;
@@ -35,7 +35,7 @@ use novamind_world::market::surges::week_end;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-/// The company of a run at a moment, as its player may see it.
+/// A read-only view of the company of a run, as its player may see it.
 #[derive(Clone, Copy)]
 pub struct CompanyView<'a> {
     pub(crate) manifest: &'a Manifest,
@@ -46,18 +46,18 @@ pub struct CompanyView<'a> {
 }
 
 impl<'a> CompanyView<'a> {
-    /// Settings changed since the last week, old -> new.
+    /// Returns the settings changed since the last week, with old and new values.
     pub fn changes(&self) -> Vec<Change> {
         self.history.changes(&self.simulation.world)
     }
 
-    /// The present values of a tool's arguments, as a call would send them.
+    /// Returns the current values of a tool's arguments, as a call would send them.
     pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
         find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
     }
 
-    /// Answers a reading tool without recording that it was asked, for screens that always show what it says; none
-    /// where the tool refuses, or does more than read.
+    /// Runs a read-only tool without recording the call, for panes that refresh continuously. Returns `None` if the
+    /// tool rejects the call or is not read-only.
     pub fn look_up<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
         if tool.spec().kind != Kind::Read {
             return None;
@@ -67,49 +67,49 @@ impl<'a> CompanyView<'a> {
         planned.reply.without_running(&resolved)
     }
 
-    /// What tools may look at.
+    /// Returns the data that tools can read.
     pub(crate) fn for_tools(&self) -> View<'a> {
         View::new(&self.simulation.world, &self.simulation.params)
             .within(self.surroundings)
             .with_posts(&self.simulation.feed.posts)
     }
 
-    /// The day on which the week that holds the next day ends.
+    /// Returns the next decision day: the end of the week that contains the next day.
     pub fn next_decision_day(&self) -> u32 {
         week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
     }
 
-    /// Every post of others so far, in the order of their numbers.
+    /// Returns the posts of other authors, ordered by number.
     pub fn posts(&self) -> &'a [PublicPost] {
         &self.simulation.feed.posts
     }
 
-    /// What the calculations said before the last week.
+    /// Returns the outputs of the calculations before the last week.
     pub fn calculated(&self) -> &'a [Calculated] {
         &self.history.calculated
     }
 
-    /// What was decided before each week that ran, in order; single steps count for themselves.
+    /// Returns the decisions before each simulated week, in order; single steps count as weeks.
     pub fn decisions(&self) -> &'a [Decisions] {
         &self.history.decisions
     }
 
-    /// What the last days put into the inbox: day and text.
+    /// Returns the notices of the last simulated days: day and text.
     pub fn notices(&self) -> &'a [(u32, String)] {
         &self.history.notices
     }
 
-    /// Figures of the groups for every week that ran.
+    /// Returns the figures of the groups for every simulated week.
     pub fn group_weeks(&self) -> &'a [ByGroup<GroupWeek>] {
         &self.history.group_weeks
     }
 
-    /// The last statements the database was asked in this run, each once, the newest last.
+    /// Returns the distinct SQL statements of this run, newest last.
     pub fn asked(&self) -> &'a [String] {
         &self.history.asked
     }
 
-    /// Limits of a query in this run.
+    /// Returns the limits of a query in this run.
     pub fn query_limits(&self) -> Limits {
         let own = &self.simulation.params.limits;
         Limits {
@@ -119,17 +119,18 @@ impl<'a> CompanyView<'a> {
         }
     }
 
-    /// What the companies of the run are called.
+    /// Returns the names of the enterprises.
     pub fn company_names(&self) -> &'a CompanyNames {
         &self.simulation.names
     }
 
-    /// The customers that customer numbers refer to.
+    /// Returns the customer numbers.
     pub fn customer_numbers(&self) -> &'a CustomerNumbers {
         &self.simulation.world.customers.numbers
     }
 
-    /// Score: cash after the last day, 0 after a bankruptcy, none before the end or when abandoned.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. `None` before the end and for abandoned
+    /// runs.
     pub(crate) fn score(&self) -> Option<f64> {
         match self.history.ended {
             Some(Ended::Horizon) => Some(self.simulation.world.finance.cash),
@@ -138,23 +139,23 @@ impl<'a> CompanyView<'a> {
         }
     }
 
-    /// Running costs that follow from settings alone, dollars a day.
+    /// Returns the running costs that follow from settings alone, dollars a day.
     pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
         let capacity = self.simulation.params.capacity(settings.core.capacity_tier);
         daily_cost(settings, f64::from(capacity.cost_per_day))
     }
 
-    /// Quality delivered to every known group, as the dashboard shows it.
+    /// Returns the delivered quality for every known group, as in the dashboard.
     pub fn delivered_quality(&self) -> Vec<DeliveredQuality> {
         delivered_quality(&self.simulation.world, &self.simulation.params)
     }
 
-    /// Quality before any improvement, and what development has added for everybody.
+    /// Returns the quality before any improvement, and the bonus from development for all groups.
     pub fn quality_base(&self) -> (f64, f64) {
         (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
     }
 
-    /// Estimates of every known group, in their fixed order; not recorded.
+    /// Returns the estimates of every known group, in fixed order. Not recorded.
     pub fn estimates(&self) -> Vec<Estimates> {
         let limits = self.tool_limits();
         let of = |group: Group| {
@@ -175,46 +176,47 @@ impl<'a> CompanyView<'a> {
         Group::all().filter(|group| self.simulation.world.market.is_known(*group)).filter_map(of).collect()
     }
 
-    /// Scores of the forecasts so far, one per horizon.
+    /// Returns the scores of the forecasts so far, one per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
         let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
         let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
         horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
     }
 
-    /// How money goes on from here.
+    /// Returns the current rate at which cash changes.
     pub(crate) fn pace(&self) -> Pace {
         let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
         let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
         Pace::of(self.daily_cost(&self.simulation.world.settings), &weeks)
     }
 
-    /// The naive forecasts of cash.
+    /// Returns the naive forecasts of cash.
     pub fn naive_forecasts(&self) -> Forecasts {
         let horizons = &self.simulation.params.limits.prediction_horizons_days;
         let cash = self.simulation.world.finance.cash;
         naive::forecasts(cash, &self.pace(), &self.history.weeks, horizons)
     }
 
-    /// The capacity tier that a rule sets now.
+    /// Returns the capacity tier that a rule sets now.
     pub fn tier_by(&self, rule: UsageRule) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
         rule.tier(now, self.history.weeks.last(), &self.simulation.params)
     }
 
-    /// The capacity tier one step towards the smallest that holds the mean use of the last week at 80 %.
+    /// Returns the capacity tier one step toward the smallest that serves the mean usage of the last week at 80 %
+    /// utilization.
     pub fn capacity_towards_usage(&self) -> u8 {
         self.tier_by(UsageRule::StepByStep)
     }
 
-    /// The channel that brought a group most leads per dollar when the run began: what no player sees, so only runs that
-    /// are over tell it.
+    /// Returns the channel with most leads per dollar for a group at the start of the run. Only for ended runs,
+    /// because players cannot see it.
     pub fn truly_best_channel(&self, group: Group) -> Option<Channel> {
         self.history.ended.map(|_| best_starting_channel(group, &self.simulation.params))
     }
 }
 
-/// The channel with the highest starting yield for a group; the first in channel order on a tie.
+/// Returns the channel with the highest starting yield for a group; the first in channel order if yields are equal.
 pub fn best_starting_channel(group: Group, params: &Params) -> Channel {
     let yields = params.starting_yields();
     let better =

@@ -1,4 +1,4 @@
-//! What a player can see at a glance.
+//! A summary of the company for its player.
 
 use serde::Serialize;
 
@@ -17,118 +17,117 @@ use novamind_voice::model::settings::ModelStamp;
 use novamind_world::day::closing_figures;
 use novamind_world::identifiers::{Group, Plan};
 
-/// The company at a glance.
+/// A summary of the company.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Observation {
-    /// Run.
+    /// Identifier of the run.
     pub run: String,
     /// Mode.
     pub mode: Mode,
-    /// Seed; none in a study, whose participants do not learn it.
+    /// Seed; `None` in studies, whose participants must not know it.
     pub seed: Option<u64>,
     /// Scenario.
     pub scenario: String,
-    /// The parameters are others than those of the shipped scenario of that name.
+    /// Whether the parameters differ from those of the bundled scenario of that name.
     pub has_own_parameters: bool,
-    /// The language model that lends its voice.
+    /// Language model of the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
-    /// It goes on from weeks of another run.
+    /// Whether the run is a branch of another run.
     pub is_branch: bool,
-    /// Who plays.
+    /// Label of the participant.
     pub participant: Option<String>,
     /// Last simulated day.
     pub day: u32,
     /// Last day of the run.
     pub last_day: u32,
-    /// Week that holds the day.
+    /// Week of the last simulated day.
     pub week: u32,
     /// Cash, dollars.
     pub cash: f64,
-    /// Cash on day 0, before anything was bought, dollars.
+    /// Cash on day 0, before any purchase, dollars.
     pub starting_cash: f64,
-    /// Change of cash over the last week, from the end of the week before to its own, or over the days of a week that was begun,
-    /// dollars; 0 before the first.
+    /// Change of cash over the last week, or over the simulated days of a started week, dollars; 0 before the first.
     pub cash_change: f64,
-    /// Days of that change: fewer than a week where days were run one by one, or the run ended within one.
+    /// Number of days of that change: fewer than 7 after single days, or if the run ended within a week.
     pub cash_change_days: u32,
-    /// What was booked since the end of the last week: purchases, and days of a week that was begun.
+    /// Ledger totals since the end of the last week: purchases, and simulated days of a started week.
     pub booked_since: Booked,
-    /// How money goes on.
+    /// Rate at which cash changes.
     pub pace: Pace,
-    /// What the settings at the end of the last week committed to, dollars a day.
+    /// Commitments of the settings at the end of the last week, dollars a day.
     pub committed_before: f64,
-    /// Weeks until cash is gone at this pace; none where it lasts to the last day.
+    /// Weeks until cash is 0 at this rate; `None` if it lasts to the last day.
     pub runway_weeks: Option<f64>,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
-    /// Active companies.
+    /// Active enterprises.
     pub companies: u32,
-    /// Seats of active companies.
+    /// Seats of active enterprises.
     pub seats: u32,
-    /// Groups the company knows, in their fixed order.
+    /// Known groups, in fixed order.
     pub known_groups: Vec<Group>,
-    /// How the run ended, if it did.
+    /// How the run ended.
     pub ended: Option<Ended>,
-    /// Score of a run that is over.
+    /// Score; `None` before the end.
     pub score: Option<f64>,
-    /// Figures of the last week, none before the first.
+    /// Figures of the last week; `None` before the first.
     pub last_week: Option<WeekFigures>,
-    /// The dashboard of the last week, or a fresh one before the first.
+    /// The dashboard of the last week, or a new one before the first.
     pub dashboard: String,
     /// Settings changed since the last week.
     pub changes: Vec<Change>,
-    /// Purchases since the last week, in words.
+    /// Purchases and other irrevocable actions since the last week, as text.
     pub purchases: Vec<String>,
-    /// Plans that differ in nothing but price.
+    /// Plans that differ only in price.
     pub alike_plans: Vec<AlikePlans>,
-    /// Threads that wait for an answer.
+    /// Threads that wait for a response.
     pub waiting: Vec<WaitingThread>,
-    /// R&D projects that run.
+    /// Number of running R&D projects.
     pub running_research: u32,
-    /// Those of them that run beyond the last day.
+    /// R&D projects that will not finish before the last day.
     pub late_projects: Vec<LateProject>,
 }
 
-/// A thread that waits for an answer.
+/// A thread that waits for a response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WaitingThread {
     /// Number of the thread.
     pub thread: u32,
-    /// The company.
+    /// The enterprise.
     pub customer: u32,
     /// Its group.
     pub group: &'static str,
-    /// Whole seats.
+    /// Seats, whole number.
     pub seats: u32,
-    /// How the thread began.
+    /// How the thread started.
     pub kind: &'static str,
     /// Number of its last turn.
     pub turn: u32,
-    /// Offers of the player in it.
+    /// Number of the player's offers in it.
     pub offers_so_far: u32,
-    /// What the player offered last: plans with dollars a month and seat.
+    /// The player's last offer: plans with prices, dollars a month and seat.
     pub last_offer: Vec<(Plan, f64)>,
-    /// Price that the company named last, dollars a month and seat.
+    /// Last price that the enterprise named, dollars a month and seat.
     pub asked: Option<f64>,
     /// Days left before it is lost.
     pub days_left: u32,
 }
 
 impl Observation {
-    /// Active subscriptions: those of individuals, and one for each company.
+    /// Returns the active subscriptions: of individuals, and one for each enterprise.
     pub fn active_subscriptions(&self) -> u32 {
         self.subscribers + self.companies
     }
 
-    /// Whole weeks that cash lasts at this pace; none where it lasts to the last day.
+    /// Returns the whole weeks that cash lasts at this rate; `None` if it lasts to the last day.
     pub fn weeks_of_cash(&self) -> Option<u32> {
         self.runway_weeks.map(|weeks| weeks as u32)
     }
 }
 
 impl CompanyView<'_> {
-    /// The company at a glance.
+    /// Returns a summary of the company.
     pub fn observe(&self) -> Observation {
         let (closing, pace) = (closing_figures(&self.simulation.world), self.pace());
         Observation {
@@ -170,8 +169,8 @@ impl CompanyView<'_> {
         }
     }
 
-    /// The weekly dashboard as text: as it was when the last days had run, whatever was set since. Before the first days
-    /// it is built of what is.
+    /// Returns the weekly dashboard as of the last simulated day, regardless of later settings. Before the first day,
+    /// builds it from the current state.
     pub fn dashboard(&self) -> String {
         self.history
             .last_dashboard
@@ -179,7 +178,7 @@ impl CompanyView<'_> {
             .unwrap_or_else(|| self.build_dashboard(self.simulation.open_issues()))
     }
 
-    /// The dashboard of the company as it is.
+    /// Builds the dashboard from the current state.
     pub(crate) fn build_dashboard(&self, open_issues: u32) -> String {
         let closing = closing_figures(&self.simulation.world);
         let stocks = WeekFigures {
@@ -209,7 +208,7 @@ impl CompanyView<'_> {
         )
     }
 
-    /// Threads that wait for an answer, the first to be lost first.
+    /// Returns the threads that wait for a response, ordered by deadline.
     fn waiting(&self) -> Vec<WaitingThread> {
         let patience = self.simulation.params.enterprise.agent_response_timeout_days;
         let enterprise = &self.simulation.world.enterprise;
@@ -250,7 +249,7 @@ impl CompanyView<'_> {
             .count() as u32
     }
 
-    /// The days of a week that was begun, or else the last week.
+    /// Returns the figures of a started week, or of the last week.
     fn latest_days(&self) -> Option<&WeekFigures> {
         let running = &self.history.running_week;
         if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }

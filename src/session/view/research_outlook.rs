@@ -1,5 +1,5 @@
-//! What an R&D project can be expected to take and to gain before it is paid for. It follows from the parameters in force
-//! and from nothing that was drawn for this run.
+//! Expected duration and gain of an R&D project before its purchase. Derived from the parameters in force, not from
+//! random draws of the run.
 
 use serde::Serialize;
 
@@ -10,62 +10,62 @@ use novamind_world::product::research_spread::{
     days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,
 };
 
-/// When a project that is started now can be done.
+/// Outlook for a project that is started now.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchOutlook {
-    /// First day on which it can be done.
+    /// First possible day of completion.
     pub earliest: u32,
     /// Last day of the run.
     pub last_day: u32,
-    /// Means of its tier.
+    /// Mean duration and gain of the tier.
     pub means: ResearchMeans,
-    /// How projects of its tier spread; none in a baseline session, because agents are not told.
+    /// Distribution of the tier's projects; `None` in a baseline session, because agents do not receive it.
     pub spread: Option<ResearchSpread>,
 }
 
-/// Mean duration and gain of the projects of a tier, with the least duration and gain applied.
+/// Mean duration and gain of a tier's projects, with the minimum duration and gain applied.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchMeans {
-    /// Days.
+    /// Duration, days.
     pub days: f64,
-    /// Quality.
+    /// Quality gain.
     pub gain: f64,
-    /// Both are lower bounds, as in a baseline session: they follow from what agents are told, which leaves out the spread.
+    /// Whether both are lower bounds, as in a baseline session: agents receive means without the spread.
     pub are_lower_bounds: bool,
 }
 
-/// How the projects of a tier spread that are started now.
+/// Distribution of a tier's projects that are started now.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchSpread {
-    /// Share that is done on the first day on which it can be, 0..=1.
+    /// Share that finishes on the first possible day, 0..=1.
     pub at_earliest: f64,
-    /// Days by which a quarter, half and three quarters are done.
+    /// Days by which 25 %, 50 % and 75 % finish.
     pub quartile_days: [u32; 3],
-    /// Share that is done by the last day of the run, 0..=1.
+    /// Share that finishes by the last day of the run, 0..=1.
     pub by_last_day: f64,
-    /// Quality that a quarter, half and three quarters do not exceed.
+    /// Quality gains that 25 %, 50 % and 75 % do not exceed.
     pub quartile_gains: [f64; 3],
-    /// The least gain.
+    /// The minimum gain.
     pub least_gain: f64,
-    /// Share that gains no more than the least, 0..=1.
+    /// Share with the minimum gain, 0..=1.
     pub at_least_gain: f64,
 }
 
-/// A project that runs beyond the last day.
+/// A project that will not finish before the last day.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LateProject {
     /// Its identifier.
     pub id: String,
-    /// Day on which it would be done.
+    /// Day of completion.
     pub due_day: u32,
-    /// It was started since the last week.
+    /// Whether it was started since the last week.
     pub is_new: bool,
 }
 
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 
 impl CompanyView<'_> {
-    /// What a project of a tier, 1..=20, can be expected to take and to gain if it is started now.
+    /// Returns the outlook for a project of a tier, 1..=20, that is started now.
     pub fn research_outlook(&self, tier: u8) -> ResearchOutlook {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let (law, development) = (self.simulation.params.research(tier), &self.simulation.params.development);
@@ -88,7 +88,7 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Means of every R&D tier, the first tier first.
+    /// Returns the means of every R&D tier, lowest first.
     pub fn research_means(&self) -> Vec<ResearchMeans> {
         self.simulation.params.research_tier.iter().map(|law| self.means_of(law)).collect()
     }
@@ -109,7 +109,7 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Projects whose day of completion, which the answer to their start told, lies beyond the last day.
+    /// Returns projects with a completion day after the last day. The response to their start named that day.
     pub(crate) fn late_projects(&self) -> Vec<LateProject> {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let projects = self.simulation.world.product.research.iter();

@@ -1,31 +1,31 @@
-//! ToolLimits that the documentation of the tools tells everybody: prices, delays, errors and limits.
+//! Limits that the documentation of the tools states: prices, delays, errors.
 
 use super::CompanyView;
 use novamind_world::identifiers::Group;
 use novamind_world::product::development::targeted_development_gain;
 use novamind_world::product::service::outage_probability;
 
-/// A level that a study of a group can reach.
+/// A study level of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StudyLevel {
-    /// Level, 1..=5; level 1 comes with the discovery.
+    /// Level, 1..=5; level 1 is reached by discovery.
     pub level: u8,
-    /// Dollars, paid at once.
+    /// Cost in dollars, paid at once.
     pub cost: f64,
-    /// Days until it is finished.
+    /// Days until completion.
     pub days: u32,
-    /// Largest relative error of an estimate.
+    /// Maximum relative error of an estimate.
     pub noise: f64,
 }
 
 /// A capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapacityTier {
-    /// Tier, 0..=7.
+    /// Capacity, units a day.
     pub tier: u8,
     /// Units a day.
     pub units: f64,
-    /// Dollars a day.
+    /// Cost, dollars a day.
     pub cost: f64,
 }
 
@@ -34,41 +34,41 @@ pub struct CapacityTier {
 pub struct ModelTier {
     /// Tier, 1..=5.
     pub tier: u8,
-    /// Dollars a unit.
+    /// Cost, dollars a unit.
     pub unit_cost: f64,
-    /// What it multiplies product quality by.
+    /// Factor of the product quality.
     pub multiplier: f64,
 }
 
-/// ToolLimits of the tools.
+/// Limits of the tools.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToolLimits {
-    /// Longest post, in characters.
+    /// Maximum length of a post, characters.
     pub post_characters: usize,
-    /// Dollars of an attempt at market research.
+    /// Cost of an attempt at market research, dollars.
     pub attempt_cost: f64,
-    /// Chance that an attempt finds a group.
+    /// Probability that an attempt finds a group.
     pub attempt_chance: f64,
-    /// Levels of knowledge, the lowest first.
+    /// Study levels, lowest first.
     pub levels: Vec<StudyLevel>,
-    /// Levels a study may aim at, the least and the highest.
+    /// Lowest and highest level that a study can have as target.
     pub targets: (u8, u8),
-    /// Days between two measurements of the economy; the first is that of day 1.
+    /// Days between two measurements of the economy; the first is on day 1.
     pub economy_every_days: u32,
     /// Days from a measurement to its publication.
     pub economy_lag_days: u32,
-    /// Capacity tiers, the lowest first.
+    /// Capacity tiers, lowest first.
     pub capacities: Vec<CapacityTier>,
-    /// Model tiers, the lowest first.
+    /// Model tiers, lowest first.
     pub models: Vec<ModelTier>,
-    /// Issues of individuals that a day of operations solves: without spending, and for each dollar.
+    /// Issues of individuals that operations resolve per day: without spending, and per dollar.
     pub issues_solved: (f64, f64),
-    /// Names under which rivals appear in the news.
+    /// Names of competitors in the news.
     pub rivals: Vec<String>,
 }
 
 impl ToolLimits {
-    /// ToolLimits of a level.
+    /// Returns the data of a study level.
     pub fn level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|own| own.level == level)
     }
@@ -79,19 +79,19 @@ impl ToolLimits {
     }
 }
 
-/// A study that was ordered and is not finished.
+/// A running study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RunningStudy {
     /// Group.
     pub group: Group,
-    /// Level it aims at.
+    /// Target level.
     pub target: u8,
-    /// Day on which it is finished, as the answer to the order said.
+    /// Day of completion, as returned when it was ordered.
     pub due_day: u32,
 }
 
 impl CompanyView<'_> {
-    /// Limits of the tools in this run.
+    /// Returns the limits of the tools in this run.
     pub fn tool_limits(&self) -> ToolLimits {
         let params = &self.simulation.params;
         let level = |level: &novamind_world::params::InfoLevel| StudyLevel {
@@ -131,17 +131,19 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Share of days with an outage while usage stays within capacity, at a spend on operations of dollars a day.
+    /// Returns the share of days with an outage while demand is within capacity, at a spend on operations in dollars
+    /// a day.
     pub fn outage_share(&self, operations: f64) -> f64 {
         outage_probability(operations, 0.0, &self.simulation.params.operations)
     }
 
-    /// Quality that a day of targeted development adds for a group before the model's multiplier, at dollars a day.
+    /// Returns the quality that a day of targeted development adds for a group before the model's multiplier, at a
+    /// spend in dollars a day.
     pub fn targeted_gain(&self, dollars: f64) -> f64 {
         targeted_development_gain(dollars, &self.simulation.params.development)
     }
 
-    /// Studies that run, in the order they were ordered.
+    /// Returns the running studies, in order of purchase.
     pub fn running_studies(&self) -> Vec<RunningStudy> {
         let of = |study: &novamind_world::events::Study| RunningStudy {
             group: study.group,

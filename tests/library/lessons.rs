@@ -300,7 +300,7 @@ fn a_lesson_that_was_altered_beside_its_run_is_named() {
     let text = std::fs::read_to_string(&path).expect("a plan");
     std::fs::write(&path, text.replace("at_least = 900_000", "at_least = 1")).expect("a file");
     let problem = Session::open(&own, Access::Write, true).err().expect("it is refused").to_string();
-    assert!(problem.contains("lesson.toml") && problem.contains("not the one that was played"), "{problem}");
+    assert!(problem.contains("lesson.toml") && problem.contains("not the recorded lesson"), "{problem}");
 }
 
 #[test]

@@ -318,7 +318,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
         ("from_day", json!(0), "has passed"),
         ("old", json!(0.5), "was not 0.5 before it"),
         ("key", json!("operations.nothing"), "no such parameter"),
-        ("new", json!(null), "none that a parameter can have"),
+        ("new", json!(null), "not valid for a parameter"),
         ("new", json!(7), "between 0 and 1"),
         ("new", json!("often"), "expected a number"),
     ] {
@@ -335,7 +335,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
         }
     });
     let words = verify(&own).expect_err("a sandbox").to_string();
-    assert!(words.contains("only a debug run can"), "{words}");
+    assert!(words.contains("only debug runs and lessons can"), "{words}");
 }
 
 #[test]
@@ -477,9 +477,9 @@ fn a_table_that_names_nothing_is_refused_and_elements_of_lists_are_called_by_nam
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     for (key, value, said) in [
-        ("group", json!({}), "a table that names no parameter"),
-        ("group", json!({ "S1": {} }), "a table that names no parameter"),
-        ("calendar", json!({}), "a table that names no parameter"),
+        ("group", json!({}), "the table contains no parameter"),
+        ("group", json!({ "S1": {} }), "the table contains no parameter"),
+        ("calendar", json!({}), "the table contains no parameter"),
     ] {
         let refused = session.set_parameter(key, &value, None).expect_err("nothing is set");
         assert_eq!(refused.code, "parameter_not_allowed");

@@ -128,7 +128,7 @@ fn what_a_query_may_not_a_script_may_not_ask() {
     assert_fails(
         &mut session,
         "for _ in range(10001): query('SELECT 1')",
-        &["a script may ask 10,000 times"],
+        &["a script can send 10,000 queries"],
     );
     let endless =
         "query('WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n')";

@@ -317,8 +317,8 @@ impl KeptState<'_> {
 /// Unseals a file in place. Returns the offset of the unsealed part.
 fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
     let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
-    let (&of, rest) = rest.split_first().ok_or("is cut short")?;
-    let (envelope, _) = rest.split_first_chunk().ok_or("is cut short")?;
+    let (&of, rest) = rest.split_first().ok_or("is truncated")?;
+    let (envelope, _) = rest.split_first_chunk().ok_or("is truncated")?;
     let envelope = Envelope::of(envelope);
     if of == OF_STUDY && !key.has_secret() {
         return Err("is sealed with the key of a study");

@@ -79,7 +79,7 @@ fn snapshots_that_cannot_be_used_cost_only_time() {
         ("one of another run", Some(foreign), Some("of another run")),
         ("a damaged one", Some(changed), Some("is damaged")),
         ("half of one", Some(late[..late.len() / 2].to_vec()), Some("is damaged")),
-        ("almost nothing", Some(late[..30].to_vec()), Some("is cut short")),
+        ("almost nothing", Some(late[..30].to_vec()), Some("is truncated")),
         ("an empty one", Some(Vec::new()), Some("another version or damaged")),
         ("one of another format", Some(of_the_future), Some("another version or damaged")),
     ] {

@@ -147,7 +147,6 @@ impl Session {
         Ok(begun)
     }
 
-    /// Creates the run in its storage.
     fn begin_stored(
         manifest: Manifest,
         params: Params,
@@ -290,7 +289,6 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
     Ok((manifest, params))
 }
 
-/// Returns the error for a language model that cannot be used.
 fn no_model(problem: String) -> RunError {
     RunError::NotPossible(format!(
         "the language model cannot be used: {problem}. Nothing was recorded"

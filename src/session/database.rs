@@ -28,7 +28,6 @@ pub struct RunDatabase {
 }
 
 impl RunDatabase {
-    /// Creates a database with this writer, if there is one.
     pub(crate) fn of(projector: Option<Projector>) -> RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
@@ -50,7 +49,6 @@ impl RunDatabase {
         }
     }
 
-    /// Waits until all committed entries are written.
     pub(crate) fn wait(&self) -> Result<(), ProjectionError> {
         self.projector.as_ref().map_or(Ok(()), Projector::wait)
     }
@@ -69,7 +67,6 @@ impl RunDatabase {
         self.projector.as_ref()?.failure()
     }
 
-    /// Replaces a database that could not be written.
     pub(crate) fn replace(&mut self, made_anew: RunDatabase) {
         *self = RunDatabase { replaced: self.replaced + 1, ..made_anew };
     }
@@ -88,7 +85,6 @@ impl RunDatabase {
         self.open_connection_to(Scope::Visible)
     }
 
-    /// Opens a separate connection to the tables of a scope.
     pub(crate) fn open_connection_to(&self, scope: Scope) -> Result<QueryConnection, Refusal> {
         let connection = match (&self.projector, &self.finished) {
             (Some(projector), _) => projector.connection(scope),
@@ -118,7 +114,6 @@ impl RunDatabase {
         self.connection().map(QueryConnection::interrupt)
     }
 
-    /// Runs one guarded statement.
     pub(crate) fn answer(&mut self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, Refusal> {
         self.connection()?.ask_as(ticket, sql, limits).map_err(query_refusal)
     }
@@ -135,7 +130,6 @@ impl RunDatabase {
         }
     }
 
-    /// Limits the pages that the database can add.
     #[cfg(test)]
     pub(crate) fn bound_pages(&self, more: Option<u32>) {
         self.projector.as_ref().expect("a database").bound_pages(more);

@@ -96,7 +96,6 @@ fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunErro
     }
 }
 
-/// The contents of an archive.
 struct Unpacked {
     run: String,
     files: Vec<SealedFile>,
@@ -233,7 +232,6 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     }
 }
 
-/// Checks that manifest and trajectory are valid and belong together.
 fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> {
     for name in [MANIFEST, TRAJECTORY] {
         if !draft.join(name).exists() {
@@ -288,7 +286,6 @@ fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError
     )))
 }
 
-/// Describes the difference between two records of a run.
 fn difference(draft: &Path, place: &Path) -> String {
     let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY)).map(|read| read.lines);
     let own = lines(draft).unwrap_or_default();

@@ -11,11 +11,8 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::files::{folder_of, sync_folder};
 
-/// First line of a private key file.
 const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
-/// First line of a public key file.
 const PUBLIC: &str = "novamind lab public key 1";
-/// First line of a snapshot key file.
 const SEAL: &str = "novamind seal key 1: keep it secret";
 /// Separates the snapshot key from other uses of the same hash.
 const SEAL_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
@@ -34,7 +31,6 @@ pub struct LabPublicKey(VerifyingKey);
 #[serde(deny_unknown_fields)]
 struct SignatureFile {
     algorithm: String,
-    /// Public key of the signer, hexadecimal.
     key: String,
     signature: String,
 }
@@ -177,7 +173,6 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Parses exactly `COUNT` bytes in hexadecimal.
 fn bytes<const COUNT: usize>(hex: &str) -> Option<[u8; COUNT]> {
     let fits = hex.len() == 2 * COUNT && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
     let mut bytes = [0; COUNT];

@@ -10,7 +10,6 @@ use novamind_record::files::create_folder;
 /// A hidden temporary folder next to the final files. It is never listed as a run and is removed on drop.
 pub struct Workshop(PathBuf);
 
-/// The open temporary folders, and whether the program is about to end.
 struct Open {
     folders: Vec<PathBuf>,
     closed: bool,

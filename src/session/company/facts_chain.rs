@@ -9,7 +9,6 @@ use novamind_world::state::{PartHash, combined_hash};
 /// Hash of the state and of the week's facts, and the short hash of each part by name.
 pub type StateHash = (String, BTreeMap<String, String>);
 
-/// Returns the hash of a state with these parts and of the week's facts.
 pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
     parts.push(PartHash { part: "facts", hash: facts });
     let short = |hash: &blake3::Hash| hash.to_hex()[..16].to_owned();
@@ -31,7 +30,6 @@ impl Default for FactsChain {
 }
 
 impl FactsChain {
-    /// Adds the facts of a day or call.
     pub(crate) fn add(&mut self, facts: &Facts) {
         if self.closed {
             *self = FactsChain::default();
@@ -42,17 +40,14 @@ impl FactsChain {
         self.hash = hasher.finalize();
     }
 
-    /// Restores a chain from its hash.
     pub(crate) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
         FactsChain { hash, closed }
     }
 
-    /// Whether the week has ended.
     pub(crate) fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// Ends the week.
     pub(crate) fn close(&mut self) {
         self.closed = true;
     }

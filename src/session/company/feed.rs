@@ -29,7 +29,6 @@ pub struct Feed {
     /// Texts of the built-in voice that a language model has reworded, by post number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     built_in: BTreeMap<u32, String>,
-    /// Whether each post is a complaint.
     complains: Vec<bool>,
     /// Judgements of the player's posts, in the order of the posts. Empty for posts that are not judged yet.
     pub judgements: Vec<Vec<Judgement>>,
@@ -76,7 +75,6 @@ impl Feed {
         of_post.iter().find(|judgement| judgement.group == group)
     }
 
-    /// Adds the posts of a day with their texts.
     pub(crate) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
         for post in &facts.posts {
             let judgement = match post.matter {
@@ -129,7 +127,6 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
     }
 }
 
-/// Returns the database entry for the facts of a day or call, with their texts.
 pub(crate) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, params: &Params) -> Entry {
     let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
     let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);

@@ -16,7 +16,6 @@ pub(crate) enum FirstAnswer {
     Week(Box<Week>),
 }
 
-/// The first responses to the requests of a run that have an id.
 #[derive(Debug, Default)]
 pub(crate) struct FirstAnswers {
     /// The digest of the request and its response, by id.
@@ -26,7 +25,6 @@ pub(crate) struct FirstAnswers {
 }
 
 impl FirstAnswers {
-    /// Restores the responses to weeks from a snapshot.
     pub(crate) fn of_weeks(weeks: Vec<(RequestId, Week)>) -> FirstAnswers {
         let one = |(request, week): (RequestId, Week)| {
             (request.id, (request.digest, FirstAnswer::Week(Box::new(week))))
@@ -34,7 +32,6 @@ impl FirstAnswers {
         FirstAnswers { by_id: weeks.into_iter().map(one).collect(), open: None }
     }
 
-    /// Returns the responses to weeks, for a snapshot.
     pub(crate) fn weeks(&self) -> Vec<(RequestId, Week)> {
         let week = |(id, (digest, answer)): (&String, &(String, FirstAnswer))| match answer {
             FirstAnswer::Week(week) => {
@@ -52,7 +49,6 @@ impl FirstAnswers {
         }
     }
 
-    /// Starts the week of a request.
     pub(crate) fn begin_week(&mut self, request: Option<RequestId>) {
         self.open = request;
     }
@@ -88,7 +84,6 @@ impl FirstAnswers {
     }
 }
 
-/// Returns the rejection of a request whose id belongs to another request.
 pub(crate) fn mismatch() -> Refusal {
     let message = "this request_id belongs to an earlier request of this run that asked something else; nothing was \
                    changed. A new request needs a new id";

@@ -13,7 +13,6 @@ use novamind_world::events::{DayFigures, LedgerEntry, Notice};
 use novamind_world::identifiers::ByGroup;
 use novamind_world::state::World;
 
-/// The history of a run.
 pub(crate) struct History {
     /// Cash at the end of each day, day 0 first.
     pub(crate) cash_by_day: Vec<f64>,
@@ -25,30 +24,23 @@ pub(crate) struct History {
     pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,
     /// Group figures of a week that was started with single days.
     pub(crate) running_groups: ByGroup<GroupWeek>,
-    /// Decisions before each week, or before single days.
     pub(crate) decisions: Vec<Decisions>,
     /// Notices of the last simulated days: day and text.
     pub(crate) notices: Vec<(u32, String)>,
-    /// Actions since the last week.
     pub(crate) this_week: ThisWeek,
-    /// All confirmed actions and weeks, in order.
     pub(crate) journal: Vec<JournalEntry>,
     /// Distinct SQL statements of this run, newest last.
     pub(crate) asked: Vec<String>,
-    /// Outputs of the calculations before the last week.
     pub(crate) calculated: Vec<Calculated>,
     /// The dashboard after the last simulated days; `None` before the first.
     pub(crate) last_dashboard: Option<String>,
     /// Ledger entries of calls since the last day.
     pub(crate) called: Vec<LedgerEntry>,
-    /// How the run ended.
     pub(crate) ended: Option<Ended>,
-    /// Responses to requests with an id.
     pub(crate) first_answers: FirstAnswers,
 }
 
 impl History {
-    /// Creates the history of a run on day 0.
     pub(crate) fn begin(world: &World) -> History {
         let settings = world.settings.clone();
         History {
@@ -75,7 +67,6 @@ impl History {
         changes(&self.this_week.settings, &world.settings)
     }
 
-    /// Records a simulated day with its notices.
     pub(crate) fn count_day(&mut self, figures: &DayFigures, simulation: &Simulation, notices: &[String]) {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);

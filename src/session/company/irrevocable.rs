@@ -16,10 +16,8 @@ use novamind_world::identifiers::{Group, Plan};
 /// Offers or threads of one call that are listed one by one.
 const NAMED: usize = 5;
 
-/// An irrevocable action.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Irrevocable {
-    /// A single action, as text.
     Single(String),
     /// Offers of the same plans to enterprises of a group.
     Offered {
@@ -33,7 +31,6 @@ pub(crate) enum Irrevocable {
 }
 
 impl Irrevocable {
-    /// Adds actions, merging them with similar earlier ones.
     pub(crate) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
         for own in more {
             if !done.iter_mut().any(|before| before.takes_in(&own)) {

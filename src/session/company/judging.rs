@@ -52,12 +52,10 @@ impl RecordedScores {
         self.0.push(judged);
     }
 
-    /// Returns the newest recorded scores of a post.
     fn of(&self, post: &OwnPost) -> Option<&JudgedPost> {
         self.0.iter().rev().find(|judged| is_of(judged, post))
     }
 
-    /// Whether a post has a recorded score for each of these groups.
     pub(crate) fn cover(&self, post: &OwnPost, groups: &[Group]) -> bool {
         self.of(post).is_some_and(|judged| {
             groups.iter().all(|group| judged.scores.iter().any(|score| score.group == *group))
@@ -75,7 +73,6 @@ impl RecordedScores {
     }
 }
 
-/// Whether the scores are those of this post.
 pub(crate) fn is_of(judged: &JudgedPost, post: &OwnPost) -> bool {
     judged.posted == post.day && judged.reply_to == post.reply_to && judged.content == post.content
 }

@@ -7,7 +7,6 @@ use novamind_voice::notices::Party;
 use novamind_world::events::{EndCause, Notice, SubscriptionStatus};
 
 impl Simulation {
-    /// Returns the database entry for the facts of the last day or call.
     pub(crate) fn entry(&self) -> Entry {
         entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
     }
@@ -76,7 +75,6 @@ impl Parties {
         }
     }
 
-    /// Returns the enterprise of the next notice of this kind.
     fn next(&mut self, notice: &Notice) -> Option<Party> {
         match notice {
             Notice::EnterpriseLead => self.asking.next(),

@@ -36,7 +36,6 @@ impl ParameterChange {
     }
 }
 
-/// A scheduled change, with the parameters in force after it.
 #[derive(Debug, Clone)]
 struct WaitingChange {
     day: u32,
@@ -47,7 +46,6 @@ struct WaitingChange {
 /// The parameter changes of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
-    /// Whether any parameter was changed.
     is_used: bool,
     /// Scheduled changes by day; changes of one day in the order of their lines.
     waiting: Vec<WaitingChange>,
@@ -109,7 +107,6 @@ impl Overrides {
         Ok(taken)
     }
 
-    /// Returns the parameters for a day, if they change on it.
     pub(crate) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
         let count = self.waiting.partition_point(|own| own.day <= day);
         self.waiting[..count].last().map(|own| &own.params)
@@ -190,7 +187,6 @@ pub(crate) struct DerivedOfParameters {
 }
 
 impl DerivedOfParameters {
-    /// Returns the numbers that the documentation of the tools quotes.
     pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<Numbers> {
         self.numbers.get_or_init(|| Numbers::of(&simulation.params).into()).clone()
     }

@@ -51,9 +51,7 @@ pub struct Simulation {
     pub names: CompanyNames,
     /// Posts of the social feed.
     pub feed: Feed,
-    /// Recorded scores of the player's posts.
     pub(crate) scores: RecordedScores,
-    /// Hash chain of this week's facts.
     pub(crate) facts_chain: FactsChain,
     /// Observer of the simulated days; does nothing except for inspections.
     pub(crate) watch: Arc<dyn DayWatch>,
@@ -243,7 +241,6 @@ fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts
     Arc::make_mut(facts)
 }
 
-/// The data that processing a day's facts needs.
 struct FollowUp<'a> {
     feed: &'a mut Feed,
     facts_chain: &'a mut FactsChain,

@@ -3,7 +3,6 @@
 use novamind_tools::{ColumnDocument, Notebook, Surroundings, TableDocument};
 use novamind_world::events::Reading;
 
-/// The context of a session's company.
 #[derive(Debug, Default)]
 pub(crate) struct RunSurroundings {
     /// Calculations and scripts of the run.

@@ -5,23 +5,19 @@ use novamind_record::trajectory::record::Reversal;
 use novamind_tools::ToolId;
 use novamind_world::settings::Settings;
 
-/// Actions since the last week.
 #[derive(Debug, Clone)]
 pub(crate) struct ThisWeek {
-    /// Settings at the end of the last week.
     pub(crate) settings: Settings,
     /// Setting calls that can be undone, newest last.
     pub(crate) undo: Vec<Step>,
     /// Undo calls that can be redone, newest last.
     pub(crate) redo: Vec<Step>,
-    /// Purchases and other irrevocable actions.
     pub(crate) done: Vec<Irrevocable>,
 }
 
 /// A call that changed settings, and the settings that reverting it restores.
 #[derive(Debug, Clone)]
 pub(crate) struct Step {
-    /// Line of the call.
     pub(crate) seq: u64,
     pub(crate) tool: ToolId,
     pub(crate) restores: Settings,
@@ -33,7 +29,6 @@ impl ThisWeek {
         *self = ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() };
     }
 
-    /// Records a setting call, so that it can be reverted.
     pub(crate) fn keep(&mut self, call: Step, changed: bool, reversal: Option<Reversal>) {
         if let Some(Reversal::Undoes(seq)) = reversal {
             self.undo.retain(|step| step.seq < seq);

@@ -18,13 +18,11 @@ pub struct LessonEntry {
 }
 
 impl LessonEntry {
-    /// Returns the lesson as the first line records it.
     pub(crate) fn stamp(&self) -> LessonStamp {
         let (name, digest) = (self.lesson.name.clone(), self.lesson.digest.clone());
         LessonStamp { name, digest, part: self.part as u32 + 1 }
     }
 
-    /// Applies the terms of the lesson's part to a new run.
     pub(crate) fn terms_of(&self, new: NewRun) -> NewRun {
         let part = &self.lesson.plan.parts[self.part];
         let quiet = (!part.surges).then(|| ("demand_surge.probability".to_owned(), "0.0".to_owned()));

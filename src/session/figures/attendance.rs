@@ -39,15 +39,11 @@ pub enum Attention {
 /// Time by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TimeSpent {
-    /// Nanoseconds of playing.
     active: i64,
-    /// Nanoseconds of answering questions.
     answering: i64,
-    /// Nanoseconds idle.
     idle: i64,
     /// Nanoseconds away, including those with a stopped clock.
     away: i64,
-    /// Nanoseconds with a stopped clock.
     paused: i64,
 }
 
@@ -102,7 +98,6 @@ impl TimeSpent {
     }
 }
 
-/// Serializes the seconds by kind.
 impl Serialize for TimeSpent {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("TimeSpent", 6)?;
@@ -142,7 +137,6 @@ pub struct AttendedTime {
     pub attention: Attention,
 }
 
-/// Whether the run is open, according to its lines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Openness {
     /// No `session` line so far: gaps determine breaks.
@@ -406,7 +400,6 @@ mod tests {
         Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View,
     };
 
-    /// Creates the attendance of records at seconds.
     fn attendance(lines: &[(i64, Record)]) -> Attendance {
         let mut attendance = Attendance::default();
         lines.iter().for_each(|(seconds, record)| attendance.note(seconds * SECOND, record));

@@ -3,7 +3,6 @@
 use novamind_record::figures::WeekFigures;
 use novamind_world::params::{CapacityTier, Params};
 
-/// Target utilization by mean usage.
 const UTILISATION: f64 = 0.8;
 
 /// A rule that sets the capacity from usage.

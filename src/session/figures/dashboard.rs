@@ -177,7 +177,6 @@ fn calculations_block(text: &mut String, calculated: &[Calculated]) {
     }
 }
 
-/// Lists the posts of the last week with their views and comments.
 fn posts_block(text: &mut String, world: &World, params: &Params) {
     let week = params.run.days_per_week;
     let own = world.market.social.own.iter();

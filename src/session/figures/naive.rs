@@ -190,7 +190,6 @@ pub struct Hindcast {
     pub error: f64,
     /// Whether the interval contains the outcome, purchases included.
     pub held: bool,
-    /// Index of the week after which the outcome is known.
     due: usize,
     /// The error, in intervals.
     intervals: f64,
@@ -255,7 +254,6 @@ fn widening(made: &[Hindcast], before: usize) -> f64 {
     (OWN_ERROR * mean.sqrt()).max(1.0)
 }
 
-/// Returns the naive forecasts of cash after the given weeks.
 pub(crate) fn forecasts(cash: f64, pace: &Pace, weeks: &[WeekFigures], horizons: &[u32]) -> Forecasts {
     let bands = Bands::shipped();
     let stage = Stage::of(weeks);

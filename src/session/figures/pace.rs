@@ -6,7 +6,6 @@ use serde::Serialize;
 use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
-/// Number of recent weeks.
 const RECENT: usize = 4;
 
 /// Rates, dollars a day.

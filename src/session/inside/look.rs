@@ -20,7 +20,6 @@ use novamind_world::state::World;
 /// A permitted and recorded inspection of the hidden state of a run.
 #[derive(Debug)]
 pub struct Look {
-    /// Identifier of the run.
     run: String,
     day: u32,
 }
@@ -225,7 +224,6 @@ fn step_on(
     }
 }
 
-/// Stores the world at the end of one day.
 struct Evening {
     day: u32,
     world: Mutex<Option<World>>,

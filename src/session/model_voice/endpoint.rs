@@ -18,12 +18,9 @@ mod over_http {
     use super::{Duration, ModelPrompt, ModelSettings};
     use novamind_base::notation::printable;
 
-    /// Maximum size of a response, bytes.
     const MOST_BYTES: u64 = 1024 * 1024;
-    /// Sampling temperature.
     const TEMPERATURE: f64 = 0.3;
 
-    /// The endpoint of a model.
     pub(crate) struct Endpoint {
         agent: Agent,
         address: String,

@@ -12,17 +12,14 @@ use novamind_voice::model::settings::ModelSettings;
 /// No request is sent with less time left.
 const LEAST: Duration = Duration::from_millis(50);
 
-/// The language model of an open run; usually none.
 #[derive(Default)]
 pub(crate) struct ModelVoice {
-    /// The client of the model.
     pub(crate) speaker: Option<Speaker>,
     /// Recorded scores of another run whose decisions this run repeats.
     pub(crate) inherited: Vec<JudgedPost>,
 }
 
 impl ModelVoice {
-    /// Resets the time limit for a new week.
     pub(crate) fn begin_week(&mut self) {
         if let Some(speaker) = &mut self.speaker {
             speaker.left = Duration::from_secs(u64::from(speaker.settings.seconds_a_week));
@@ -35,12 +32,9 @@ impl ModelVoice {
     }
 }
 
-/// A client of a language model.
 pub(crate) struct Speaker {
-    /// Which, where, and what for.
     pub(crate) settings: ModelSettings,
     endpoint: Endpoint,
-    /// Time left in this week.
     left: Duration,
     /// Whether the last request had no usable response.
     is_failing: bool,
@@ -51,7 +45,6 @@ pub(crate) struct Speaker {
 pub(crate) struct Reply<T> {
     /// The answer, or the reason why there is none.
     pub(crate) answer: Result<T, String>,
-    /// Duration, milliseconds.
     pub(crate) took_ms: f64,
 }
 

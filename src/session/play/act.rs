@@ -42,11 +42,9 @@ pub struct Preview {
 pub(crate) struct Marks {
     /// The earlier call that it undoes or redoes.
     pub(crate) reversal: Option<Reversal>,
-    /// The id of the request.
     pub(crate) request: Option<RequestId>,
 }
 
-/// An accepted call with its random draws.
 struct Accepted {
     resolved: ResolvedCommand,
     change: Option<NotebookChange>,
@@ -324,7 +322,6 @@ impl Session {
     }
 }
 
-/// Returns the rejection for a line that could not be written.
 pub(crate) fn not_saved(error: RunError) -> Refusal {
     if matches!(error, RunError::Astray { .. }) {
         return Refusal::new("not_saved", error.to_string());
@@ -346,7 +343,6 @@ fn comparable(spec: &Spec, answer: &Value) -> Value {
     answer
 }
 
-/// Rounds milliseconds to three decimals.
 fn rounded(took_ms: f64) -> f64 {
     (took_ms * 1e3).round() / 1e3
 }

@@ -24,17 +24,13 @@ use novamind_world::held::Held;
 /// Recorded rationale of a week in lessons that ask for none.
 const UNASKED: &str = "(not asked for in this lesson)";
 
-/// An unchecked submission of a week.
 pub(crate) struct Filing<'a> {
-    /// Rationale.
     pub(crate) rationale: &'a Value,
-    /// Forecasts for four horizons.
     pub(crate) predictions: &'a Value,
     /// Whether the naive projection filled in each forecast.
     pub(crate) filled_naively: [bool; 4],
     /// The day on which the run must be; null for any.
     pub(crate) expected_day: &'a Value,
-    /// The id of the request.
     pub(crate) request: Option<RequestId>,
 }
 
@@ -117,7 +113,6 @@ impl Session {
         Ok(self.run_week(progress))
     }
 
-    /// Rejects a week if the run is not on the expected day.
     fn refuse_unexpected_day(&self, expected: &Value) -> Result<(), Refusal> {
         let day = self.simulation.world.day;
         if expected.is_null() || expected.as_u64() == Some(day.into()) {
@@ -247,7 +242,6 @@ impl Session {
         StateHash::default()
     }
 
-    /// Completes the figures of the simulated days, and of the week if it has ended.
     pub(crate) fn settle_figures(&mut self) -> WeekFigures {
         let open_issues = self.simulation.open_issues();
         let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
@@ -341,7 +335,6 @@ impl Session {
         self.append_done(&Record::End(end))
     }
 
-    /// Stores the response to a replayed week, if its request has an id.
     pub(crate) fn note_answered_week(&mut self) {
         let mut answers = std::mem::take(&mut self.history.first_answers);
         answers.note_week(|| self.report(None));
@@ -377,7 +370,6 @@ impl Session {
         }
     }
 
-    /// Adds rationale and forecasts to journal and database.
     fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
         self.project_forecasts(forecasts, at);
         self.history.journal.push(JournalEntry::Advance {
@@ -388,7 +380,6 @@ impl Session {
         });
     }
 
-    /// Adds the rationale and forecasts of an `advance` line again.
     pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
         let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
         self.history.calculated.clone_from(&filed.calculations);
@@ -411,7 +402,6 @@ impl Session {
     }
 }
 
-/// Whether the next day is within the limits of leads and customers.
 fn has_room(simulation: &Simulation) -> bool {
     simulation.refuse_crowded_day().is_ok()
 }

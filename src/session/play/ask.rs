@@ -32,7 +32,6 @@ impl Session {
         answer
     }
 
-    /// Draws a ticket for a statement that starts now.
     pub(super) fn draw_ticket(&mut self) -> Result<Ticket, Refusal> {
         Ok(self.complete_database()?.interrupt()?.ticket())
     }

@@ -140,7 +140,6 @@ mod tests {
         (session.folder().expect("a folder").to_owned(), session)
     }
 
-    /// Returns the notes and the remarks of a reopened run.
     fn opened(folder: &Path, access: Access) -> (String, Vec<String>) {
         let session = Session::open(folder, access, false).expect("it opens");
         (session.memo().expect("notes"), session.remarks().to_vec())

@@ -64,19 +64,15 @@ pub struct Session {
     folder: Option<PathBuf>,
     simulation: Simulation,
     history: History,
-    /// Context that tools read.
     surroundings: RunSurroundings,
-    /// Values derived from the parameters in force.
     derived: DerivedOfParameters,
     database: RunDatabase,
-    /// Key that seals the snapshots.
     seal_key: SealKey,
     /// The session replays an inspected run and reports its days with hidden state.
     is_shadow: bool,
     companion: Companion,
     /// The lesson and its progress; `None` outside lessons.
     lesson: Option<Box<LessonStanding>>,
-    /// Function that evaluates rules, if it was set.
     company_answers: Option<AnswersCompanies>,
     voice: ModelVoice,
     /// Notes of a run without a folder.
@@ -279,37 +275,30 @@ impl Session {
         Ok(self.hidden_state())
     }
 
-    /// Returns the hidden state, for a permitted inspection.
     pub(crate) fn hidden_state(&self) -> Xray<'_> {
         Xray::new(&self.simulation, &self.history)
     }
 
-    /// Returns the simulation.
     pub(crate) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// Passes future simulated days to a watch.
     pub(crate) fn set_watch(&mut self, watch: Arc<dyn DayWatch>) {
         self.simulation.watch = watch;
     }
 
-    /// Returns the position of the last written or replayed line.
     pub(crate) fn position(&self) -> &Position {
         self.log.position()
     }
 
-    /// Returns the key that seals the snapshots.
     pub(crate) fn seal_key(&self) -> &SealKey {
         &self.seal_key
     }
 
-    /// Makes all database entries visible, as of the last line.
     pub(crate) fn commit_projection(&self) {
         self.database.commit(self.log.position());
     }
 
-    /// Writes the state of day 0 to the database.
     fn project_opening(&self) {
         self.database.entries().write(|| self.simulation.entry());
         self.commit_projection();
@@ -339,7 +328,6 @@ impl Session {
 /// Functions for tests.
 #[cfg(test)]
 impl Session {
-    /// Replaces the file of the trajectory.
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.log.write_to(medium);
     }

@@ -10,7 +10,6 @@ use crate::company::reports::Week;
 use novamind_record::trajectory::record::{Outcome, RefusalRecord, RequestId, Via};
 use novamind_tools::{Refusal, ToolId, find};
 
-/// Maximum length of an id, characters.
 const MAX_ID_CHARACTERS: usize = 128;
 
 /// A request to simulate a week, from a program.
@@ -26,7 +25,6 @@ pub struct WeekRequest<'a> {
     pub id: &'a Value,
 }
 
-/// Whether a request is new.
 enum Sent {
     /// A new request, with the id to record.
     New(Option<RequestId>),
@@ -34,7 +32,6 @@ enum Sent {
     Again(FirstAnswer),
 }
 
-/// Parses the id of a request.
 fn id_of(id: &Value) -> Result<Option<&str>, Refusal> {
     match id {
         Value::Null => Ok(None),

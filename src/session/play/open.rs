@@ -34,7 +34,6 @@ pub(crate) struct Keeping {
     pub(crate) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
     /// Stores snapshot and database. Returns whether it succeeded.
     pub(crate) keep_database: fn(&Path, &SealKey) -> bool,
-    /// Stores the snapshot.
     pub(crate) keep_snapshot: fn(&Session, &Path),
 }
 

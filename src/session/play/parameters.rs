@@ -16,7 +16,6 @@ use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Kind, Refusal};
 use novamind_world::params::ParameterError;
 
-/// Whether a value is a table without any parameter.
 fn names_nothing(value: &toml::Value) -> bool {
     value.as_table().is_some_and(|table| table.values().all(names_nothing))
 }

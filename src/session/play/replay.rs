@@ -75,7 +75,6 @@ impl Session {
         }
     }
 
-    /// Applies a line of a file.
     pub(crate) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
         self.apply_line_telling(path, line, &mut |_| {})
     }

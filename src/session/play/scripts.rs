@@ -17,12 +17,9 @@ use novamind_database::{Rows, text};
 use novamind_record::trajectory::record::{Calculated, QuerySource, Via};
 use novamind_tools::{Kept, Language, NotebookChange, Refusal, Script, ScriptOutput, hint_at_python};
 
-/// Maximum output of a script, characters.
 const MOST_OUTPUT: usize = 5000;
-/// Maximum length of warnings and hints, characters.
 const MOST_REMARKS: usize = 2000;
 
-/// Remark on truncated output.
 const OUTPUT_IS_CUT: &str = "stdout is cut after 5,000 characters\n";
 
 /// Appends a result as a table, and its remarks, up to the limits.
@@ -171,7 +168,6 @@ impl Session {
         }
     }
 
-    /// Applies a change to the notebook.
     pub(super) fn keep(&mut self, change: &NotebookChange) {
         self.surroundings.notebook.apply(change);
     }

@@ -61,7 +61,6 @@ impl Session {
     }
 }
 
-/// Returns the arguments with which a tool restores settings.
 fn restoring_arguments(
     id: ToolId,
     now: &Settings,

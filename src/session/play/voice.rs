@@ -137,7 +137,6 @@ impl Session {
         }
     }
 
-    /// Replaces the texts of posts.
     fn take_words(&mut self, posts: &[WordedPost]) {
         for WordedPost { post, text } in posts {
             self.simulation.feed.reword(*post, text);

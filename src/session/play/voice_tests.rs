@@ -27,7 +27,6 @@ fn new_run(runs: &Path, mode: Mode) -> NewRun {
     NewRun { seed: Some(7), days: Some(60), mode, participant, storage, ..NewRun::default() }
 }
 
-/// Starts a company with customers.
 fn begun(runs: &Path, configuration: &Configuration) -> Session {
     let mut session = Session::create(new_run(runs, Mode::Sandbox), configuration).expect("a run");
     for (tool, arguments) in [
@@ -74,7 +73,6 @@ fn shown(session: &Session) -> Vec<String> {
     session.company().posts().iter().map(|post| post.content.clone()).collect()
 }
 
-/// Returns the texts of posts in the database.
 fn queried(session: &mut Session) -> Vec<String> {
     let rows = session.query("SELECT content FROM social_media_posts ORDER BY post_id").expect("rows").rows;
     let text = |row: Vec<Cell>| match row.into_iter().next() {

@@ -21,7 +21,6 @@ use novamind_record::trajectory::record::{Ended, Note};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
 use novamind_tools::Refusal;
 
-/// The end of a week or of single days.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stop {
     /// Number of lines up to it, including the end of the run if it follows directly.
@@ -139,7 +138,6 @@ impl Playback {
         self.end(end)
     }
 
-    /// Seeks an earlier line with a new session.
     fn back(
         &mut self,
         line: usize,

@@ -22,7 +22,6 @@ pub struct RecordView {
 }
 
 impl RecordView {
-    /// Creates the view of a line. `outcome` returns cash on a day, if it is recorded.
     pub(crate) fn of(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
         let scored = |forecast: Forecast| {
             let open = ScoredForecast { forecast, day: line.day, outcome: None };

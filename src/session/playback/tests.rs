@@ -14,7 +14,6 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{Call, Outcome, Via};
 use novamind_record::trajectory::{Durability, Record};
 
-/// A recorded run in a folder.
 pub(crate) struct Recorded {
     _runs: tempfile::TempDir,
     pub folder: PathBuf,
@@ -60,7 +59,6 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
     session
 }
 
-/// Reads all files of a folder.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     entries.map(|path| (path.clone(), std::fs::read(path).expect("a file"))).collect()
@@ -70,7 +68,6 @@ fn go(playback: &mut Playback, goal: Goal) -> SeekResult {
     playback.go(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
 }
 
-/// Returns the recorded state hashes by day.
 fn hashes(folder: &Path) -> BTreeMap<u32, String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
     let hash = |line: &Line| Some((line.day, line.record.closing()?.state_hash.clone()));

@@ -12,7 +12,6 @@ const FIRST: usize = 4 * 5000;
 /// Bytes kept from the end: 2,000 characters of at most 4 bytes.
 const LAST: usize = 4 * 2000;
 
-/// The start and the end of the output.
 #[derive(Debug, Default)]
 struct Kept {
     first: Vec<u8>,
@@ -30,7 +29,6 @@ impl Kept {
     }
 }
 
-/// The output of a pipe, read by a thread.
 #[derive(Debug)]
 pub(super) struct Captured {
     kept: Arc<Mutex<Kept>>,

@@ -12,12 +12,10 @@ use serde_json::Value;
 
 use super::ScriptRequest;
 
-/// Maximum size of a request, bytes.
 const MOST_REQUEST: usize = 1 << 20;
 /// Time between two attempts to write to a full socket.
 const BETWEEN_WRITES: Duration = Duration::from_millis(2);
 
-/// The result of waiting for a request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Heard {
     /// A request; `None` if the line is not valid.
@@ -28,11 +26,9 @@ pub(super) enum Heard {
     End,
 }
 
-/// The session's end of the socket.
 #[derive(Debug)]
 pub(super) struct Channel {
     socket: UnixStream,
-    /// Start of an incomplete line.
     begun: Vec<u8>,
 }
 

@@ -8,7 +8,6 @@ use std::sync::Once;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// Prefix of the folder names.
 const NAME: &str = "novamind-script-";
 
 /// Age after which a folder was left by a killed program: no script runs as long.

@@ -23,7 +23,6 @@ const SYSTEM_PYTHONS: [&str; 4] =
 /// The search path of scripts in baseline runs.
 const SYSTEM_PATH: &str = "/usr/bin:/bin";
 
-/// The Python interpreter of a script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Interpreter {
     /// The first on `PATH`.

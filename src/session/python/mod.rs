@@ -30,9 +30,7 @@ use novamind_tools::Refusal;
 #[cfg_attr(not(unix), allow(dead_code))]
 #[serde(tag = "ask", rename_all = "lowercase")]
 pub(crate) enum ScriptRequest {
-    /// A database query.
     Query {
-        /// The statement.
         sql: String,
     },
     /// The state of the run.
@@ -55,7 +53,6 @@ pub(crate) struct Said {
     pub remarks: String,
 }
 
-/// Returns the rejection for a script in Python that failed or was not run.
 pub(crate) fn failed(message: impl Into<String>) -> Refusal {
     Refusal::at("code", "script_failed", message)
 }
@@ -85,7 +82,6 @@ pub(crate) mod run {
     use novamind_record::mode::Mode;
     use novamind_tools::Refusal;
 
-    /// Rejects every script in Python.
     pub(crate) fn run_python(_: &str, _: Duration, _: Mode, _: &mut ScriptHost<'_>) -> Result<Said, Refusal> {
         Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
     }

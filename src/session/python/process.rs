@@ -17,7 +17,6 @@ use super::interpreter::Interpreter;
 
 /// Python code that runs before the script.
 const BOOTSTRAP: &str = include_str!("../../../assets/scripts/python.py");
-/// Memory limit of a script, bytes.
 const MOST_MEMORY: u64 = 1 << 30;
 /// Time between two checks of clock and process.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
@@ -28,7 +27,6 @@ const LEAVING: Duration = Duration::from_millis(500);
 /// Number of the signal SIGXCPU (processor time limit), on every system with python3.
 const TIME_IS_OVER: i32 = 24;
 
-/// How a script ended.
 #[derive(Debug)]
 pub(super) enum ScriptEnd {
     /// It exited, or was ended by a signal.
@@ -39,7 +37,6 @@ pub(super) enum ScriptEnd {
     Stopped,
 }
 
-/// A running script.
 #[derive(Debug)]
 pub(super) struct ScriptProcess {
     process: Child,

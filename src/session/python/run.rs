@@ -12,9 +12,7 @@ use super::{Said, ScriptHost, failed};
 use novamind_record::mode::Mode;
 use novamind_tools::Refusal;
 
-/// Maximum number of requests of a script.
 const MOST_QUERIES: u32 = 10_000;
-/// Maximum length of a traceback in a rejection, characters.
 const MOST_TRACEBACK: usize = 2000;
 /// Maximum length of printed output in a rejection, characters.
 const MOST_PRINTED: usize = 1000;
@@ -57,7 +55,6 @@ fn not_started(interpreter: Interpreter, error: &std::io::Error) -> Refusal {
     }
 }
 
-/// Returns the result of an ended script.
 fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said, Refusal> {
     match end {
         ScriptEnd::Ended(status) if status.success() => {

@@ -20,7 +20,6 @@ fn start() -> Record {
     novamind_record::folder::manifest::start_of(&manifest)
 }
 
-/// Writes a start line and memos after it.
 fn written(folder: &Path, count: u32) -> PathBuf {
     let path = folder.join("trajectory.jsonl");
     let mut writer = TrajectoryWriter::create(&path).expect("a file");

@@ -45,7 +45,6 @@ fn hashed(context: &str, name: &str) -> String {
     blake3::hash(&key).to_hex()[..16].to_owned()
 }
 
-/// Returns the time of the first call.
 fn began() -> Instant {
     static BEGAN: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
     *BEGAN.get_or_init(Instant::now)

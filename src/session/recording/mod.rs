@@ -22,11 +22,8 @@ use novamind_record::trajectory::{Durability, Line, Record, Trajectory};
 /// The record of an open run, and the state that follows from it besides the company.
 pub struct RunLog {
     rules: SessionRules,
-    /// The last line that was written or replayed.
     position: Position,
-    /// The user's clock and reported time limits.
     clock: PersonalClock,
-    /// Answers to the questions of a study.
     answers: AnswerBook,
     /// The last day on which each screen of the console was left, in earlier sessions.
     viewed: BTreeMap<String, u32>,
@@ -47,12 +44,10 @@ impl RunLog {
         }
     }
 
-    /// Creates the log of a new run.
     pub(crate) fn written(rules: SessionRules, recorder: Recorder) -> RunLog {
         RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::unwritten(rules) }
     }
 
-    /// Sets the recorder that writes further lines.
     pub(crate) fn resume(&mut self, recorder: Recorder) {
         self.recorder = Some(recorder);
     }
@@ -132,12 +127,10 @@ impl RunLog {
         self.recorder.as_ref().is_some_and(Recorder::is_on_disk)
     }
 
-    /// Returns the last line that was written or replayed.
     pub(crate) fn position(&self) -> &Position {
         &self.position
     }
 
-    /// Sets the position after a replayed line.
     pub(crate) fn move_to(&mut self, position: Position) {
         self.position = position;
     }
@@ -175,7 +168,6 @@ impl RunLog {
         problem
     }
 
-    /// Syncs all lines.
     pub(crate) fn sync(&mut self) -> Result<(), RunError> {
         self.recorder.as_mut().map_or(Ok(()), Recorder::sync)
     }
@@ -188,14 +180,12 @@ impl RunLog {
         }
     }
 
-    /// Replaces the file.
     #[cfg(test)]
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.recorder.as_mut().expect("it is written").write_to(medium);
     }
 }
 
-/// Returns the screen that a line records, and the day.
 fn view(line: &Line) -> Option<(String, u32)> {
     match &line.record {
         Record::Activity(Activity::View(view)) => Some((view.screen.clone(), line.day)),

@@ -6,7 +6,6 @@ use novamind_record::rules::{AtLimit, TimeLimits};
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
 use novamind_record::trajectory::{Record, Trajectory};
 
-/// The user's clock according to the lines of a run.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PersonalClock {
     /// When it was stopped, in seconds since 1970; `None` while it runs.
@@ -29,7 +28,6 @@ pub struct TimeLeft {
 }
 
 impl PersonalClock {
-    /// Reads the clock from the lines of a run.
     pub(crate) fn of(trajectory: &Trajectory) -> PersonalClock {
         let mut clock = PersonalClock::default();
         trajectory.lines.iter().for_each(|line| clock.pass(&line.record, line.moment()));

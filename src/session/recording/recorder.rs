@@ -27,11 +27,8 @@ pub(crate) struct Recorder {
     calls: Durability,
     /// Folder of the run; `None` in memory.
     folder: Option<PathBuf>,
-    /// Writer of lines after the end of the run, once there are any.
     afterwards: Option<TrajectoryWriter>,
-    /// Time by kind, line by line.
     attendance: Attendance,
-    /// Lock of the run; `None` in memory.
     _lock: Option<File>,
 }
 
@@ -74,12 +71,10 @@ impl Recorder {
         })
     }
 
-    /// Whether the lines are in a file.
     pub(crate) fn is_on_disk(&self) -> bool {
         self.folder.is_some()
     }
 
-    /// Returns number and hash of the last line.
     pub(crate) fn position(&self) -> Position {
         self.trajectory.position()
     }
@@ -166,7 +161,6 @@ impl Recorder {
         self.trajectory.is_complete()
     }
 
-    /// Replaces the file.
     #[cfg(test)]
     pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
         self.trajectory.write_to(medium);

@@ -59,7 +59,6 @@ pub fn record_look(folder: &Path, command: &str, detail: &str) -> Result<(), Run
     Ok(())
 }
 
-/// Whether a week was confirmed but not simulated.
 fn lacks_its_week(trajectory: &Trajectory) -> bool {
     let open = trajectory.lines.iter().rev().find_map(|line| match line.record {
         Record::Advance(_) => Some(true),

@@ -28,7 +28,6 @@ fn session(new: NewRun) -> (Session, PageCache) {
     (session, cache)
 }
 
-/// Returns a random number below `sides`.
 fn roll(state: &mut u64, sides: u64) -> u64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 33) % sides

@@ -19,7 +19,6 @@ use novamind_record::trajectory::{Durability, Line, Record, TrajectoryWriter};
 /// A branch in a staging folder, which is removed on drop unless the branch was published.
 pub struct UnnamedBranch {
     folder: PathBuf,
-    /// Folder after publication.
     named: PathBuf,
 }
 

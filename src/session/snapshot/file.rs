@@ -43,14 +43,11 @@ const TITLE: &[u8] = b"novamind snapshot 6\n";
 /// After the title: whether the secret of a study is needed.
 const OF_RUN: u8 = b'r';
 const OF_STUDY: u8 = b's';
-/// The keys are derived from its first line.
 const TRAJECTORY: &str = "trajectory.jsonl";
-/// File name in the run folder.
 pub(crate) const FILE: &str = "snapshot.bin";
 /// Initial capacity per subscriber: columns and a day's facts need about 190 bytes. Unused capacity costs nothing;
 /// too little costs a copy of everything.
 const BYTES_OF_A_SUBSCRIBER: usize = 320;
-/// Weeks between two snapshots of a played run.
 pub(crate) const WEEKS_BETWEEN: usize = 4;
 
 /// Identifies the state of a snapshot.
@@ -60,10 +57,8 @@ struct Header {
     version: String,
     run: String,
     parameters_digest: String,
-    /// Line of the trajectory.
     seq: u64,
     line_hash: String,
-    /// Hash of the state.
     state_hash: String,
     /// Digest of the database file at this line, if the run was closed properly.
     database: Option<String>,
@@ -110,16 +105,13 @@ impl Notes<'_> {
     }
 }
 
-/// An intact snapshot file.
 pub(crate) struct Snapshot {
     header: Header,
     /// Title, envelope and the unsealed rest.
     file: Vec<u8>,
-    /// Offset of the history.
     notes_at: usize,
 }
 
-/// The restored parts of a session.
 pub(crate) struct Recalled {
     pub(crate) simulation: Simulation,
     pub(crate) history: History,
@@ -146,7 +138,6 @@ impl Snapshot {
         Ok(Some(Snapshot { header, file, notes_at }))
     }
 
-    /// Returns the line of the trajectory.
     pub(crate) fn position(&self) -> Position {
         Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
     }
@@ -162,7 +153,6 @@ impl Snapshot {
         place.write(&header, &mut self.file[self.notes_at..]);
     }
 
-    /// Whether the snapshot is of this run.
     pub(crate) fn is_of(&self, run: &str) -> bool {
         self.header.run == run
     }
@@ -244,13 +234,11 @@ impl Restore for Step {
     }
 }
 
-/// The state of a session to store in a snapshot.
 pub(crate) struct KeptState<'a> {
     pub(crate) manifest: &'a Manifest,
     pub(crate) simulation: &'a Simulation,
     pub(crate) history: &'a History,
     pub(crate) notebook: &'a Notebook,
-    /// Line of the trajectory.
     pub(crate) position: Position,
 }
 
@@ -339,7 +327,6 @@ pub(crate) struct SnapshotPlace {
 }
 
 impl SnapshotPlace {
-    /// Returns the target for the run in a folder.
     pub(crate) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
         let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
         let of = if key.has_secret() { OF_STUDY } else { OF_RUN };

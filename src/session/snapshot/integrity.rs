@@ -17,11 +17,9 @@ use novamind_record::trajectory::{BRANCH_THEM, Record, Trajectory};
 
 /// Snapshot and database position, read before the trajectory.
 pub struct Integrity {
-    /// The snapshot, if it is intact.
     pub(crate) snapshot: Option<Snapshot>,
     /// Last line of the database, if it can be read.
     database: Option<Position>,
-    /// Whether the database belongs to another run.
     foreign: bool,
     /// Problems that the user should know.
     pub remarks: Vec<String>,

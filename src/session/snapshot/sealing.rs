@@ -9,7 +9,6 @@ use std::fmt;
 
 /// Separates these keys from other uses of the same hash.
 const CONTEXT: &str = "novamind 2026-11 sealed state of a run";
-/// Bytes of the key stream generated at a time.
 const PIECE: usize = 1 << 12;
 /// Size of a nonce, a tag or a key, bytes.
 const SIZE: usize = 32;
@@ -26,7 +25,6 @@ impl SealKey {
         SealKey { study: Some(*secret) }
     }
 
-    /// Whether it contains the secret of a study.
     pub(super) fn has_secret(&self) -> bool {
         self.study.is_some()
     }
@@ -51,14 +49,12 @@ impl fmt::Debug for SealKey {
     }
 }
 
-/// Keys that seal and unseal the states of a run.
 pub(super) struct RunKeys {
     nonce: [u8; SIZE],
     stream: [u8; SIZE],
     tag: [u8; SIZE],
 }
 
-/// Nonce and tag, stored before the sealed bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Envelope {
     nonce: [u8; SIZE],
@@ -66,15 +62,12 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// Size in bytes.
     pub(super) const LENGTH: usize = 2 * SIZE;
 
-    /// Returns the bytes for a file.
     pub(super) fn bytes(&self) -> [u8; Envelope::LENGTH] {
         std::array::from_fn(|at| if at < SIZE { self.nonce[at] } else { self.tag[at - SIZE] })
     }
 
-    /// Parses the bytes of a file.
     pub(super) fn of(bytes: &[u8; Envelope::LENGTH]) -> Envelope {
         let part = |from: usize| std::array::from_fn(|at| bytes[from + at]);
         Envelope { nonce: part(0), tag: part(SIZE) }

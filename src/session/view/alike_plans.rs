@@ -44,7 +44,6 @@ impl CompanyView<'_> {
         alike.map(of).collect()
     }
 
-    /// Returns the active subscriptions by plan, of individuals and enterprises.
     fn subscriptions(&self) -> ByPlan<u32> {
         let mut subscriptions = ByPlan([0; 3]);
         for (_, block) in self.simulation.world.customers.blocks() {
@@ -54,7 +53,6 @@ impl CompanyView<'_> {
     }
 }
 
-/// Whether two plans are on sale and have equal settings except for the list price.
 fn are_alike(settings: &Settings, left: Plan, right: Plan) -> bool {
     let (core, operations) = (&settings.core, &settings.targeted_operations);
     let of =

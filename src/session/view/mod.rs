@@ -67,7 +67,6 @@ impl<'a> CompanyView<'a> {
         planned.reply.without_running(&resolved)
     }
 
-    /// Returns the data that tools can read.
     pub(crate) fn for_tools(&self) -> View<'a> {
         View::new(&self.simulation.world, &self.simulation.params)
             .within(self.surroundings)
@@ -183,7 +182,6 @@ impl<'a> CompanyView<'a> {
         horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
     }
 
-    /// Returns the current rate at which cash changes.
     pub(crate) fn pace(&self) -> Pace {
         let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
         let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();

@@ -178,7 +178,6 @@ impl CompanyView<'_> {
             .unwrap_or_else(|| self.build_dashboard(self.simulation.open_issues()))
     }
 
-    /// Builds the dashboard from the current state.
     pub(crate) fn build_dashboard(&self, open_issues: u32) -> String {
         let closing = closing_figures(&self.simulation.world);
         let stocks = WeekFigures {
@@ -249,7 +248,6 @@ impl CompanyView<'_> {
             .count() as u32
     }
 
-    /// Returns the figures of a started week, or of the last week.
     fn latest_days(&self) -> Option<&WeekFigures> {
         let running = &self.history.running_week;
         if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }

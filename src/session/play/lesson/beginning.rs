@@ -71,7 +71,6 @@ impl Session {
         }
     }
 
-    /// Starts a step by setting its parameters.
     pub(super) fn begin_step(&mut self, step: usize, number: u32) -> Result<(), Refusal> {
         let Some(own) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned() else {
             return Ok(());
@@ -134,7 +133,6 @@ impl Session {
         if step == 0 { self.go_on_with_start(self.calls_of_week(lines), &mut |_| {}) } else { Ok(()) }
     }
 
-    /// Returns the number of start calls made since the last week.
     fn calls_of_week(&self, lines: &[Line]) -> usize {
         let day = self.day();
         let after = lines.iter().rposition(Line::closes_days).map_or(0, |week| week + 1);
@@ -143,7 +141,6 @@ impl Session {
         calls.count()
     }
 
-    /// Returns the number of attempts at a step in the parent run.
     fn tries_of_parent(&self, step: usize) -> u32 {
         let runs = self.folder().and_then(Path::parent);
         let parent = self.manifest().parent.as_ref().zip(runs);
@@ -157,7 +154,6 @@ impl Session {
     }
 }
 
-/// Whether the lines are those of another attempt at a step that has not started yet.
 fn is_try_to_begin(lines: &[Line]) -> bool {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,

@@ -26,7 +26,6 @@ impl Session {
         self.lesson.as_deref()
     }
 
-    /// Rejects a tool that the lesson does not offer.
     pub(crate) fn refuse_outside_lesson(&self, tool: ToolId, via: Via) -> Result<(), Refusal> {
         let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
         standing.map_or(Ok(()), |standing| standing.refuse_tool(tool))
@@ -46,7 +45,6 @@ impl Session {
         Err(Refusal::new("step_not_begun", message))
     }
 
-    /// Makes the automatic calls of the lesson before a week.
     pub(crate) fn prepare_week_of_lesson(&mut self) -> Result<(), Refusal> {
         if !self.lesson.as_deref().is_some_and(|own| own.own_part().moves_capacity()) {
             return Ok(());

@@ -98,7 +98,6 @@ impl Session {
         }
     }
 
-    /// Returns the outcome of a guess, measured from a day on.
     fn outcome_of(&mut self, standing: &LessonStanding, guess: &Guess, step: usize, from: u32) -> LessonNote {
         let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
         match &guess.form {
@@ -113,7 +112,6 @@ impl Session {
         }
     }
 
-    /// Records whether the goals of a step were reached.
     pub(super) fn judge_goals(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
         let from = begin * self.params().run.days_per_week;

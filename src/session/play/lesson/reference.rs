@@ -32,7 +32,6 @@ pub struct PartPlay<'a> {
     pub asks_database: bool,
 }
 
-/// Whether rules answer enterprises in any of the calls.
 pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
     let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
     plays.iter().any(|play| play.calls.iter().any(is_rules))

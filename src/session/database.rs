@@ -89,7 +89,7 @@ impl RunDatabase {
         let connection = match (&self.projector, &self.finished) {
             (Some(projector), _) => projector.connection(scope),
             (None, Some(location)) => query_connection(location, scope).map(|(connection, _)| connection),
-            (None, None) => return Err(Refusal::new("sql_error", "this run is played without a database")),
+            (None, None) => return Err(Refusal::new("sql_error", "this run has no database")),
         };
         connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
     }
@@ -126,7 +126,7 @@ impl RunDatabase {
         match (&self.projector, &self.finished) {
             (Some(projector), _) => Ok(projector.copy_for_other_programs(file)?),
             (None, Some(location)) => Ok(copy_for_other_programs(location, file)?),
-            (None, None) => Err(RunError::NotPossible("this run is played without a database".to_owned())),
+            (None, None) => Err(RunError::NotPossible("this run has no database".to_owned())),
         }
     }
 

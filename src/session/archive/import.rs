@@ -119,7 +119,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
             continue;
         }
         if kind != tar::EntryType::Regular {
-            return Err(refused(archive, format!("{name} is not an ordinary file")));
+            return Err(refused(archive, format!("{name} is not a regular file")));
         }
         let (run, file) =
             parts(&name).ok_or_else(|| refused(archive, format!("{name} is not a file of a run")))?;

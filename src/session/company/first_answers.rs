@@ -85,7 +85,7 @@ impl FirstAnswers {
 }
 
 pub(crate) fn mismatch() -> Refusal {
-    let message = "this request_id belongs to an earlier request of this run that asked something else; nothing was \
-                   changed. A new request needs a new id";
+    let message = "this request_id belongs to an earlier request of this run with other contents; nothing was \
+                   changed. Use a new id for a new request";
     Refusal::at("request_id", "request_id_payload_mismatch", message)
 }

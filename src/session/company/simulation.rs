@@ -178,7 +178,7 @@ impl Simulation {
                 let most = grouped(f64::from(MOST_CUSTOMERS), 0);
                 format!("so many leads that there could be more than {most} customers")
             }
-            Some(NoRoom::Numbers) => "more leads than there are numbers for customers".to_owned(),
+            Some(NoRoom::Numbers) => "more leads than there are customer numbers".to_owned(),
         };
         let message = format!(
             "day {day} would bring {told}, which exceeds the limits of the program. Nothing after day {} is simulated. \

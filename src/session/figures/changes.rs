@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(json!(there[0]), told);
         let decided = Decisions { day: 0, until: 7, changes: there, purchases: Vec::new() };
         let kept = serde_json::to_string(&decided).expect("text");
-        assert_eq!(serde_json::from_str::<Decisions>(&kept).expect("what was kept"), decided);
+        assert_eq!(serde_json::from_str::<Decisions>(&kept).expect("the stored decisions"), decided);
         assert_eq!(daily_cost(&new, 85.0), 125.0);
     }
 }

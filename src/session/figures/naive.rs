@@ -114,7 +114,7 @@ pub struct Bands {
 }
 
 static SHIPPED: LazyLock<Bands> = LazyLock::new(|| {
-    toml::from_str(include_str!("../../../assets/naive-bands.toml")).expect("the shipped bands are tested")
+    toml::from_str(include_str!("../../../assets/naive-bands.toml")).expect("the bundled bands are valid")
 });
 
 impl Bands {
@@ -166,7 +166,7 @@ impl Bands {
             false => format!("{} to {} %", percent(least), percent(most)),
         };
         format!(
-            "{share} of {} such intervals held in back-tests of {} policies",
+            "{share} of {} such intervals covered the outcome in back-tests of {} policies",
             novamind_base::notation::grouped(count as f64, 0),
             self.policies
         )

@@ -76,7 +76,7 @@ impl ScoredForecast {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / size(outcome))
     }
 
-    /// Describes the error of the point: `0.2% below`, or `on it` if no digit shows a difference; `None` before the
+    /// Describes the error of the point: `0.2% low`, or `exact` if no digit shows a difference; `None` before the
     /// due day. Errors of 1,000 % or more (outcomes near 0) are shown as `>999%`.
     pub fn miss_in_words(&self) -> Option<String> {
         let error = self.error()?;
@@ -85,9 +85,9 @@ impl ScoredForecast {
             _ => ">999%".to_owned(),
         };
         Some(match error {
-            _ if shown == percent(0.0, 1) => "on it".to_owned(),
-            error if error < 0.0 => format!("{shown} below"),
-            _ => format!("{shown} above"),
+            _ if shown == percent(0.0, 1) => "exact".to_owned(),
+            error if error < 0.0 => format!("{shown} low"),
+            _ => format!("{shown} high"),
         })
     }
 
@@ -168,11 +168,11 @@ mod tests {
         let told = told.each_ref().map(|told| told.as_deref().unwrap_or_default());
         assert_eq!(
             told,
-            ["50.0% below", "25.0% above", "on it", "on it", "on it", "500.0% above", "480.0% above"]
+            ["50.0% low", "25.0% high", "exact", "exact", "exact", "500.0% high", "480.0% high"]
         );
         let far = Forecast { point: -50.0, ..came(1.0).forecast };
         let far = ScoredForecast { forecast: far, ..came(1.0) };
-        assert_eq!(far.miss_in_words().as_deref(), Some(">999% below"));
+        assert_eq!(far.miss_in_words().as_deref(), Some(">999% low"));
     }
 
     #[test]

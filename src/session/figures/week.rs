@@ -30,12 +30,12 @@ pub struct Forecasts {
     pub filled_naively: [bool; 4],
 }
 
-/// Describes how many forecasts the naive projection filled in: `naively`, `3 of 4 naively`, or `None`.
+/// Describes how many forecasts the naive projection filled in: `by projection`, `3 of 4 by projection`, or `None`.
 pub fn naively(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
-        all if all == filled.len() => Some("naively".to_owned()),
-        some => Some(format!("{some} of {} naively", filled.len())),
+        all if all == filled.len() => Some("by projection".to_owned()),
+        some => Some(format!("{some} of {} by projection", filled.len())),
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn forecasts_are_told_naive_as_far_as_they_are() {
         let told = [[false; 4], [false, true, true, true], [true; 4]].map(|filled| naively(&filled));
-        assert_eq!(told, [None, Some("3 of 4 naively".to_owned()), Some("naively".to_owned())]);
+        assert_eq!(told, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
     }
 
     #[test]

@@ -381,7 +381,7 @@ impl Session {
     }
 
     pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
-        let forecasts = Forecasts::of(&filed.forecasts).ok_or("there are not four forecasts")?;
+        let forecasts = Forecasts::of(&filed.forecasts).ok_or("the line does not have four forecasts")?;
         self.history.calculated.clone_from(&filed.calculations);
         self.file(filed.rationale.clone(), &forecasts, at);
         Ok(())

@@ -90,7 +90,7 @@ mod tests {
         session.database.bound_pages(Some(0));
         let last = week(&mut session);
         assert!(last.ended.is_some());
-        let remark = last.remark.expect("there is no room");
+        let remark = last.remark.expect("the disk is full");
         assert!(remark.contains("could not be written") && remark.contains("The run is safe"), "{remark}");
     }
 
@@ -103,7 +103,7 @@ mod tests {
         let mut session = run(second.path());
         session.database.bound_pages(Some(1));
         play(&mut session, 2);
-        let problem = session.wait_for_database().expect_err("there is no room").message;
+        let problem = session.wait_for_database().expect_err("the disk is full").message;
         assert_eq!(session.database().failure().map(|own| own.to_string()), Some(problem.clone()));
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
         // With free disk space, a query repairs the database and the run continues.

@@ -46,7 +46,7 @@ impl Session {
     /// `nothing_to_redo`, and the rejections of the call.
     pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.history.this_week.redo.last().cloned() else {
-            let message = "nothing has been undone since the last setting";
+            let message = "no call was undone since the last change of a setting";
             return Err(Refusal::new("nothing_to_redo", message));
         };
         self.restore(&step, via, Reversal::Redoes(step.seq))

@@ -149,7 +149,7 @@ fn an_outcome_is_known_when_its_day_has_come_and_marked_before() {
     let foreseen = |playback: &Playback| {
         let chapter = playback.place().chapter;
         let filed = |entry: &RecordView| matches!(entry.record, Record::Advance(_));
-        chapter.entries.into_iter().find(filed).expect("a week was filed")
+        chapter.entries.into_iter().find(filed).expect("a submitted week")
     };
     let entry = foreseen(&playback);
     let early = &entry.forecasts;
@@ -265,7 +265,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     let path = folder.join("trajectory.jsonl");
     let whole = std::fs::read(&path).expect("a trajectory");
     let forecasts: Forecasts = played.company().naive_forecasts();
-    played.advance("go on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+    played.advance("continue", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     let after = std::fs::read(&path).expect("a trajectory");
     drop(played);
     std::fs::write(&path, &after[..whole.len() + 40]).expect("a part of a line");
@@ -274,7 +274,7 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     assert!(playback.look_for_more().expect("no problem"));
     go(&mut playback, Goal::Last);
     assert_eq!(playback.session().state_hash().0, hashes(&folder)[&21]);
-    std::fs::write(&path, &after[..60]).expect("a file that became shorter");
+    std::fs::write(&path, &after[..60]).expect("a shorter file");
     assert!(playback.look_for_more().expect_err("lines are gone").to_string().contains("lines were removed"));
 }
 

@@ -25,7 +25,7 @@ fn opened(folder: &Path, text: Option<&str>) -> String {
     assert!(verify(folder).is_ok(), "it verifies unchanged");
     assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "reading changes nothing");
     let reader = Session::open(folder, Access::Read, false).expect("it opens");
-    assert!(reader.remarks().join(" ").contains("the first line of the trajectory counts"));
+    assert!(reader.remarks().join(" ").contains("the first line of the trajectory is used"));
     let session = Session::open(folder, Access::Write, true).expect("it opens");
     assert_eq!((session.day(), session.manifest().mode, session.manifest().seed), (14, Mode::Baseline, 7));
     session.remarks().join(" ")

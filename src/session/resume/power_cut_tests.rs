@@ -183,7 +183,7 @@ fn a_last_week_whose_lines_miss_the_disk_ends_the_run() {
     let (before, after) = (places.path().join("before"), places.path().join("after"));
     after_the_cut(&session, &before, &cache, &mut chance);
     cache.set_full(false);
-    session.set_memo("after the end").expect("there is room again");
+    session.set_memo("after the end").expect("space is available again");
     assert!(afterwards.exists() && probe::has_synced(&afterwards));
     after_the_cut(&session, &after, &cache, &mut chance);
     let trajectory = Trajectory::read(&after.join("trajectory.jsonl")).expect("it reads");

@@ -66,7 +66,7 @@ impl Session {
         match call {
             LessonCall::Tool(tool, args) => self.call(tool, args, Via::Lesson).map(|_| ()),
             LessonCall::Rules(_) => {
-                Err(Refusal::new("not_possible", "rules cannot answer enterprises in the start of a lesson"))
+                Err(Refusal::new("not_possible", "rules cannot answer enterprises at the start of a lesson"))
             }
         }
     }

@@ -269,7 +269,7 @@ fn dangerous_and_foreign_files_are_refused() {
         let mut builder = tar::Builder::new(fs::File::create(&bad).expect("a file"));
         builder.append(&header("0123abcd/run.toml", 0, kind), &b""[..]).expect("an entry");
         builder.finish().expect("an archive");
-        import(&home, &bad).fails(3, &["not an ordinary file"]);
+        import(&home, &bad).fails(3, &["not a regular file"]);
     }
     // What a damaged archive holds is told in one line that does not steer the terminal.
     forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);

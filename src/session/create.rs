@@ -219,8 +219,7 @@ fn start_projector(
 fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
     let scenario = configuration.scenario(&new.scenario)?;
     if new.mode == Mode::Baseline && !scenario.shipped {
-        let message =
-            format!("a baseline run needs a bundled scenario; {} is your own file", scenario.name);
+        let message = format!("a baseline run needs a bundled scenario; {} is your own file", scenario.name);
         return Err(RunError::NotPossible(message));
     }
     if new.lesson.is_some() && new.mode != Mode::Lesson {
@@ -290,9 +289,7 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
 }
 
 fn no_model(problem: String) -> RunError {
-    RunError::NotPossible(format!(
-        "the language model cannot be used: {problem}. Nothing was recorded"
-    ))
+    RunError::NotPossible(format!("the language model cannot be used: {problem}. Nothing was recorded"))
 }
 
 #[cfg(test)]

@@ -543,8 +543,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
     assert_eq!(answer(1)["code"], "sql_error", "a statement ends where the line does: {}", answer(1));
     assert_eq!(answer(2)["code"], "day_unknown");
     assert_eq!((&answer(3)["code"], &answer(4)["code"]), (&"usage".into(), &"usage".into()));
-    let way =
-        "hidden.groups is not a visible table; query hidden tables with novamind query --xray";
+    let way = "hidden.groups is not a visible table; query hidden tables with novamind query --xray";
     assert!(answer(5)["error"].as_str().is_some_and(|text| text.starts_with(way)), "{}", answer(5));
     assert!(answer(6)["data"]["command"].as_str().is_some_and(|text| text.contains("xray sql [DAY]")));
     let query = |options: &[&str]| {

@@ -321,7 +321,9 @@ impl<'a> Player<'a> {
         let spent =
             self.diary.time.get(&(self.diary.week(), Spent::Active)).copied().unwrap_or_default() / 1000;
         self.stays_active(WEEK_SECONDS - WARNING_SECONDS - spent);
-        self.await_limit("1 of 10 min left for this week; then the week is submitted with the naive projection");
+        self.await_limit(
+            "1 of 10 min left for this week; then the week is submitted with the naive projection",
+        );
         self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
         self.does("n enter 'half'");
         self.shows("half");

@@ -46,8 +46,9 @@ pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
 /// changed then.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
     if let Some(name) = name.filter(|name| !is_folder_name(name)) {
-        let message =
-            format!("{name} is not a valid run name: use 1 to 40 letters, digits, - and _. Nothing was imported");
+        let message = format!(
+            "{name} is not a valid run name: use 1 to 40 letters, digits, - and _. Nothing was imported"
+        );
         return Err(RunError::NotPossible(message));
     }
     let workshop = Workshop::within(runs)?;

@@ -43,7 +43,9 @@ impl LabKey {
     pub fn generate() -> Result<LabKey, RunError> {
         let mut secret = [0; 32];
         getrandom::fill(&mut secret).map_err(|error| {
-            RunError::NotPossible(format!("cannot create a key: the system provides no random numbers ({error})"))
+            RunError::NotPossible(format!(
+                "cannot create a key: the system provides no random numbers ({error})"
+            ))
         })?;
         Ok(LabKey(SigningKey::from_bytes(&secret)))
     }

@@ -27,7 +27,10 @@ pub(crate) enum Irrevocable {
         companies: u32,
     },
     /// Ended threads with enterprises of a group.
-    Ended { group: Group, companies: u32 },
+    Ended {
+        group: Group,
+        companies: u32,
+    },
 }
 
 impl Irrevocable {

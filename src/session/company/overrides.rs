@@ -257,10 +257,14 @@ mod tests {
         let (now, mut own) = (Arc::new(Params::shipped()), Overrides::default());
         let most = now.competitor.competitor_feedback_u_max;
         own.take(&now, change(1, LEAST, most - 0.01, Some(30))).expect("it fits");
-        let unfit = own.take(&now, change(2, MOST, most - 0.02, None)).err().expect("the values contradict each other on day 30");
+        let unfit = own
+            .take(&now, change(2, MOST, most - 0.02, None))
+            .err()
+            .expect("the values contradict each other on day 30");
         assert_eq!(unfit.day, Some(30));
         assert_eq!(own.waiting().count(), 1, "the schedule is unchanged");
-        own.take(&now, change(3, LEAST, most - 0.05, Some(30))).expect("the later of two changes on a day applies");
+        own.take(&now, change(3, LEAST, most - 0.05, Some(30)))
+            .expect("the later of two changes on a day applies");
         assert_eq!(own.over(&now, &BTreeSet::from([3])).waiting().count(), 1);
     }
 

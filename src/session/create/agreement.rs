@@ -73,13 +73,13 @@ mod tests {
             Session::create(new(&runs, participant, agreed, mode), &configuration)
         };
         let consent = |session: Result<Session, RunError>| session.expect("a run").manifest().consent.clone();
-        assert_eq!(
-            consent(start(Some("P01"), false, Mode::Baseline)),
-            None,
-            "no text, no consent"
-        );
+        assert_eq!(consent(start(Some("P01"), false, Mode::Baseline)), None, "no text, no consent");
         std::fs::write(place.path().join(CONSENT_FILE), "We keep what you do for a year.").expect("written");
-        assert_eq!(consent(start(Some("P01"), false, Mode::Sandbox)), None, "only baseline sessions need consent");
+        assert_eq!(
+            consent(start(Some("P01"), false, Mode::Sandbox)),
+            None,
+            "only baseline sessions need consent"
+        );
         let count = || std::fs::read_dir(&runs).expect("a folder").count();
         let before = count();
         let error = start(Some("P01"), false, Mode::Baseline).err().expect("no consent was given");

@@ -94,7 +94,11 @@ mod tests {
         ] {
             let words = refusal(&new).expect(part);
             assert!(words.contains(part), "{words}");
-            assert_eq!(refusal(&NewRun { mode: Mode::Sandbox, ..new }), None, "other modes are not restricted");
+            assert_eq!(
+                refusal(&NewRun { mode: Mode::Sandbox, ..new }),
+                None,
+                "other modes are not restricted"
+            );
         }
     }
 }

@@ -344,7 +344,11 @@ mod tests {
         assert!(errors.iter().any(|own| !own.held));
         assert!(widening(&errors, 20) > 1.5, "{}", widening(&errors, 20));
         let known = errors.iter().filter(|own| own.due < 10).count();
-        assert_eq!(widening(&errors, 10), widening(&errors[..known], 20), "only due forecasts affect the width");
+        assert_eq!(
+            widening(&errors, 10),
+            widening(&errors[..known], 20),
+            "only due forecasts affect the width"
+        );
     }
 
     #[test]

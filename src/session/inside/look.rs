@@ -105,7 +105,8 @@ impl Look {
     /// `read_only` if the run is open read-only, `not_saved`.
     fn record(run: &mut Session, what: &str, which: &str, shown_day: u32) -> Result<Look, Refusal> {
         if !run.log().is_written() {
-            let message = "an inspection must be recorded, but this run is open read-only; open it to play it";
+            let message =
+                "an inspection must be recorded, but this run is open read-only; open it to play it";
             return Err(Refusal::new("read_only", message));
         }
         let look = XrayLook { what: what.to_owned(), which: which.to_owned(), shown_day };
@@ -136,7 +137,11 @@ impl Look {
     }
 
     fn assert_is_of(&self, run: &Session) {
-        debug_assert_eq!(self.run, run.manifest().id, "an inspection is valid only for the run that recorded it");
+        debug_assert_eq!(
+            self.run,
+            run.manifest().id,
+            "an inspection is valid only for the run that recorded it"
+        );
     }
 
     /// Simulates the days of the run again up to `day`, at most to the end of its week, and passes them to `watch`.

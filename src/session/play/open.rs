@@ -81,7 +81,9 @@ impl Session {
             }
             Access::Read => (
                 None,
-                derived.problem.map(|problem| format!("{problem}: the first line of the trajectory is used instead.")),
+                derived
+                    .problem
+                    .map(|problem| format!("{problem}: the first line of the trajectory is used instead.")),
             ),
         };
         let path = folder.join("trajectory.jsonl");

@@ -54,8 +54,7 @@ impl Session {
         self.refuse_if_over(Kind::Time)?;
         let (today, last) = (self.simulation.world.day, self.manifest.days);
         if let Some(day) = from_day.filter(|day| !(today + 1..=last).contains(day)) {
-            let message =
-                format!("the start day must be between {} and {last}, not {day}", today + 1);
+            let message = format!("the start day must be between {} and {last}, not {day}", today + 1);
             return Err(Refusal::at("from", "day_unknown", message));
         }
         let old = json_of_value(&self.simulation.params.value(key).map_err(unknown)?);

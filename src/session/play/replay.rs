@@ -173,7 +173,9 @@ impl Session {
                 self.log.read_answers(trajectory.lines.iter().chain(&after.lines));
                 after.lines.iter().for_each(|line| self.keep_again(line));
             }
-            Err(problem) => self.remarks.push(format!("{problem} Lines recorded after the end are not shown.")),
+            Err(problem) => {
+                self.remarks.push(format!("{problem} Lines recorded after the end are not shown."))
+            }
         }
     }
 

@@ -34,7 +34,8 @@ impl Session {
     /// `nothing_to_undo`, `cannot_undo` if no call can restore the old value, and the rejections of the call.
     pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
         let Some(step) = self.history.this_week.undo.last().cloned() else {
-            let message = "no setting has changed since the last week; purchases, posts and offers cannot be undone";
+            let message =
+                "no setting has changed since the last week; purchases, posts and offers cannot be undone";
             return Err(Refusal::new("nothing_to_undo", message));
         };
         self.restore(&step, via, Reversal::Undoes(step.seq))

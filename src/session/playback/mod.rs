@@ -333,8 +333,7 @@ impl Playback {
 }
 
 fn stands_alone() -> Refusal {
-    let message =
-        "this trajectory has no run folder: import the run to branch it";
+    let message = "this trajectory has no run folder: import the run to branch it";
     Refusal::new("not_possible", message)
 }
 

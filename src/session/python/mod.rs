@@ -58,8 +58,7 @@ pub(crate) fn failed(message: impl Into<String>) -> Refusal {
 }
 
 /// Message if Python is not allowed.
-pub const PYTHON_NOT_RUN: &str =
-    "Python is not run for policies or for decisions that were made elsewhere";
+pub const PYTHON_NOT_RUN: &str = "Python is not run for policies or for decisions that were made elsewhere";
 
 /// Rejects Python unless a player makes the call: records, policies and lessons must not start programs.
 ///

@@ -1,4 +1,3 @@
-
 use crate::create::NewRun;
 use crate::play::Session;
 use novamind_record::folder::configuration::Configuration;

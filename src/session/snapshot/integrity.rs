@@ -30,8 +30,7 @@ impl Integrity {
     pub fn of(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
-            remarks
-                .push(format!("{FILE} {problem} and is not used: the run was simulated from its start."));
+            remarks.push(format!("{FILE} {problem} and is not used: the run was simulated from its start."));
             None
         });
         // A snapshot of another run is irrelevant.

@@ -116,7 +116,8 @@ fn a_run_goes_out_sealed_and_comes_back_the_same() {
     assert_eq!(other.run(&["replay", &id(&run), "--verify"]).code, 0);
     let go_on = other.play(&["--run", &id(&run)], "next \"the end\" naive\n");
     assert_eq!(go_on.code, 0, "{}", go_on.err);
-    import(&other, &home.0.path().join("run.tar")).fails(1, &["already exists", "was continued after the export"]);
+    import(&other, &home.0.path().join("run.tar"))
+        .fails(1, &["already exists", "was continued after the export"]);
     let (later, _) = export(&other, &run, "later.tar");
     import(&home, &later).fails(1, &["already exists", "later state"]);
     assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");

@@ -47,10 +47,7 @@ impl Session {
             let due = start.start.iter().filter(|own| own.week == week).flat_map(|own| &own.calls);
             for call in due.skip(if week == first { made } else { 0 }) {
                 self.call_of_start(call).map_err(|refusal| {
-                    RunError::NotPossible(format!(
-                        "lesson {} cannot start: {refusal}",
-                        lesson.name
-                    ))
+                    RunError::NotPossible(format!("lesson {} cannot start: {refusal}", lesson.name))
                 })?;
             }
             if week < start.start_weeks {

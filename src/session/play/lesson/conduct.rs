@@ -35,7 +35,10 @@ impl Session {
     pub(crate) fn refuse_week_of_lesson(&self, via: Via) -> Result<(), Refusal> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
         let Some(step) = lesson_step(self) else {
-            return Err(Refusal::new("lesson_over", "the lesson has ended; open its debrief to see the result"));
+            return Err(Refusal::new(
+                "lesson_over",
+                "the lesson has ended; open its debrief to see the result",
+            ));
         };
         if standing.has_begun(step) {
             return standing.refuse_before_guess(weeks_passed(self));

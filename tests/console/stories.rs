@@ -118,7 +118,7 @@ fn what_is_set_can_be_taken_back_and_the_zero_of_the_start_cannot() {
     console.press("u");
     console.shows("! ");
     console.press("esc home enter enter '12' enter ctrl-s u");
-    console.shows("a price of 0 cannot be set");
+    console.shows("a price cannot be set to 0");
 }
 
 #[test]

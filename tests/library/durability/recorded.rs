@@ -191,7 +191,7 @@ fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
             }
         });
         let error = verify(&folder).expect_err("it is refused").to_string();
-        assert!(error.contains("answers differently"), "{error}");
+        assert!(error.contains("has a different result"), "{error}");
     }
 }
 

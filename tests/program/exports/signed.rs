@@ -62,7 +62,7 @@ fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
     fs::write(&file, "no key").expect("written");
     let said = export(&nothing, &file);
     assert!(
-        said.code != 0 && said.err.contains("is no key of this kind") && !nothing.exists(),
+        said.code != 0 && said.err.contains("is not a key of this kind") && !nothing.exists(),
         "{}",
         said.err
     );

@@ -59,7 +59,7 @@ impl Dialog for Confirm {
             // Tells a user who mistook the key that nothing happened.
             (Action::Cancel, _) => {
                 let yes = look.keys.label(Action::Confirm).unwrap_or_default();
-                let said = format!("Cancelled ({}). Press {yes} to confirm next time.", self.title);
+                let said = format!("{}: cancelled; {yes} confirms", self.title);
                 Outcome::leave_with(vec![Effect::Say(said)])
             }
             (action, Some((other, effects))) if action == *other => {

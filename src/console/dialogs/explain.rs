@@ -337,7 +337,7 @@ mod tests {
         let shown =
             dialog_picture(&Explain::screen(ScreenId::Inbox, Numbers::shipped().into()), &company, 80, 21);
         assert!(
-            shown.contains("Negotiate with companies.") && shown.contains("Enterprise customer"),
+            shown.contains("Negotiate with enterprises.") && shown.contains("Enterprise customer"),
             "{shown}"
         );
         let mut odd = Explain::figure(&figure("no-such-term", None), Numbers::shipped().into());

@@ -223,7 +223,7 @@ mod tests {
         // A key that an inner scope uses is not listed for an outer one.
         let query = pane("Results", &[Scope::Result, Scope::List], &[]);
         let rows = Help::new(ScreenId::Sql, &[query], false, &keys).rows();
-        assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the whole cell here");
+        assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the full value here");
     }
 
     #[test]

@@ -26,9 +26,8 @@ pub struct Agreement {
     text: String,
     scroll: Scroll,
     shown: Duration,
-    /// Rows of text in the last frame.
     room: Cell<usize>,
-    /// The last line was on the screen.
+    /// Whether the last line was on the screen.
     read: Cell<bool>,
 }
 

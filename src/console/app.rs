@@ -65,7 +65,6 @@ use leaving::Closing;
 pub use settings::Settings;
 pub use stopped::Cover;
 
-/// Maximum number of screens in the history of `back`.
 const SCREENS_KEPT: usize = 50;
 
 /// Work outside the console state.
@@ -190,9 +189,7 @@ pub struct App {
     pub mouse: bool,
     themes: Vec<Theme>,
     configuration: Configuration,
-    /// Named queries.
     library: Library,
-    /// The command that resumes the latest run.
     again: String,
     /// The part of the program that the user is in.
     pub stage: Stage,

@@ -302,7 +302,6 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// Returns the short title of a screen.
 fn short(title: &str) -> &str {
     match title {
         "Overview" => "Over",
@@ -313,7 +312,6 @@ fn short(title: &str) -> &str {
     }
 }
 
-/// Returns the number of new items on a screen.
 fn badge(run: &Run, screen: ScreenId) -> String {
     let count = match screen {
         ScreenId::Product => run.company.seen.running_research as usize,

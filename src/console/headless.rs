@@ -21,7 +21,6 @@ use novamind_worker::message::{Message, News, VisitNews};
 use novamind_worker::request::{Recorded, Request, VisitRequest};
 use novamind_worker::{Job, Workers};
 
-/// Timeout for a response.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A console without a terminal.

@@ -132,7 +132,6 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Wher
     lines.all
 }
 
-/// Describes the choices after the end of a part.
 fn what_follows(page: &LessonPage, look: &Look<'_>, place: Where) -> String {
     if place == Where::Beside {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
@@ -174,7 +173,6 @@ fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
     }
 }
 
-/// Adds the guess, the outcome and the goals of a finished step.
 fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
     if let Some(question) = question {
         lines.say(&question.text, Role::Dim);
@@ -226,7 +224,6 @@ fn say_hints(lines: &mut Lines, page: &LessonPage, look: &Look<'_>) {
     lines.say(&if more { count + &keys() } else { count }, Role::Dim);
 }
 
-/// Adds the tools and screens of the lesson.
 fn say_locked(lines: &mut Lines, look: &Look<'_>) {
     let Some(lesson) = look.company.running_lesson() else { return };
     lines.gap();

@@ -90,7 +90,6 @@ struct Console {
     screen: TerminalScreen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
-    /// Command that resumes the latest run.
     again: String,
     /// Whether the program has resumed and the message of the continue signal is still to come.
     #[cfg(unix)]

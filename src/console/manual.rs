@@ -4,7 +4,6 @@ use super::action::{ACTIONS, ActionEntry, Scope};
 use super::keys::Keys;
 use novamind_tui::chord::written;
 
-/// Returns the bound actions of each scope: title, keys and description.
 fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
     Scope::ALL.into_iter().filter_map(move |scope| {
         let own = ACTIONS.iter().filter(|entry| entry.scope == scope);

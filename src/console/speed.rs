@@ -12,7 +12,6 @@ use super::app::Settings;
 use super::headless::{Headless, event};
 use novamind_worker::message::Message;
 
-/// Window size: columns, rows.
 const WINDOW: (u16, u16) = (200, 60);
 /// Keys pressed while a week runs: every screen, and navigation in it.
 const KEYS: [&str; 12] = ["1", "down", "2", "up", "3", "down", "4", "tab", "8", "down", "0", "up"];
@@ -83,7 +82,6 @@ impl Measured {
         Ok(())
     }
 
-    /// Presses keys from another thread until a week has passed.
     fn keys_until_week(&mut self, week: usize) -> io::Result<Vec<f64>> {
         let (stop, stopped) = channel::<()>();
         let (press, pressed) = channel();

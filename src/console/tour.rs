@@ -135,7 +135,6 @@ fn spends(arguments: &serde_json::Map<String, Value>) -> bool {
     arguments.values().any(holds)
 }
 
-/// Maximum number of lines of a step below its title.
 const MOST_LINES: usize = 4;
 
 /// Progress in the tour.

@@ -4,7 +4,6 @@ use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Maximum number of chords in a sequence.
 const LONGEST: usize = 3;
 
 /// A key with its modifiers.

@@ -14,7 +14,6 @@ use novamind_base::notation::escaped_html;
 const WIDTH: f64 = 8.4;
 /// Height of a cell, in pixels.
 const HEIGHT: f64 = 18.0;
-/// Margin around the cells, in pixels.
 const MARGIN: f64 = 14.0;
 
 /// Default foreground and background colors of a terminal.

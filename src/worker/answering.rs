@@ -36,7 +36,6 @@ pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
     })
 }
 
-/// Returns the message of a panic.
 pub(super) fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()

@@ -42,7 +42,6 @@ impl Question for WhyQuestion {
     }
 }
 
-/// Returns the folder from which a run is simulated again.
 pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
     match open {
         Open::Played(session) => folder_of_causes(session),

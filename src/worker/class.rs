@@ -46,7 +46,6 @@ impl SessionThread {
     }
 }
 
-/// Expands `~/` to the home folder, as a shell does.
 fn from_home(path: &Path) -> PathBuf {
     match (path.strip_prefix("~"), std::env::home_dir()) {
         (Ok(rest), Some(home)) => home.join(rest),

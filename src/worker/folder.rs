@@ -63,7 +63,6 @@ impl SessionThread {
         self.say_kept(delete_run(&self.runs, id), format!("run {id} has been deleted"));
     }
 
-    /// Reports a change of the folder, and the remaining runs.
     fn say_kept(&self, done: Result<(), RunError>, words: String) {
         self.list_runs(Some(done.map(|()| words).map_err(|error| error.to_string())));
     }
@@ -116,7 +115,6 @@ impl SessionThread {
         Ok(())
     }
 
-    /// Creates a branch from the undamaged prefix of a damaged run and opens it.
     pub(super) fn rescue(&mut self, id: &str) {
         let rescued =
             find_run_to_read(&self.runs, id).and_then(|folder| rescue(&folder, &SealKey::default()));

@@ -34,7 +34,6 @@ impl SessionThread {
         }
     }
 
-    /// Switches to another run of the lesson.
     fn go_to(&mut self, begin: impl FnOnce(&Session) -> Result<Session, Refusal>, remark: &str) {
         let Some(Open::Played(session)) = &self.open else { return };
         match begin(session) {

@@ -165,7 +165,6 @@ impl Workers {
     }
 }
 
-/// The open run.
 enum Open {
     Played(Box<Session>),
     Replayed(Box<Playback>),
@@ -185,31 +184,22 @@ pub struct SessionThread {
     open: Option<Open>,
     /// The runs folder; after opening a handout, that of its student.
     runs: PathBuf,
-    /// The runs folder at the start of the program.
     first_runs: PathBuf,
-    /// The company as last displayed.
     company: Option<Arc<Company>>,
     /// When the next week of the playback is due.
     due: Option<Instant>,
     /// When new lines of a followed run were last polled.
     looked: Instant,
-    /// When the failed database is repaired next.
     mending: Option<Instant>,
-    /// The current study.
     desk: Option<Desk>,
-    /// Whether the list contains the runs of all participants.
     lists_everybody: bool,
     /// When time limits are checked next; `None` if there are none.
     limits: Option<Instant>,
-    /// Last reported minutes left to each limit.
     minutes_left: Vec<i64>,
-    /// Simulations of the last question about causes.
     causes: Arc<Mutex<LastRead<Causes>>>,
-    /// Simulations of the last what-if question.
     branches: Arc<Mutex<LastRead<WhatIf>>>,
     /// The session for inspections, if the open one is read-only and cannot record them.
     inside: Option<Box<Session>>,
-    /// Whether that session has a database.
     inside_has_rows: bool,
     /// Stops the running script or query of hidden tables.
     running_stop: Arc<Mutex<Option<Interrupt>>>,
@@ -218,7 +208,6 @@ pub struct SessionThread {
     configuration: Configuration,
 }
 
-/// Minimum interval between progress reports.
 const BETWEEN_DAYS: Duration = Duration::from_millis(40);
 
 impl SessionThread {
@@ -367,14 +356,12 @@ impl SessionThread {
         Some(result)
     }
 
-    /// Works on the open run and sends the response.
     fn report(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> News) {
         if let Some(news) = self.with_run(work) {
             self.say(news);
         }
     }
 
-    /// Reports a failed write of the record.
     fn notice_losses(&mut self) {
         self.with_run(|_| ());
     }

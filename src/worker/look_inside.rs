@@ -123,7 +123,6 @@ impl SessionThread {
         Ok((rows?, started.elapsed()))
     }
 
-    /// Returns a rejection if the open run is read-only.
     fn refuse_to_change(&self) -> Option<Refusal> {
         match &self.open {
             Some(Open::Replayed(_)) => {
@@ -210,7 +209,6 @@ fn answer(session: &mut Session, question: &LookQuestion) -> Result<LookFound, R
     Ok(LookFound { lines, ..LookFound::default() })
 }
 
-/// Inspects the lead equation, with daily values of each factor.
 fn of_leads(
     session: &mut Session,
     group: Group,

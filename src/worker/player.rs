@@ -16,7 +16,6 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Goal, Playback, SeekResult};
 
-/// Polling interval for new lines of a followed run.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
 
 impl SessionThread {
@@ -120,7 +119,6 @@ impl SessionThread {
         ControlFlow::Continue(())
     }
 
-    /// Seeks, until stopped.
     pub(super) fn go(&mut self, goal: Goal, stop: &AtomicBool) {
         self.due = None;
         if let Some(arrival) = self.arrive(goal, stop) {
@@ -153,7 +151,6 @@ impl SessionThread {
         Some(Arrival { company: Some(company), place, problem })
     }
 
-    /// Creates a branch from the current position and opens it.
     pub(super) fn take_over(&mut self, mode: Mode) {
         let Some(playback) = self.playback() else { return };
         let branch = playback.take_over(mode);

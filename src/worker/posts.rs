@@ -118,7 +118,7 @@ fn post_of(told: &SocialPost) -> Post {
     // Press posts carry the first group and no persona; customers of discovered groups have no persona either.
     let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
     let (kind, author) = match (told.reply_to_agent_post_id, told.persona_name.as_deref()) {
-        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
+        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),
         (None, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
         (None, None) if is_press => (PostKind::Press, "press".to_owned()),
         (None, None) => (PostKind::Customers, group.to_owned()),

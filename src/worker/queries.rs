@@ -78,7 +78,6 @@ impl SessionThread {
     }
 }
 
-/// A question for the database, with its reply.
 enum DatabaseQuestion {
     Query(String, QuerySource, Reply<Query>),
     Reading(Reading, Reply<Reading>),
@@ -105,7 +104,6 @@ impl DatabaseQuestion {
 pub(super) struct QueryThreads {
     user: Sender<QueryJob>,
     screens: Sender<QueryJob>,
-    /// Stops the user's queries.
     interrupt: Arc<Mutex<Option<Interrupt>>>,
 }
 
@@ -151,18 +149,15 @@ impl QueryThreads {
         }
     }
 
-    /// Returns the ticket of the user's next query.
     pub(super) fn ticket(&self) -> Option<Ticket> {
         let interrupt = self.interrupt.lock().unwrap_or_else(PoisonError::into_inner);
         interrupt.as_ref().map(Interrupt::ticket)
     }
 
-    /// Stops the user's query.
     pub(super) fn stop(&self) {
         self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(Interrupt::stop);
     }
 
-    /// Sends a question to its thread.
     fn ask(&self, question: DatabaseQuestion) {
         let thread = match question {
             DatabaseQuestion::Query(..) => &self.user,

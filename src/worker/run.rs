@@ -21,16 +21,13 @@ use novamind_tools::ToolId;
 /// The open run, with where its messages are sent.
 pub(super) struct OpenRun<'a> {
     pub(super) session: &'a mut Session,
-    /// The company as last displayed.
     pub(super) shown: &'a mut Option<Arc<Company>>,
     pub(super) news: &'a Sender<Message>,
     pub(super) queries: &'a QueryThreads,
-    /// Stops the running script.
     pub(super) stop: &'a Mutex<Option<Interrupt>>,
 }
 
 impl OpenRun<'_> {
-    /// Returns the current company.
     pub(super) fn company(&mut self) -> Arc<Company> {
         let company = Arc::new(Company::in_lesson(self.session, self.shown.as_deref()));
         *self.shown = Some(company.clone());

@@ -12,7 +12,6 @@ const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 const BETWEEN_TRIES: Duration = Duration::from_secs(3);
 
 impl SessionThread {
-    /// Checks the time limits if the check is due.
     pub(super) fn look_at_limits(&mut self) {
         let now = Instant::now();
         if self.limits.is_none_or(|due| due > now) {
@@ -42,7 +41,6 @@ impl SessionThread {
         }
     }
 
-    /// Tries to repair the database if an attempt is due.
     pub(super) fn mend(&mut self) {
         if self.mending.is_none_or(|due| due > Instant::now()) {
             return;

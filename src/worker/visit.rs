@@ -7,10 +7,8 @@ use novamind_record::consent::Agreed;
 use novamind_record::error::RunError;
 use novamind_study::{DueQuestion, NextStep, Study, Visit, record_refused_code};
 
-/// The current study.
 pub(super) struct Desk {
     pub(super) study: Study,
-    /// The current participant.
     pub(super) visit: Option<Visit>,
     /// The participant's consent, until a run records it.
     pub(super) agreed: Option<Agreed>,
@@ -110,7 +108,6 @@ impl SessionThread {
         self.say(News::Visit(news));
     }
 
-    /// Opens or creates the participant's next run.
     fn play_next(&mut self) {
         let Some(desk) = &self.desk else { return };
         let Some(visit) = &desk.visit else { return };
@@ -138,7 +135,6 @@ impl SessionThread {
         self.say(News::Visit(VisitNews::Answered(due)));
     }
 
-    /// Reports the due questions if they have changed.
     pub(super) fn tell_due(&mut self) {
         let (Some(desk), Some(Open::Played(session))) = (&mut self.desk, &self.open) else { return };
         let due = desk.study.due(session);

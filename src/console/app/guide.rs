@@ -38,7 +38,6 @@ impl App {
         self.lay(Layer::Dialog(Box::new(glossary)));
     }
 
-    /// Opens the practice run with the tour, or creates it.
     pub(super) fn start_tour(&mut self) {
         self.tour_planned = true;
         let begun = match &self.stage {
@@ -94,7 +93,6 @@ impl App {
         }
     }
 
-    /// Advances past the steps of the tour that are done.
     pub(super) fn settle_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };

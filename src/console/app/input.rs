@@ -21,7 +21,6 @@ use novamind_worker::Job;
 use novamind_worker::preferences::Preferences;
 use novamind_worker::request::Request;
 
-/// Actions that stop a running script.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
 
 impl App {
@@ -194,7 +193,6 @@ impl App {
         self.follow(clicked.unwrap_or_default());
     }
 
-    /// Handles an action in the focused place.
     pub(super) fn act(&mut self, action: Action) {
         let global = action.entry().scope == Scope::Global;
         self.edit = Edit::Filled;

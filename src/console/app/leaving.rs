@@ -37,10 +37,9 @@ impl Closing {
     }
 }
 
-/// Shown for drafts before a run is left.
 const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog holds unsent text. It is saved with the run and \
                           offered when you open the run again.";
-/// Shown for drafts after the run has ended.
+/// Nothing can be sent after the run has ended.
 const DROPS_TEXT: &str = "The notes hold unsaved text. The run has ended; the text will be lost.";
 const DROPS_OFFERS: &str = "Unsent offers in the inbox will be lost.";
 
@@ -62,7 +61,6 @@ impl App {
         (!sentences.is_empty()).then(question)
     }
 
-    /// Quits, after a confirmation if there are drafts.
     pub(super) fn quit(&mut self) {
         match self.unsent_question() {
             Some(question) => self.open(Confirm::new("Leave", question, vec![Effect::LeaveNow])),
@@ -70,7 +68,6 @@ impl App {
         }
     }
 
-    /// Opens another run of the folder in place of the current one.
     pub(super) fn open_other(&mut self, id: String) {
         let is_open = self.run().is_some_and(|run| run.viewer.is_none() && run.company.seen.run == id);
         if is_open {
@@ -86,7 +83,6 @@ impl App {
         }
     }
 
-    /// Saves and closes the run, then continues with the exit target.
     pub(super) fn leave(&mut self, closing: Closing) {
         if self.closing.is_some_and(|planned| planned != Closing::ToMenu) {
             return;

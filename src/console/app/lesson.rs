@@ -168,7 +168,6 @@ impl App {
         self.open(TryAgain::new(step));
     }
 
-    /// Opens the debrief, and requests it if it is not computed yet.
     pub(super) fn show_debrief(&mut self) {
         let Some(run) = self.run() else { return };
         let found = run.lesson.debrief.clone();

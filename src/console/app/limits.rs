@@ -83,7 +83,6 @@ fn in_full(left: &TimeLeft, rules: &SessionRules) -> String {
     format!("{}; {}", left.in_words(), left.what_follows(rules.limits.at_limit))
 }
 
-/// Describes what the record keeps of the draft.
 fn kept_in_words(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
         _ if !rules.records("draft") => "it is lost",

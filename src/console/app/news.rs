@@ -118,7 +118,6 @@ impl App {
         }
     }
 
-    /// Handles responses that screens wait for.
     fn heard(&mut self, news: News) {
         if !matches!(self.stage, Stage::Run(_)) {
             return;
@@ -299,7 +298,6 @@ impl App {
         self.renew();
     }
 
-    /// Reloads what the screens requested while the database was behind.
     fn database_whole(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             run.behind = None;
@@ -366,7 +364,6 @@ impl App {
 }
 
 impl App {
-    /// Handles the end of a simulation of days in a debug run.
     fn ran(&mut self, ran: Result<DaysRan, Refusal>, company: Arc<Company>) {
         self.busy = None;
         let now = self.stopwatch.now();
@@ -403,7 +400,6 @@ impl App {
     }
 }
 
-/// Returns the command that resumes the latest run of a student.
 fn as_student(again: &str, label: &str) -> String {
     let head = again.strip_suffix("--run latest").unwrap_or(again);
     let head = head.rsplit_once("--as ").map_or(head, |(before, _)| before);

@@ -31,7 +31,6 @@ fn last_day_of(request: &Request, company: &Company) -> u32 {
 }
 
 impl App {
-    /// Executes effects in order.
     pub(super) fn follow(&mut self, effects: Vec<Effect>) {
         for effect in effects {
             self.follow_one(effect);
@@ -211,7 +210,6 @@ impl App {
         }
     }
 
-    /// Writes files into the run folder.
     pub(super) fn write(&mut self, files: Vec<(&str, Vec<u8>)>) {
         let folder = self.run().and_then(|run| run.company.folder.clone());
         match folder {

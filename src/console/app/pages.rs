@@ -31,7 +31,6 @@ impl App {
         }
     }
 
-    /// Opens the comparison with the strong policies.
     pub(super) fn show_opponents(&mut self) {
         self.open_asking(OpponentsPage::new(self.opponents));
     }
@@ -51,7 +50,6 @@ impl App {
         self.open_asking(BranchesPage::new(week, last_week));
     }
 
-    /// Opens the source rows of a figure.
     pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
         let Some(sql) = sql else {
             let explain = self.keys.label(Action::Explain).unwrap_or_default();
@@ -62,7 +60,6 @@ impl App {
         self.open_asking(RowsBehind::new(format!("{here} › {title}"), sql));
     }
 
-    /// Opens the causes of the change of a weekly figure.
     pub(super) fn ask_why(&mut self, figure: Figure) {
         let Some((quantity, week)) = figure.why else {
             let key = self.keys.label(Action::Why).unwrap_or_default();

@@ -25,7 +25,6 @@ impl App {
         self.run().is_some_and(|run| run.viewer.is_none())
     }
 
-    /// Sends work to the session that records something.
     pub(super) fn record(&mut self, note: impl FnOnce(&mut Session) + Send + 'static) {
         self.orders.push(Order::Job(Job::Note(Box::new(note))));
     }
@@ -156,7 +155,6 @@ impl App {
         }
     }
 
-    /// Ends the drafts that a request submits.
     pub(super) fn send_texts(&mut self, request: &Request) {
         match request {
             Request::Advance { .. } => self.leave_filing(DraftOutcome::Sent),

@@ -35,7 +35,6 @@ impl App {
         self.stop_clock(None, false);
     }
 
-    /// Hides the screen and stops the clock.
     pub(super) fn stop_clock(&mut self, reason: Option<String>, by_limit: bool) {
         if self.cover.is_some() || !matches!(self.stage, Stage::Run(_)) {
             return;

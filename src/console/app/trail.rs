@@ -10,9 +10,7 @@ const LONGEST: usize = 8;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stop {
     screen: ScreenId,
-    /// The focused pane.
     pane: usize,
-    /// The open item: a group or a tool.
     open: Option<String>,
     /// Escape depth of the next screen when it was opened.
     depth: usize,

@@ -7,7 +7,6 @@ use crate::dialogs::restore::Restore;
 use novamind_record::trajectory::record::{Draft, DraftOutcome};
 use novamind_session::UnsentTexts;
 
-/// Interval at which changed drafts are saved.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);
 
 #[derive(Default)]
@@ -36,7 +35,6 @@ impl App {
         }
     }
 
-    /// Saves changed drafts.
     pub(super) fn keep_texts(&mut self) {
         self.unsent.due = None;
         let texts = self.unsent_texts();
@@ -69,7 +67,6 @@ impl App {
         }
     }
 
-    /// Offers drafts of an earlier session.
     pub(super) fn offer_texts(&mut self, texts: UnsentTexts) {
         if texts.is_empty() || !self.run().is_some_and(|run| run.company.is_running()) {
             return;
@@ -78,7 +75,6 @@ impl App {
         self.unsent.offered = Some(Box::new(texts));
     }
 
-    /// Restores or discards the offered drafts.
     pub(super) fn settle_offer(&mut self, restore: bool) {
         let Some(texts) = self.unsent.offered.take() else { return };
         self.unsent.texts = None;
@@ -106,7 +102,6 @@ impl App {
         self.keep_texts();
     }
 
-    /// Resets the drafts of the run that was open before.
     pub(super) fn forget_texts(&mut self) {
         self.unsent = TextsKept::default();
     }

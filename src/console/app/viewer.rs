@@ -13,7 +13,6 @@ use novamind_worker::Job;
 use novamind_worker::asking::Pending;
 use novamind_worker::message::Arrival;
 
-/// Actions that are available only while playing a run.
 const OF_PLAYERS: [Action; 17] = [
     Action::NextWeek,
     Action::Undo,
@@ -46,7 +45,6 @@ impl Run {
         scopes
     }
 
-    /// Returns the actions to show in the footer.
     pub(super) fn hints(&self) -> Vec<Action> {
         let own = self.screens.get(self.here).hints();
         let typing = self.scopes().first().is_some_and(|scope| scope.is_text());
@@ -90,7 +88,7 @@ impl App {
         refused
     }
 
-    /// Stops seeking. Returns whether the console was seeking.
+    /// Returns whether the console was seeking.
     pub(super) fn stop_on_the_way(&mut self) -> bool {
         let goes = self.busy.is_some();
         match self.viewer() {
@@ -204,7 +202,6 @@ impl App {
         }
     }
 
-    /// Handles the arrival at a position of the record.
     pub(super) fn arrived(&mut self, arrival: Arrival, asked: bool) {
         let Arrival { company, place, problem } = arrival;
         if asked {

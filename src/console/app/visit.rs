@@ -12,7 +12,6 @@ use novamind_worker::request::{Request, VisitRequest};
 const KEPT: &str = "not available in a study: only your own session is open";
 
 impl App {
-    /// Starts receiving participants of a study.
     pub(super) fn receive(&mut self, study: Box<Study>) {
         let visit = VisitState::of(&study);
         self.code_check = study.code_check();
@@ -48,7 +47,6 @@ impl App {
         self.visit.as_ref().is_some_and(|visit| !visit.due.is_empty())
     }
 
-    /// Updates the study state before a request is sent.
     pub(super) fn note_request(&mut self, request: &Request) {
         let Some(visit) = &mut self.visit else { return };
         match request {
@@ -113,7 +111,6 @@ impl App {
         false
     }
 
-    /// Handles the end of a participant's run.
     pub(super) fn after_run(&mut self, problem: Option<String>) {
         let over = self.run().is_some_and(|run| !run.company.is_running());
         let answered = !self.owes_answers();

@@ -15,7 +15,6 @@ pub type Noted = (PresenceEvent, Option<u64>, Option<(u16, u16)>);
 /// Tracks input and window events.
 #[derive(Debug, Default)]
 pub struct PresenceWatch {
-    /// When the last key was pressed.
     last_key: Duration,
     idle: bool,
     unfocused: bool,

@@ -20,9 +20,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Line, Scroll, Side, Unit, chart};
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 160;
-/// Minimum window (columns, rows) for curves next to the text.
 const BESIDE: (u16, u16) = (104, 20);
 
 /// The debrief page.
@@ -42,7 +40,6 @@ impl DebriefPage {
         self.found.as_ref()?.as_ref().as_ref().ok()
     }
 
-    /// Writes the debrief into the run folder.
     fn written(&self) -> Outcome {
         let Some(debrief) = self.debrief() else {
             return Outcome::with(vec![Effect::Complain("the debrief is still being computed".to_owned())]);
@@ -151,7 +148,6 @@ impl Dialog for DebriefPage {
     }
 }
 
-/// Wraps the debrief into lines.
 fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     let said = headline(debrief);
     let paragraphs = in_words(debrief).into_iter().enumerate().flat_map(|(at, text)| {

@@ -64,7 +64,6 @@ impl OpenPage {
 pub struct Explain {
     /// The current page, and those before it.
     pages: Vec<OpenPage>,
-    /// Whether the figure has source rows.
     rows: bool,
     /// Parameters that the texts mention.
     numbers: Arc<Numbers>,
@@ -257,7 +256,6 @@ impl Explain {
     }
 }
 
-/// Formats sections in two columns: heading and text.
 fn lines_of(page: &OpenPage, width: usize) -> Vec<(String, String)> {
     let column = page.parts.iter().map(|(heading, _)| heading.chars().count()).max().unwrap_or(0);
     let column = if column > 0 { column + 2 } else { 0 };

@@ -25,11 +25,8 @@ use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 use novamind_worker::request::{Recorded, Request};
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 124;
-/// Minimum window (columns, rows) for two columns.
 const TWO_COLUMNS: (u16, u16) = (104, 26);
-/// Width of the column of names.
 const NAMES: usize = 22;
 
 const KEYS: [Action; 7] = [
@@ -143,7 +140,6 @@ impl Dialog for FinalPage {
 }
 
 impl FinalPage {
-    /// Draws the page if the result is hidden.
     fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         canvas.clear(area, Role::Text);
         let own = centered(area, 60, 6);
@@ -158,7 +154,6 @@ impl FinalPage {
         canvas.pane_keys(own, &look.hints(self.keys()));
     }
 
-    /// Writes the card into the run folder.
     fn card(&self) -> Outcome {
         let Some(story) = &self.story else {
             return Outcome::with(vec![Effect::Complain("the ledger is still being read".to_owned())]);
@@ -274,7 +269,6 @@ fn headline(company: &Company) -> String {
     }
 }
 
-/// Formats the published results with the run among them.
 fn ranking<'a>(
     canvas: &Canvas<'_>,
     standing: &Standing,
@@ -317,7 +311,6 @@ fn ranking<'a>(
     lines
 }
 
-/// Formats playing statistics.
 fn facts<'a>(
     canvas: &Canvas<'_>,
     measures: &Measures,

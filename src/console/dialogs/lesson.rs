@@ -16,7 +16,6 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Field, Scroll};
 use novamind_worker::request::{LessonRequest, Request};
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 84;
 
 /// The lesson page.
@@ -31,7 +30,6 @@ pub struct LessonDialog {
 #[derive(Default)]
 struct AnswerField {
     number: Field,
-    /// Index of the choice.
     choice: usize,
     problem: Option<String>,
 }

@@ -17,7 +17,6 @@ use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::company::Company;
 use novamind_worker::questions::OpponentsQuestion;
 
-/// Maximum columns and rows.
 const SIZE: (u16, u16) = (96, 16);
 /// Columns before the bars: mark, name, score.
 const NAMED: usize = 38;

@@ -20,7 +20,6 @@ use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// Recently used tools that are listed first.
 const RECENT: usize = 5;
 
 struct PaletteEntry {
@@ -34,7 +33,6 @@ struct PaletteEntry {
 }
 
 impl PaletteEntry {
-    /// Returns synonyms.
     fn synonyms(&self) -> &'static [&'static str] {
         let Effect::Do(action) = &self.effect else { return &[] };
         match action {
@@ -77,7 +75,6 @@ impl PaletteEntry {
     }
 }
 
-/// Quality of a match.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Closeness {
     /// The name starts with the typed text.
@@ -93,7 +90,6 @@ enum Closeness {
 /// The command palette.
 pub struct Palette {
     entries: Vec<PaletteEntry>,
-    /// Recently called tools, the newest first.
     recent: Vec<ToolId>,
     field: Field,
     /// Matching entries, the best first, with the positions of matched letters.
@@ -205,7 +201,6 @@ fn recent(company: &Company) -> Vec<ToolId> {
     tools
 }
 
-/// Returns why an entry is not available now.
 fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     let acts = |tool: &ToolId| tool.spec().kind.acts();
     match effect {
@@ -222,7 +217,6 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     }
 }
 
-/// Returns whether a tool or screen is not part of the current lesson.
 fn is_outside_lesson(effect: &Effect, company: &Company) -> bool {
     let screen = |action: Action| ScreenId::ALL.into_iter().find(|screen| screen.action() == action);
     match effect {

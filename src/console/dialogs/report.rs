@@ -23,11 +23,9 @@ use novamind_tui::text::{arrow, flowed, wrapped};
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 116;
 /// Minimum width for comments next to the figures; in narrower windows they are below.
 const BESIDE: u16 = 100;
-/// Index of the section of unusual changes.
 const MOVES: usize = 2;
 
 /// The report of the last week.
@@ -43,7 +41,6 @@ impl Report {
         Report { remark, selected: 0 }
     }
 
-    /// Selects one of `shown` lines.
     fn select(&mut self, to: usize, look: &Look<'_>) -> Outcome {
         self.selected = to.min(usize::from(look.page).saturating_sub(1));
         Outcome::stay()

@@ -11,12 +11,10 @@ use novamind_tui::canvas::{Canvas, centered, fit};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 76;
 
 /// The offer.
 pub struct Restore {
-    /// Place and text of each draft.
     texts: Vec<(String, String)>,
 }
 

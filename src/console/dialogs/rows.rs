@@ -19,7 +19,6 @@ use novamind_tui::widgets::Table;
 use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::queries::{QueriedTables, Query};
 
-/// Maximum number of query lines above the rows.
 const QUERY_LINES: usize = 6;
 
 /// The dialog.

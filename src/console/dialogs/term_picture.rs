@@ -15,13 +15,11 @@ use novamind_worker::company::Company;
 
 /// Minimum height, in rows.
 pub const LEAST_ROWS: u16 = 7;
-/// Minimum width, in columns.
 const LEAST_COLUMNS: u16 = 20;
 /// Maximum height, in rows.
 pub const MOST_ROWS: u16 = 11;
 /// Width next to a text, in columns.
 pub const COLUMNS: u16 = 44;
-/// Maximum height of the caption, in rows.
 const CAPTION: usize = 3;
 
 /// Draws the chart of a term, if it has one.

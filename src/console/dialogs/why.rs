@@ -17,7 +17,6 @@ use novamind_tui::widgets::spark::bar;
 use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::causes::WhyQuestion;
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 110;
 /// Minimum number of visible causes below a long text.
 const LEAST_LISTED: usize = 4;
@@ -70,7 +69,6 @@ impl WhyBox {
         Outcome::close_with(vec![Effect::AskWhy(figure)])
     }
 
-    /// Describes the progress.
     fn waiting(&self) -> String {
         match self.asked.progress() {
             None => "reading the record …".to_owned(),

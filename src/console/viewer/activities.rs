@@ -7,7 +7,6 @@ use novamind_record::trajectory::record::{
 };
 use novamind_tui::theme::Role;
 
-/// Describes an activity in one line.
 pub(super) fn brief(activity: &Activity) -> (String, Role) {
     let text = match activity {
         Activity::View(view) => format!("viewed {} for {}", view.screen, time(view.for_ms)),

@@ -11,7 +11,6 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Minimum columns of the screen.
 const OF_SCREEN: u16 = 80;
 /// Minimum and maximum columns of the pane.
 const COLUMNS: (u16, u16) = (40, 60);

@@ -8,7 +8,6 @@ use crate::action::Action;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::theme::Role;
 
-/// Minimum columns of the bar.
 const LEAST_BAR: u16 = 8;
 
 impl Viewer {

@@ -57,7 +57,6 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
     }
 }
 
-/// Describes an answer of a language model.
 fn voice_in_brief(said: &VoiceAnswer) -> String {
     match said {
         VoiceAnswer::Scores(judged) => {
@@ -197,7 +196,6 @@ fn forecast_in_full(scored: &ScoredForecast, later: bool) -> String {
     )
 }
 
-/// Formats a view time in milliseconds.
 pub(super) fn time(milliseconds: u64) -> String {
     match milliseconds / 1000 {
         0 => "a moment".to_owned(),

@@ -107,7 +107,6 @@ impl AnswerDraft {
         }
     }
 
-    /// Returns the number of options.
     fn options(&self) -> usize {
         self.due.question.form.options().len()
     }

@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Canvas, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 84;
 
 impl VisitPage {
@@ -67,7 +66,6 @@ impl VisitPage {
         }
     }
 
-    /// Returns the heading and the paragraphs.
     fn said(&self, key: &dyn Fn(Action) -> String) -> (&'static str, Vec<(String, Role)>) {
         let text = |words: &str| (words.to_owned(), Role::Text);
         let strong = |words: String| (words, Role::Strong);

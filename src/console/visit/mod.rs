@@ -49,16 +49,13 @@ impl VisitState {
 
 /// A page outside of a run.
 pub struct VisitPage {
-    /// Title of the study.
     title: String,
     kind: PageKind,
-    /// The error message.
     problem: Option<String>,
     /// Number of rejected labels on this page.
     refused: u32,
 }
 
-/// The content of the page.
 enum PageKind {
     /// The participant enters their label.
     Label(Field),
@@ -84,7 +81,6 @@ enum PageKind {
     Thanks,
 }
 
-/// The word that confirms a withdrawal.
 const WITHDRAW: &str = "withdraw";
 
 impl VisitPage {
@@ -246,7 +242,6 @@ impl VisitPage {
         vec![Effect::Request(Request::Visit(request))]
     }
 
-    /// Returns the focused text field.
     fn field(&mut self) -> Option<&mut Field> {
         match &mut self.kind {
             PageKind::Label(field) | PageKind::Code(field) | PageKind::Withdraw(Some(field)) => Some(field),

@@ -19,9 +19,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::request::{Request, VisitRequest};
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 92;
-/// Shown if more options follow.
 const MORE: &str = "  ↓ more";
 
 /// The questions of a questionnaire at one occasion.
@@ -68,7 +66,6 @@ impl QuestionPage {
         fresh.then_some(Effect::Request(Request::Visit(VisitRequest::Ask(question))))
     }
 
-    /// Scrolls the question by a page.
     fn page(&mut self, forward: bool) {
         let (lines, last) = self.read.get();
         let to = if forward { self.from + lines } else { self.from.saturating_sub(lines) };
@@ -255,7 +252,6 @@ impl QuestionPage {
     }
 }
 
-/// Describes the expected answer in a line.
 fn said_below(draft: &AnswerDraft) -> String {
     let question = &draft.due.question;
     let expected = match &question.form {
@@ -270,7 +266,6 @@ fn said_below(draft: &AnswerDraft) -> String {
     }
 }
 
-/// Returns the rows that an answer needs.
 fn form_rows(draft: &AnswerDraft, width: u16) -> u16 {
     match &draft.entered {
         Entered::Number(_) => 1,

@@ -56,7 +56,6 @@ fn shade(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String
     (0..STRIPES).map(|stripe| rectangle(left, top + f64::from(stripe) * step, width, step * share)).collect()
 }
 
-/// Returns the thin form of a thick character.
 fn thin(sign: char) -> Option<char> {
     let pairs = [('━', '─'), ('┃', '│'), ('┏', '┌'), ('┓', '┐'), ('┗', '└'), ('┛', '┘')];
     pairs.into_iter().find(|(thick, _)| *thick == sign).map(|(_, thin)| thin)

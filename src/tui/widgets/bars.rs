@@ -30,11 +30,9 @@ pub struct Bar<'a> {
 pub struct Scale {
     names: u16,
     values: u16,
-    /// Cells for bars.
     room: u16,
     /// Cell of zero, among those.
     zero: u16,
-    /// Cells per unit.
     per_unit: f64,
 }
 

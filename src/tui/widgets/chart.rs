@@ -115,7 +115,6 @@ pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, 
 /// A label of the horizontal axis: column of its tick, first column of its text, text.
 type Label = (u16, u16, String);
 
-/// Mapping from values to the area.
 struct Frame {
     inside: Rect,
     x: [f64; 2],

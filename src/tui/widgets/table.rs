@@ -90,9 +90,7 @@ pub struct Table {
     column: usize,
     sorted: Option<(usize, Ordering)>,
     filter: String,
-    /// The filter while it is typed.
     typing: Option<Field>,
-    /// Whether single cells are selected.
     by_cell: bool,
 }
 

@@ -32,10 +32,8 @@ pub(super) struct Decisions {
     days_per_week: u32,
     /// `None` until the decisions are loaded.
     past: Option<Vec<PastDecision>>,
-    /// Whether the session rejected the question.
     is_refused: bool,
     alternatives: Vec<Vec<DecisionEdit>>,
-    /// Index of the displayed alternative.
     shown: usize,
     selected: usize,
     typing: Option<TypedDecision>,
@@ -68,7 +66,6 @@ impl Decisions {
         (self.past, self.days_per_week) = (Some(past), days_per_week);
     }
 
-    /// Stops waiting after a rejection.
     pub(super) fn refuse(&mut self) {
         self.is_refused = self.past.is_none();
     }
@@ -291,7 +288,6 @@ impl Decisions {
     }
 }
 
-/// Returns the recorded line that an edit changes.
 fn line_of(edit: &DecisionEdit) -> Option<u64> {
     match edit {
         DecisionEdit::Drop(line) | DecisionEdit::Change { seq: line, .. } => Some(*line),

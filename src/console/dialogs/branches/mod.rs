@@ -20,7 +20,6 @@ use novamind_worker::branches::{BranchesFound, BranchesQuestion};
 use novamind_worker::request::Request;
 use outcome::Figures;
 
-/// Number of simulated futures.
 const FUTURES: u32 = 20;
 
 enum Page {
@@ -71,7 +70,6 @@ impl BranchesPage {
         }
     }
 
-    /// Creates a run from the selected branch.
     fn adopt(&mut self) -> Outcome {
         let Page::Figures(figures) = &self.page else { return Outcome::stay() };
         let (week, edits) = (self.decisions.week(), figures.selected_edits());

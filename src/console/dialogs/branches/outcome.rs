@@ -14,12 +14,9 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::chart;
 use novamind_tui::widgets::{Axis, Line, Side, Unit};
 
-/// Minimum height of a readable chart, in rows.
 const LEAST_CHART: u16 = 6;
-/// Maximum height of the chart, in rows.
 const MOST_CHART: u16 = 16;
 
-/// Width of the week column.
 const FIRST_COLUMN: u16 = 10;
 
 pub(super) struct Figures {
@@ -59,7 +56,6 @@ impl Figures {
         format!("{name}{percent}")
     }
 
-    /// Returns the edits of the selected branch.
     pub(super) fn selected_edits(&self) -> Vec<DecisionEdit> {
         self.comparison.branches.get(self.selected).map_or(Vec::new(), |branch| branch.edits.clone())
     }

@@ -18,13 +18,9 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use novamind_tui::widgets::scale::Unit;
 
-/// Maximum readable width, in columns.
 const WIDEST: u16 = 140;
-/// Minimum height of a readable chart, in rows.
 const LEAST_CHART: u16 = 5;
-/// Minimum height for one line per plan.
 const LEAST_IN_FULL: u16 = 12;
-/// Minimum height for the legend.
 const LEAST_WITH_LEGEND: u16 = 14;
 
 impl CurvePage {

@@ -21,7 +21,6 @@ use novamind_worker::questions::CurveQuestion;
 
 /// Step by which qualities are changed; page keys change by ten steps.
 const QUALITY_STEP: f64 = 0.01;
-/// Upper bound for dragged qualities.
 const MOST_QUALITY: f64 = 2.0;
 
 struct ExploredCurve {
@@ -81,7 +80,6 @@ impl CurvePage {
         self.drag(|own| own.quality = stepped(own.quality, steps, QUALITY_STEP).clamp(0.0, MOST_QUALITY));
     }
 
-    /// Resets the plans to their current values.
     fn reset(&mut self) {
         if let Some(Ok(opened)) = &mut self.found {
             opened.plans = opened.explorer.plans;
@@ -125,7 +123,6 @@ impl CurvePage {
 }
 
 impl ExploredCurve {
-    /// Returns the highest price of the curve.
     fn greatest_price(&self) -> f64 {
         self.explorer.points.last().map_or(1.0, |point| point.price)
     }

@@ -45,7 +45,6 @@ pub struct FilingDialog {
     /// Cells that the projection filled in.
     filled: [[bool; 3]; 4],
     problem: Option<String>,
-    /// Tools with unsent values in their forms.
     unsent: Vec<ToolId>,
     /// In baseline runs the program fills in no rationale.
     baseline: bool,

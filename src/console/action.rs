@@ -442,7 +442,7 @@ actions! {
         ReportOfRun "report-of-run" "report" "Write the report into the run folder, as Markdown and HTML."
         CardOfRun "card-of-run" "card" "Write a summary card to share into the run folder, as text and as SVG."
         ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
-        Opponents "opponents" "opponents" "Play the strong policies and the baseline with the seed of this run, and rank the run among them."
+        Opponents "opponents" "opponents" "Play the strong policies and the baseline with the scenario and seed of this run, and rank the run among them."
         WhatIf "what-if" "what if" "Simulate the last twelve weeks again with other decisions."
         StayInRun "stay" "view run" "Close this page and view the run."
     }
@@ -482,7 +482,7 @@ actions! {
     }
     Branches {
         NextFigure "next-figure" "next figure" "Show the next figure."
-        DrawFutures "draw-futures" "futures" "Simulate every branch with twenty new random seeds, the same seeds for each branch."
+        DrawFutures "draw-futures" "futures" "Simulate every branch with twenty new sets of random draws, the same sets for each branch."
         AdoptBranch "adopt-branch" "adopt" "Create a run from the selected branch, simulate it to the current day, and continue in it."
     }
     Visit {

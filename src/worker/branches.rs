@@ -21,7 +21,7 @@ use novamind_tools::Refusal;
 pub enum BranchesQuestion {
     /// List the decisions that can be changed.
     Decisions,
-    /// Compare alternatives from a week on; with futures, also under new random seeds.
+    /// Compare alternatives from a week on; with futures, also for new random draws.
     Compare {
         /// The first week that the alternatives change.
         week: u32,

@@ -87,7 +87,7 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// Asks for the results of the strong policies, which the function simulates, with the seed of the open run.
+/// Asks for the results of the strong policies, which the function simulates with the scenario and seed of the open run.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponents);
 

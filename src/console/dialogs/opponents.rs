@@ -1,4 +1,4 @@
-//! Comparison of a finished run with strong policies on the same seed.
+//! Comparison of a finished run with strong policies on the same scenario and seed.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;

@@ -263,7 +263,7 @@ actions! {
         Forward "forward" "forward" "Go forward again after going back."
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
-        Explain "explain" "what is this" "Explain the selected figure or field."
+        Explain "explain" "explain" "Explain the selected figure or field."
         Why "why" "why" "Show how much each cause contributed to the change of the selected figure: the week is simulated again without it. Not in an unfinished baseline run."
         Branches "branches" "what if" "Simulate the run again with other decisions, from a week you choose. The run itself does not change. Not in an unfinished baseline run."
         Curves "curves" "participation curve" "Show the quality that a group requires at each price. Drag prices and qualities of plans to see how leads respond; nothing is set."

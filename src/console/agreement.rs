@@ -32,7 +32,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Returns a text that is shown from now on.
+    /// Returns an unread consent text.
     pub fn new(text: impl Into<String>) -> Agreement {
         Agreement {
             text: text.into(),

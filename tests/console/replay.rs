@@ -40,7 +40,7 @@ fn decide(session: &mut Session, week: u32) {
     session.call("set_prices", &json!({"A": 12 + week}), Via::Form).expect("a price");
     session.call("set_daily_spend", &json!({"development": 100 * week}), Via::Form).expect("spending");
     let forecasts = session.company().naive_forecasts();
-    let why = format!("If week {week} keeps its leads, a dearer plan A pays for development.");
+    let why = format!("If week {week} keeps its leads, a higher price of plan A pays for development.");
     session.advance(&why, &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 
@@ -235,7 +235,7 @@ fn a_run_in_use_is_watched_while_it_goes_on() {
     decide(&mut owner, 2);
     let until = |console: &mut Console, wanted: u32| {
         while day(console) < wanted {
-            let message = console.receive().expect("what was played");
+            let message = console.receive().expect("new lines");
             console.app.update(message);
             console.hand_over();
         }
@@ -250,7 +250,7 @@ fn a_run_in_use_is_watched_while_it_goes_on() {
         console.app.run().and_then(|run| run.viewer.as_ref()).map_or(0, |viewer| viewer.place.weeks)
     };
     while lines(&console) < 4 {
-        let message = console.receive().expect("what was played");
+        let message = console.receive().expect("new lines");
         console.app.update(message);
         console.hand_over();
     }

@@ -256,7 +256,7 @@ impl Decisions {
             let forms = format!("for example {}", FORMS.join("  ·  "));
             return canvas.text(row, &fit(&forms, row.width as usize), Role::Dim);
         };
-        let label = typing.line.map_or("decide".to_owned(), |line| format!("line {line}"));
+        let label = typing.line.map_or("decision".to_owned(), |line| format!("line {line}"));
         canvas.text(row, &label, Role::Dim);
         let used = (label.len() as u16 + 1).min(row.width);
         typing.field.draw(canvas, Rect { x: row.x + used, width: row.width - used, ..row });

@@ -466,7 +466,7 @@ fn naive_forecasts_are_offered_where_they_fill_in_and_say_what_they_are() {
         console.press("f");
         console.shows("you can fill in forecasts in step 3");
         console.press("enter");
-        console.shows("Required, and kept with the run.");
+        console.shows("Required, and saved with the run.");
         console.press("'test' enter");
         console.shows("f fills empty cells: the last four weeks continue");
         console.press("f");

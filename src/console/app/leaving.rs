@@ -37,10 +37,10 @@ impl Closing {
     }
 }
 
-const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog holds unsent text. It is saved with the run and \
+const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog has unsent text. It is saved with the run and \
                           offered when you open the run again.";
 /// Nothing can be sent after the run has ended.
-const DROPS_TEXT: &str = "The notes hold unsaved text. The run has ended; the text will be lost.";
+const DROPS_TEXT: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
 const DROPS_OFFERS: &str = "Unsent offers in the inbox will be lost.";
 
 impl App {

@@ -379,7 +379,7 @@ fn calibration(scores: &[ForecastScore], room: usize) -> String {
         return long;
     }
     let short = scored().map(|score| format!("{} wk {}", score.horizon_days / 7, inside(score)));
-    format!("inside: {}", short.collect::<Vec<_>>().join(" · "))
+    format!("in range: {}", short.collect::<Vec<_>>().join(" · "))
 }
 
 /// Describes the share of ads on the best channel, or why it is unknown; the longer wording first.

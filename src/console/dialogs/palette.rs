@@ -361,7 +361,7 @@ impl Dialog for Palette {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
             canvas.click(row, Click::Row(0, place));
         }
-        canvas.pane_keys(own, "type to find · up/down choose · enter take · esc close");
+        canvas.pane_keys(own, "type to search · up/down select · enter choose · esc close");
     }
 }
 

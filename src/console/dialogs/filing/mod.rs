@@ -405,9 +405,9 @@ impl Dialog for FilingDialog {
 impl FilingDialog {
     fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let why = if company.is_baseline() {
-            "Required, and kept with the run."
+            "Required, and saved with the run."
         } else {
-            "It is kept with the run."
+            "Saved with the run."
         };
         let used = 3;
         for (row, (line, role)) in rows_of(area).zip([(RATIONALE_QUESTION, Role::Text), (why, Role::Dim)]) {

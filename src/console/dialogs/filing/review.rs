@@ -79,7 +79,7 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]
     lines.push(TextLine::default());
     lines.push(head("Before you continue", canvas));
     for tool in unsent {
-        let text = format!("  ! the {tool} form holds unsent values");
+        let text = format!("  ! the {tool} form has unsent values");
         lines.push(TextLine::from(canvas.span(text, Role::Warning)));
     }
     for need in &company.needs {

@@ -211,7 +211,8 @@ impl Headless {
     /// # Errors
     /// No message arrives.
     pub fn receive(&mut self) -> io::Result<Message> {
-        let message = self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no response arrived"))?;
+        let message =
+            self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no response arrived"))?;
         self.count(&message);
         Ok(message)
     }

@@ -29,9 +29,8 @@ pub fn answer_on_thread<T>(
 pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let reason = words_of(&*panic);
-        let message = format!(
-            "internal error ({reason}); nothing was changed, the run is safe and you can continue"
-        );
+        let message =
+            format!("internal error ({reason}); nothing was changed, the run is safe and you can continue");
         Refusal::new("internal_error", message)
     })
 }
@@ -80,10 +79,7 @@ mod tests {
         assert_eq!(answered(|| Err(Refusal::new("no", "refused"))), [Err("refused".to_owned())]);
         let defect = answered(|| panic!("row 3 is missing"));
         let [Err(words)] = defect.as_slice() else { panic!("{defect:?}") };
-        assert!(
-            words.starts_with("internal error (row 3 is missing); nothing was changed"),
-            "{words}"
-        );
+        assert!(words.starts_with("internal error (row 3 is missing); nothing was changed"), "{words}");
     }
 
     #[test]

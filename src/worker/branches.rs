@@ -89,8 +89,9 @@ impl SessionThread {
                     some => format!("; {some} calls were rejected, see the Journal"),
                 };
                 let (id, day) = (adopted.session.manifest().id.clone(), adopted.session.day());
-                let remark =
-                    format!("now playing run {id}, simulated to day {day}; run {parent} is unchanged{refused}");
+                let remark = format!(
+                    "now playing run {id}, simulated to day {day}; run {parent} is unchanged{refused}"
+                );
                 let _ = self.put_down(LeavingCause::Quit);
                 self.take(Ok(adopted.session), "", Some(remark));
             }

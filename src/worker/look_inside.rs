@@ -125,9 +125,7 @@ impl SessionThread {
 
     fn refuse_to_change(&self) -> Option<Refusal> {
         match &self.open {
-            Some(Open::Replayed(_)) => {
-                Some(Refusal::new("read_only", "a replay is read-only"))
-            }
+            Some(Open::Replayed(_)) => Some(Refusal::new("read_only", "a replay is read-only")),
             Some(Open::Played(session)) if !session.log().is_written() && session.folder().is_some() => {
                 Some(Refusal::new("read_only", "this run is open read-only"))
             }

@@ -158,8 +158,7 @@ impl SessionThread {
         match branch {
             Ok(session) => {
                 let (own, day) = (session.manifest().id.clone(), session.day());
-                let remark =
-                    format!("now playing run {own} from day {day}; run {parent} is unchanged");
+                let remark = format!("now playing run {own} from day {day}; run {parent} is unchanged");
                 self.take(Ok(session), "", Some(remark));
             }
             Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),

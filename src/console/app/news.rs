@@ -71,8 +71,7 @@ impl App {
                     Some(folder) => format!(" All confirmed actions are saved in {}.", folder.display()),
                     None => String::new(),
                 });
-                let text =
-                    format!("internal error: {words}.{saved} Resume with `{}`.", self.again);
+                let text = format!("internal error: {words}.{saved} Resume with `{}`.", self.again);
                 self.orders.push(Order::Exit(1, Some(text)));
             }
             News::RecordLost(words) => self.orders.push(Order::Exit(3, Some(words))),

@@ -27,8 +27,7 @@ impl TryAgain {
 
     fn text(&self) -> String {
         let step = self.step + 1;
-        let first =
-            "in a new run. Tries are counted, your first guess counts, and this run does not change.";
+        let first = "in a new run. Tries are counted, your first guess counts, and this run does not change.";
         match self.last {
             0 => format!("Step {step} starts again {first}"),
             last => format!("Step {step} of {} starts again {first}", last + 1),

@@ -87,7 +87,9 @@ impl AnswerDraft {
         let typed = self.typed();
         let value = match typed.is_empty() {
             true if !self.due.question.required => Value::Null,
-            true => return Err(format!("an answer is required: {}", form.value("").err().unwrap_or_default())),
+            true => {
+                return Err(format!("an answer is required: {}", form.value("").err().unwrap_or_default()));
+            }
             false => form.value(&typed).map_err(|expected| format!("needed: {expected}"))?,
         };
         let chosen_live = matches!(self.entered, Entered::One(_));

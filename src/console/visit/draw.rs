@@ -79,13 +79,13 @@ impl VisitPage {
             PageKind::Wait | PageKind::Consent(_) => ("", vec![text("One moment …")]),
             PageKind::Practice { resumed, may_pass } => {
                 let first = match resumed {
-                    false => {
-                        "First comes a practice company, to learn the controls. It does not count."
-                    }
+                    false => "First comes a practice company, to learn the controls. It does not count.",
                     true => "The practice continues where you left it. It does not count.",
                 };
                 let mut said = vec![text(first)];
-                said.push(text("It ends automatically after its last day. The session then starts with a new company."));
+                said.push(text(
+                    "It ends automatically after its last day. The session then starts with a new company.",
+                ));
                 said.push(strong(format!("{go} starts the practice")));
                 if *may_pass {
                     let pass = key(Action::PassPractice);

@@ -173,8 +173,7 @@ fn legend(opened: &ExploredCurve, area: Rect) -> Vec<String> {
     let mut words =
         format!("x: {unit}, y: quality · line: enough for half of the leads · shaded: for 1 to 9 in 10");
     if !opened.explorer.is_truth() {
-        words +=
-            " · dim lines: half, at both ends of the error · spread and slope are assumed; studies measure means";
+        words += " · dim lines: half, at both ends of the error · spread and slope are assumed; studies measure means";
     }
     wrapped(&words, area.width as usize)
 }

@@ -404,11 +404,8 @@ impl Dialog for FilingDialog {
 
 impl FilingDialog {
     fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-        let why = if company.is_baseline() {
-            "Required, and saved with the run."
-        } else {
-            "Saved with the run."
-        };
+        let why =
+            if company.is_baseline() { "Required, and saved with the run." } else { "Saved with the run." };
         let used = 3;
         for (row, (line, role)) in rows_of(area).zip([(RATIONALE_QUESTION, Role::Text), (why, Role::Dim)]) {
             canvas.text(row, line, role);

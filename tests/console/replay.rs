@@ -91,7 +91,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     console.shows("Decided before week 3");
     console.shows("“If week 2 keeps its leads");
     console.shows("later $98");
-    console.shows("refused: ");
+    console.shows("rejected: ");
     console.press("<");
     assert_eq!(day(&console), 7);
     // Single actions: the third sets a price.

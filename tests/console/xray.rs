@@ -195,7 +195,7 @@ fn a_run_that_is_over_is_looked_into_in_its_replay_and_each_look_is_recorded() {
         console.shows("day 14 of 14");
         // A replay simulates nothing.
         console.press("; k r '7' enter");
-        console.shows("a replay is read-only");
+        console.shows("this is a replay");
         // After leaving the replay, the run can be opened: its lock is released.
         console.press("esc Q");
         let folder = folder_of(runs.path());
@@ -321,7 +321,7 @@ fn a_parameter_is_set_after_a_question_and_in_debug_runs_alone() {
     let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
     console.press("g x");
     ask(&mut console, "set group.S1.c_max_mean 300");
-    console.shows("a replay is read-only");
+    console.shows("this is a replay");
 }
 
 #[test]

@@ -1,69 +1,69 @@
-//! Everything a person can do with a key: one table, from which palette, footer, help and the key file are read.
+//! Actions of the console: the one table from which the palette, the footer, the help and the key file are derived.
 
 use novamind_tui::canvas::Command;
 use novamind_tui::widgets::ListAction;
 
-/// Where a key means something. A focused place has several scopes, the innermost first.
+/// A part of the console in which key bindings apply. A focused place has several scopes, the innermost first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scope {
     /// Everywhere in a run.
     Global,
     /// The start menu.
     Menu,
-    /// A class that was collected.
+    /// A collected class.
     Class,
     /// Lists and tables.
     List,
-    /// Forms of tools.
+    /// Tool forms.
     Form,
-    /// A line of text that is being typed.
+    /// A single-line text field.
     Field,
-    /// An editor of several lines.
+    /// A multi-line editor.
     Editor,
     /// The SQL editor.
     Query,
-    /// Results of queries.
+    /// Query results.
     Result,
-    /// Charts of results.
+    /// Result charts.
     Chart,
-    /// Ways to take a result out.
+    /// The export menu of a result.
     Export,
     /// Negotiations.
     Inbox,
-    /// The dialog before a week.
+    /// The next-week dialog.
     Filing,
-    /// Small dialogs.
+    /// Small dialogs, such as confirmations.
     Dialog,
     /// The page at the end of a run.
     Final,
     /// The notes in the journal.
     Memo,
-    /// The public conversation.
+    /// The social feed.
     Social,
-    /// Groups and their studies.
+    /// Groups and market studies.
     Market,
-    /// A recorded run that is played again.
+    /// Playback of a recorded run.
     Viewer,
-    /// The pages of a participant of a study.
+    /// Pages of a study for its participant.
     Visit,
-    /// Decisions of a run that are made otherwise.
+    /// The decisions list of a what-if.
     Decisions,
-    /// Branches side by side.
+    /// The figures of a what-if.
     Branches,
-    /// A participation curve beside the plans.
+    /// The participation curve of a group.
     Curve,
     /// The page of a lesson.
     Lesson,
-    /// Hidden state of the run.
+    /// The x-ray: hidden state of the run.
     Xray,
-    /// The offer of texts that were typed and not sent.
+    /// The offer to restore drafts.
     Unsent,
-    /// The cover while the clock is stopped.
+    /// The screen shown while the clock is stopped.
     Cover,
 }
 
 impl Scope {
-    /// All scopes, in the order of the help.
+    /// All scopes, in the order of the manual.
     pub const ALL: [Scope; 27] = [
         Scope::Global,
         Scope::List,
@@ -94,7 +94,7 @@ impl Scope {
         Scope::Cover,
     ];
 
-    /// Name in the key file.
+    /// Returns the name in the key file.
     pub fn id(self) -> &'static str {
         match self {
             Scope::Global => "global",
@@ -127,29 +127,29 @@ impl Scope {
         }
     }
 
-    /// Heading in the manual.
+    /// Returns the heading in the manual.
     pub fn title(self) -> &'static str {
         match self {
             Scope::Global => "Everywhere in a run",
             Scope::Menu => "Start menu",
             Scope::Class => "Class",
             Scope::List => "Lists and tables",
-            Scope::Form => "Forms of tools",
-            Scope::Field => "While a value is typed",
-            Scope::Editor => "Editors of several lines",
+            Scope::Form => "Tool forms",
+            Scope::Field => "Value fields",
+            Scope::Editor => "Text editors",
             Scope::Query => "SQL editor",
-            Scope::Result => "Results of queries",
-            Scope::Chart => "Chart of a result",
-            Scope::Export => "Export of a result",
+            Scope::Result => "Query results",
+            Scope::Chart => "Result chart",
+            Scope::Export => "Result export",
             Scope::Inbox => "Inbox",
-            Scope::Filing => "Before a week",
+            Scope::Filing => "Next week",
             Scope::Dialog => "Dialogs",
             Scope::Final => "Final page",
             Scope::Memo => "Notes",
             Scope::Social => "Social",
             Scope::Market => "Market",
-            Scope::Viewer => "Replay of a run",
-            Scope::Visit => "Pages of a participant",
+            Scope::Viewer => "Replay",
+            Scope::Visit => "Study pages",
             Scope::Decisions => "What if: decisions",
             Scope::Branches => "What if: figures",
             Scope::Curve => "Participation curve",
@@ -160,7 +160,7 @@ impl Scope {
         }
     }
 
-    /// Whether plain characters are typed here.
+    /// Returns whether printable characters are input here.
     pub fn is_text(self) -> bool {
         matches!(self, Scope::Field | Scope::Editor)
     }
@@ -202,24 +202,24 @@ impl From<Action> for Option<ListAction> {
     }
 }
 
-/// One row of the table.
+/// One row of the action table.
 #[derive(Debug)]
 pub struct ActionEntry {
     /// The action.
     pub action: Action,
     /// Name in the key file.
     pub name: &'static str,
-    /// Where it can be done.
+    /// The scope in which it is available.
     pub scope: Scope,
-    /// Few words for footer and palette.
+    /// Label for the footer and the palette.
     pub title: &'static str,
-    /// What it does.
+    /// Description for help, manual and palette.
     pub doc: &'static str,
 }
 
 macro_rules! actions {
     ($($scope:ident { $($variant:ident $name:literal $title:literal $doc:literal)* })*) => {
-        /// What a key, a click or the palette asks for.
+        /// A command that a key, a click or the palette triggers.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Action { $($(#[doc = $doc] $variant,)*)* }
 
@@ -236,46 +236,46 @@ macro_rules! actions {
 
 actions! {
     Global {
-        Overview "overview" "Overview" "Show the company at a glance."
-        Cash "cash" "Cash" "Show where money comes from and goes to."
+        Overview "overview" "Overview" "Show the company's key figures."
+        Cash "cash" "Cash" "Show income and costs."
         Customers "customers" "Customers" "Show the customer groups."
         Product "product" "Product" "Show quality, capacity, issues and R&D."
-        Social "social" "Social" "Read what people write, and your own posts."
-        Inbox "inbox" "Inbox" "Negotiate with companies."
-        Market "market" "Market" "Show groups, studies, the economy and rivals."
-        Tools "tools" "Tools" "Show the forms of all tools."
+        Social "social" "Social" "Read the social feed and your own posts."
+        Inbox "inbox" "Inbox" "Negotiate with enterprises."
+        Market "market" "Market" "Show groups, studies, the economy and competitors."
+        Tools "tools" "Tools" "Show a form for every tool."
         Sql "sql" "SQL" "Query the database."
-        Journal "journal" "Journal" "Show what was done and how forecasts turned out."
-        Xray "xray" "X-ray" "Show the hidden state of the run: in debug runs and in runs that are over."
-        Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set one, run to it, or see since when its condition holds. In debug runs and in runs that are over."
-        HiddenValues "hidden-values" "true values" "Show hidden true values on the screens Customers and Market, or hide them again; each day that is shown is a recorded look. In debug runs and in runs that are over."
-        NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast, and run the week."
-        Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by typing."
-        Help "help" "help" "Show every key that works here, those of the focused pane first."
-        Changes "changes" "changes" "Show the settings changed since the last week."
-        Undo "undo" "undo" "Undo the last setting of this week and say its value; c lists the changes."
-        Redo "redo" "redo" "Redo what undo reverted."
+        Journal "journal" "Journal" "Show past actions and forecast scores."
+        Xray "xray" "X-ray" "Show the hidden state of the run. For debug runs and finished runs."
+        Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set one, run to it, or see the history of its condition. For debug runs and finished runs."
+        HiddenValues "hidden-values" "true values" "Show or hide true values on the Customers and Market screens; each day shown is recorded as an inspection. For debug runs and finished runs."
+        NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast cash, and run the week."
+        Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by name."
+        Help "help" "help" "List the keys that work here, the focused pane first."
+        Changes "changes" "changes" "Show the settings changed in this week."
+        Undo "undo" "undo" "Undo the last setting of this week; c lists the changes."
+        Redo "redo" "redo" "Redo the last undone setting."
         FocusNext "focus-next" "next pane" "Move to the next pane."
         FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
         Report "report" "last week" "Show the report of the last week again."
         Dashboard "dashboard" "dashboard" "Show the weekly dashboard as text."
-        Back "back" "back" "Go back to the screen before."
-        Forward "forward" "forward" "Go forward to the screen you left with back."
+        Back "back" "back" "Go back to the previous screen."
+        Forward "forward" "forward" "Go forward again after going back."
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
-        Explain "explain" "what is this" "Explain the selected figure or field."
-        Why "why" "why" "Say how much of the change of the selected figure each cause brought: the week is simulated again without it. Not in an unfinished baseline run."
-        Branches "branches" "what if" "Simulate the run again from a week on under other decisions, in memory. Not in an unfinished baseline run."
-        Curves "curves" "participation curve" "Show the quality that a group requires at a price, drag prices and qualities of the plans, and see what leads would do. Nothing is set."
+        Explain "explain" "explain" "Explain the selected figure or field."
+        Why "why" "why" "Show how much each cause contributed to the change of the selected figure: the week is simulated again without it. Not in an unfinished baseline run."
+        Branches "branches" "what if" "Simulate the run again with other decisions, from a week you choose. The run itself does not change. Not in an unfinished baseline run."
+        Curves "curves" "participation curve" "Show the quality that a group requires at each price. Drag prices and qualities of plans to see how leads respond; nothing is set."
         Glossary "glossary" "glossary" "Look up any term."
-        Lesson "lesson" "lesson" "In a lesson: show or hide the task beside the screen; in a small window, open it as a page."
+        Lesson "lesson" "lesson" "In a lesson: show or hide the task next to the screen; in a small window, open it as a page."
         LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
-        Tour "tour" "tour" "Resume the tour of a practice run; the start menu begins it."
+        Tour "tour" "tour" "Resume the tour of a practice run; start it from the start menu."
         TourSkip "tour-skip" "skip" "Skip this step of the tour."
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
-        NextTheme "next-theme" "next theme" "Switch to the next colour theme."
+        NextTheme "next-theme" "next theme" "Switch to the next color theme."
         NextMarker "next-marker" "next marker" "Draw charts with braille dots, blocks or ASCII characters."
-        StopClock "stop-clock" "stop the clock" "Stop the clock for a break: the screen is covered, and the time does not count."
+        StopClock "stop-clock" "stop the clock" "Stop the clock for a break: the screen is hidden, and the time does not count."
         Mouse "mouse" "mouse" "Turn mouse support on or off; when off, the terminal selects text."
         Redraw "redraw" "redraw" "Redraw the screen."
         WriteReport "write-report" "write the report" "Write the report of the run as Markdown and HTML."
@@ -291,125 +291,125 @@ actions! {
         PageDown "page-down" "page down" "Move down by a page."
         First "first" "first" "Move to the first row."
         Last "last" "last" "Move to the last row."
-        Open "open" "open" "Open what is selected."
+        Open "open" "open" "Open the selected item."
         Close "close" "close" "Close, clear the filter, or go back to where you came from."
         Filter "filter" "filter" "Show only the rows that contain a text."
         Sort "sort" "sort" "Sort by the selected column; again to reverse, a third time to stop sorting."
     }
     Form {
-        Apply "apply" "apply" "Send the call."
-        EditCell "edit" "edit" "Type a value; in a cell for a number, a digit begins it."
-        SameDown "same-down" "same down" "Copy the value to the cells below; right after a value was accepted, that one."
+        Apply "apply" "apply" "Submit the form."
+        EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
+        SameDown "same-down" "copy down" "Copy the value to the cells below; right after you accept a value, that value."
         ClearCell "clear-cell" "0" "Clear the cell."
-        ResetForm "reset-form" "reset" "Discard the draft and show the current values; again to bring the draft back."
+        ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
         CopyCall "copy-call" "copy call" "Copy the equivalent call."
-        SaveCalls "save-calls" "calls to file" "Write this week's calls and the drafts to calls.txt in the run's folder."
+        SaveCalls "save-calls" "calls to file" "Write this week's calls and the drafts to calls.txt in the run folder."
     }
     Query {
         RunQuery "run-query" "run" "Run the statement."
         Complete "complete" "complete" "Accept the suggested completion."
         History "history" "history" "Search earlier statements."
         Library "library" "library" "Search the library of named queries and run one."
-        SaveQuery "save-query" "save" "Save the statement under a name among your own queries."
+        SaveQuery "save-query" "save" "Save the statement as a named query."
         EditQuery "edit-query" "edit" "Go to the editor."
         ClearQuery "clear-query" "clear" "Empty the editor."
     }
     Result {
-        WholeCell "whole-cell" "whole cell" "Show the whole value of the cell."
+        WholeCell "whole-cell" "full value" "Show the full value of the cell."
         CopyCell "copy-cell" "copy cell" "Copy the value of the cell."
         CopyRow "copy-row" "copy row" "Copy the row."
         Chart "chart" "chart" "Draw the result as lines or bars."
         Export "export" "export" "Write the result to a file, or copy all of it."
-        CountColumn "count-column" "count" "Count how often each value of the focused column stands in the result, by a query over all rows that the filter lets through."
-        Pivot "pivot" "pivot" "Pivot the result by the focused column, by a query over all rows that the filter lets through."
-        PreviousResult "previous-result" "previous result" "Show the result before."
+        CountColumn "count-column" "count" "Count how often each value of the focused column occurs, with a query over all rows that match the filter."
+        Pivot "pivot" "pivot" "Pivot the result by the focused column, with a query over all rows that match the filter."
+        PreviousResult "previous-result" "previous result" "Show the previous result."
         NextResult "next-result" "next result" "Show the next result."
-        PinResult "pin-result" "pin" "Keep the result as it is, or let it go again."
+        PinResult "pin-result" "pin" "Pin the result so that it is kept, or unpin it."
         CloseResult "close-result" "close result" "Close the result."
-        RecallQuery "recall-query" "its statement" "Put the statement of the result into the editor."
+        RecallQuery "recall-query" "edit statement" "Copy the statement of the result to the editor."
     }
     Chart {
-        ChartX "chart-x" "along" "Use another column for the x axis."
-        ChartY "chart-y" "values" "Plot another numeric column."
-        MoreSeries "more-series" "more" "Add a series."
-        FewerSeries "fewer-series" "fewer" "Remove a series."
+        ChartX "chart-x" "x axis" "Use another column for the x axis."
+        ChartY "chart-y" "y axis" "Plot another numeric column."
+        MoreSeries "more-series" "add series" "Add a series."
+        FewerSeries "fewer-series" "remove series" "Remove a series."
         ChartKind "chart-kind" "lines or bars" "Switch between lines and bars."
-        CloseChart "close-chart" "table" "Go back to the rows."
+        CloseChart "close-chart" "table" "Return to the table."
     }
     Export {
         ExportCsv "export-csv" "CSV" "Write the result as CSV."
         ExportJson "export-json" "JSON" "Write the result as JSON."
         ExportMarkdown "export-markdown" "Markdown" "Write the result as a Markdown table."
-        CopyTabs "copy-tabs" "copy" "Copy the result with tabs, for a spreadsheet."
+        CopyTabs "copy-tabs" "copy" "Copy the result as tab-separated values, for a spreadsheet."
         CopyMarkdown "copy-markdown" "copy Markdown" "Copy the result as a Markdown table."
     }
     Inbox {
-        SendOffer "send-offer" "send" "Send the offer to the marked companies, or to the selected one."
-        TakeAsk "take-their-price" "take their price" "Offer the price the company asks for the plan it named."
+        SendOffer "send-offer" "send" "Send the offer to the marked enterprises, or to the selected one."
+        TakeAsk "take-their-price" "match their price" "Offer the price that the enterprise asks for the plan it named."
         Mark "mark" "mark" "Mark or unmark the thread for a bulk offer."
         MarkAll "mark-all" "mark all" "Mark every thread shown; again to unmark them."
         OfferPlan "plan" "plan" "Choose another plan for this line of the offer."
-        OfferBasis "basis" "basis" "Price as a percentage of the list price, as a percentage of theirs, or in dollars."
+        OfferBasis "basis" "basis" "Price as a percentage of the list price, as a percentage of the asked price, or in dollars."
         OfferPrice "price" "price" "Enter the price of this line of the offer."
-        OtherThreads "other-threads" "other threads" "Switch between threads waiting for you, waiting for the company, and closed."
-        InboxRules "rules" "rules" "Answer waiting threads by rules you type; nothing is sent before you confirm."
-        InboxOutcomes "outcomes" "outcomes" "Show what became of leads by your first offer and its week, or the threads again."
+        OtherThreads "other-threads" "other threads" "Switch between threads that wait for you, threads that wait for the enterprise, and closed threads."
+        InboxRules "rules" "rules" "Answer waiting threads with rules that you type; nothing is sent until you confirm."
+        InboxOutcomes "outcomes" "outcomes" "Switch between the outcomes of threads by first offer and week, and the threads."
         RejectOffer "reject" "reject" "End the threads without a deal, after confirmation."
-        InboxGroup "group" "group" "Show the group of the company."
+        InboxGroup "group" "group" "Show the group of the enterprise."
         InboxSql "thread-sql" "SQL" "Query the thread in SQL."
     }
     Filing {
         NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
-        PreviousStep "previous-step" "step back" "Go back to the step before."
-        FillNaively "fill-naively" "fill naively" "Fill empty forecasts with the naive projection, which is recorded; on the review, fill in everything (not in baseline runs)."
-        FillRationale "fill-rationale" "fill in" "Fill the rationale with the list of changes; not in baseline runs."
+        PreviousStep "previous-step" "previous step" "Go back to the previous step."
+        FillNaively "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks them. On the review, fill in everything (not in baseline runs)."
+        FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
         LeaveEditor "leave-editor" "leave" "Leave the editor; the text is kept."
     }
     Field {
-        Commit "commit" "accept" "Accept what you typed; in a form, go down."
-        CommitDown "commit-down" "take, down" "Accept what you typed and go down."
-        CommitNext "commit-next" "take, next" "Accept what you typed and go to the next field."
-        CommitPrevious "commit-previous" "take, previous" "Accept what you typed and go to the previous field."
+        Commit "commit" "accept" "Accept what you typed; in a form, move down."
+        CommitDown "commit-down" "accept, down" "Accept what you typed and move down."
+        CommitNext "commit-next" "accept, next" "Accept what you typed and move to the next field."
+        CommitPrevious "commit-previous" "accept, previous" "Accept what you typed and move to the previous field."
         Discard "discard" "cancel" "Discard what you typed."
     }
     Memo {
         EditMemo "edit-memo" "edit notes" "Edit the notes of the run."
-        ShowTree "tree" "tree" "Go to the tree of branches in which the run stands."
+        ShowTree "tree" "tree" "Show the branches related to the run."
         SaveMemo "save-memo" "save notes" "Save the notes with the run."
     }
     Social {
-        Compose "compose" "write" "Write a post of the company."
-        Reply "reply" "answer" "Reply to the selected post."
+        Compose "compose" "write" "Write a post as the company."
+        Reply "reply" "reply" "Reply to the selected post."
         SendPost "send-post" "publish" "Publish the post, after confirmation."
-        Unreply "unreply" "no answer" "Turn the reply into a post of its own."
+        Unreply "unreply" "not a reply" "Turn the reply into a new post."
         NextKind "next-kind" "kind" "Filter by author: customers, press, comments, your posts, then all."
-        EarlierWeek "earlier-week" "week before" "Show one week only: the latest, then earlier ones."
-        LaterWeek "later-week" "week after" "Show a later week; after the latest, all weeks."
+        EarlierWeek "earlier-week" "earlier week" "Show one week only: the latest, then earlier ones."
+        LaterWeek "later-week" "later week" "Show a later week; after the latest, all weeks."
     }
     Market {
         FindGroup "find-group" "find a group" "Pay for a market research attempt, after confirmation."
-        StudyGroup "study-group" "study" "Order a study of the selected group to the chosen level, after confirmation."
+        StudyGroup "study-group" "study" "Order a study of the selected group at the chosen level, after confirmation."
         LevelUp "level-up" "level up" "Choose a higher level for the study."
         LevelDown "level-down" "level down" "Choose a lower level for the study."
-        GroupCurve "group-curve" "curve" "Show the participation curve of the selected group beside the plans."
+        GroupCurve "group-curve" "curve" "Show the participation curve of the selected group with the plans."
     }
     Curve {
-        NextPlan "next-plan" "plan" "Drag the next plan, or all of them together. Left and right drag the price, up and down the quality."
+        NextPlan "next-plan" "plan" "Drag the next plan, or all plans together. Left and right change the price, up and down the quality."
         NextCurve "next-curve" "next group" "Show the curve of the next known group."
-        PreviousCurve "previous-curve" "group before" "Show the curve of the known group before."
-        ResetCurve "reset-curve" "reset" "Put the plans back where they stand."
+        PreviousCurve "previous-curve" "previous group" "Show the curve of the previous known group."
+        ResetCurve "reset-curve" "reset" "Reset the plans to their current values."
     }
     Xray {
-        TypeChoice "type" "type" "Type a group or the number of a customer, with a day or none, for instance S2 84 or 1372 304; a day, a part, or the condition of a breakpoint."
+        TypeChoice "type" "type" "Type a group or customer number with an optional day, for example S2 84 or 1372 304; or a day, a part, or a breakpoint condition."
         SeekDay "seek-day" "day …" "Go to a day by number."
-        DayWeekBefore "week-before" "week before" "Show the day a week earlier; left shows the day before."
-        DayWeekAfter "week-after" "week after" "Show the day a week later, at most the last one; right shows the day after."
-        HoldFactor "hold" "hold" "Hold the selected factor of the leads at a value and show the expected leads beside, or let it go."
-        AskWords "ask" "ask" "Type words as plain mode takes them: find, who, diff, or set, which asks before it sets a parameter of a debug run."
+        DayWeekBefore "week-before" "week earlier" "Show the day a week earlier; left shows the previous day."
+        DayWeekAfter "week-after" "week later" "Show the day a week later, at most the last day; right shows the next day."
+        HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release it."
+        AskWords "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
         RunDays "run-days" "run" "Type how many days of a debug run to simulate; it stops on the first day on which a breakpoint becomes true."
-        LookBack "look-back" "since when" "Say since when the condition of each breakpoint is true or false."
+        LookBack "look-back" "history" "Show since when the condition of each breakpoint has been true or false."
         RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
     Dialog {
@@ -430,88 +430,88 @@ actions! {
         DeleteRun "delete-run" "delete" "Delete the run and everything in its folder, after confirmation."
     }
     Class {
-        ClassDecision "class-decision" "decision" "Plot another decision across: the mean of the weeks in which the student decided."
-        ClassFigure "class-figure" "figure" "Plot another figure up: that of the last week."
-        ClassView "class-view" "below" "In a small window, show below the curves: the decision against the figure, guesses, or pitfalls."
+        ClassDecision "class-decision" "decision" "Plot another decision on the x axis: the mean over the weeks in which the student decided."
+        ClassFigure "class-figure" "figure" "Plot another figure on the y axis: its value in the last week."
+        ClassView "class-view" "lower pane" "In a small window, choose the pane below the curves: the decision against the figure, guesses, or pitfalls."
         ClassQuestion "class-question" "question" "Show the guesses of the next question of the lesson."
         ClassPart "class-part" "part" "Show the next part of the lesson."
-        HideNames "hide-names" "names" "Hide the names of students, ranks stand for them, or show them again."
+        HideNames "hide-names" "names" "Show ranks in place of the names of students, or show the names."
     }
     Final {
         ToMenu "to-menu" "start menu" "Go to the start menu."
-        ReportOfRun "report-of-run" "report" "Write the report into the run's folder, as Markdown and HTML."
-        CardOfRun "card-of-run" "card" "Write a card to hand on into the run's folder, as text and as a drawing."
+        ReportOfRun "report-of-run" "report" "Write the report into the run folder, as Markdown and HTML."
+        CardOfRun "card-of-run" "card" "Write a summary card to share into the run folder, as text and as SVG."
         ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
-        Opponents "opponents" "opponents" "Play the strong policies and the baseline in the world of this run, with its luck, and rank the run among them."
-        WhatIf "what-if" "what if" "Simulate the run again from a week on under other decisions; it begins twelve weeks before the end."
-        StayInRun "stay" "look around" "Close this page and look at the run."
+        Opponents "opponents" "opponents" "Play the strong policies and the baseline with the scenario and seed of this run, and rank the run among them."
+        WhatIf "what-if" "what if" "Simulate the last twelve weeks again with other decisions."
+        StayInRun "stay" "view run" "Close this page and view the run."
     }
     Lesson {
-        LessonOn "lesson-on" "go on" "Answer the open question; where the part is over, begin the next one or open the debrief."
+        LessonOn "lesson-on" "continue" "Answer the open question; after the end of a part, start the next part or open the debrief."
         AnswerQuestion "answer" "guess" "Answer the question of the step."
-        NextHint "next-hint" "hint" "Take the next hint of the step; that it was taken is recorded."
-        TryAgain "try-again" "try again" "Try the step again from its beginning, after confirmation, in a run of its own."
-        NextPart "next-part" "next part" "Begin the next part of the lesson, once this one is over."
-        Debrief "debrief" "debrief" "Show what came of a part that is over, beside the good and the bad play."
-        LessonWeek "lesson-week" "next week" "Close the page and let the next week come."
-        WeekUnanswered "week-unanswered" "week only" "Where the next week asks whether to answer first: leave waiting letters without an answer."
+        NextHint "next-hint" "hint" "Show the next hint of the step; the record notes it."
+        TryAgain "try-again" "try again" "Try the step again from its start, in a new run, after confirmation."
+        NextPart "next-part" "next part" "Start the next part of the lesson after this one has ended."
+        Debrief "debrief" "debrief" "Compare a finished part with the good and the bad play."
+        LessonWeek "lesson-week" "next week" "Close the page and run the next week."
+        WeekUnanswered "week-unanswered" "week only" "Run the week without answering the waiting messages."
     }
     Viewer {
-        WeekBack "week-back" "week back" "Go to the end of the week before."
-        WeekForward "week-forward" "week on" "Go to the end of the next week."
-        LineBack "line-back" "action back" "Step back by a single action."
-        LineForward "line-forward" "action on" "Replay the next single action: a call, a query, a screen view."
+        WeekBack "week-back" "previous week" "Go to the end of the previous week."
+        WeekForward "week-forward" "next week" "Go to the end of the next week."
+        LineBack "line-back" "previous action" "Step back by one action."
+        LineForward "line-forward" "next action" "Replay the next action: a tool call, a query or a screen view."
         ReelStart "reel-start" "first" "Go to the first day, before any action."
         ReelEnd "reel-end" "last" "Go to the end of the record."
         SeekWeek "seek-week" "week …" "Go to a week by number."
         PlayPause "play-pause" "play" "Play week after week, or pause."
         Faster "faster" "faster" "Play faster."
         Slower "slower" "slower" "Play slower."
-        Decisions "decisions" "decisions" "Show what was decided before the next week beside the screen, or hide it; in a small window as text."
-        DecisionsWhole "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and answers."
+        Decisions "decisions" "decisions" "Show or hide the decisions of the week next to the screen; in a small window, open them as text."
+        DecisionsWhole "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and results."
         DecisionsUp "decisions-up" "decisions up" "Scroll the decisions up."
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
-        TakeOver "take-over" "take over" "Continue from this moment in a branch of your own."
+        TakeOver "take-over" "take over" "Continue from this moment in your own branch."
         LeaveViewer "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
     }
     Decisions {
-        DropDecision "drop-decision" "leave out" "Leave the selected call out, or make it as it was; take another decision back."
-        AddDecision "add-decision" "decide" "Type another decision: a call, a factor, a tool whose settings stay."
-        NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or begin one; up to three stand side by side."
-        SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and under each alternative."
+        DropDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."
+        AddDecision "add-decision" "add decision" "Add a decision: a call, a factor for a call, or a tool whose settings stay unchanged."
+        NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or add one; up to three are compared."
+        SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and with each alternative."
     }
     Branches {
         NextFigure "next-figure" "next figure" "Show the next figure."
-        DrawFutures "draw-futures" "futures" "Draw the luck anew twenty times, for every branch in the same way."
-        AdoptBranch "adopt-branch" "adopt" "Play the selected branch as a run of its own up to the day of this one, and go on in it."
+        DrawFutures "draw-futures" "futures" "Simulate every branch with twenty new sets of random draws, the same sets for each branch."
+        AdoptBranch "adopt-branch" "adopt" "Create a run from the selected branch, simulate it to the current day, and continue in it."
     }
     Visit {
-        GoOn "go-on" "go on" "Go on to the next question or page; after the last question, send the answers."
-        GoBack "go-back" "question before" "Go back to the question before; its answer can be changed until the page is sent."
-        MarkOption "mark-option" "mark" "Mark or unmark the option; several can be marked."
-        Agree "agree" "agree" "Agree to the text, once its end was on the screen."
+        GoOn "go-on" "continue" "Continue to the next question or page; after the last question, send the answers."
+        GoBack "go-back" "previous question" "Go back to the previous question; you can change its answer until you send the page."
+        MarkOption "mark-option" "mark" "Mark or unmark the option; you can mark several."
+        Agree "agree" "agree" "Agree to the text, after scrolling to its end."
         Decline "decline" "do not agree" "Do not agree to the text."
-        PassPractice "pass-practice" "pass over" "Pass over the practice."
+        PassPractice "pass-practice" "skip" "Skip the practice."
         Withdraw "withdraw" "withdraw" "Withdraw from the study: erase everything you did in it, after two confirmations."
-        Experimenter "experimenter" "experimenter" "Give the experimenter's code, which opens the start menu."
+        Experimenter "experimenter" "experimenter" "Enter the experimenter's code to open the start menu."
     }
     Unsent {
-        RestoreTexts "restore-texts" "restore" "Put the texts back where you typed them."
-        DropTexts "drop-texts" "drop" "Drop the texts."
+        RestoreTexts "restore-texts" "restore" "Restore the drafts where you typed them."
+        DropTexts "drop-texts" "discard" "Discard the drafts."
     }
     Cover {
         StartClock "start-clock" "start" "Start the clock again."
-        QuitStopped "quit-stopped" "quit" "Save and quit; the clock is started when the run is opened again."
+        QuitStopped "quit-stopped" "quit" "Save and quit; the clock starts when you open the run again."
     }
 }
 
 impl Action {
-    /// Its row of the table.
+    /// Returns its row of the table.
     pub fn entry(self) -> &'static ActionEntry {
         ACTIONS.iter().find(|entry| entry.action == self).expect("the table holds every action")
     }
 
-    /// The action of a name in a scope.
+    /// Returns the action with a name in a scope.
     pub fn named(scope: Scope, name: &str) -> Option<Action> {
         ACTIONS.iter().find(|entry| entry.scope == scope && entry.name == name).map(|entry| entry.action)
     }

@@ -1,4 +1,4 @@
-//! A text that somebody agrees to, or not: it has to be on the screen to its end first.
+//! A consent text. The user can agree only after its end was on the screen.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -14,26 +14,25 @@ use novamind_tui::canvas::{Canvas, rows_of};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Scroll;
 
-/// Widest lines that read well.
+/// Maximum line width that is easy to read.
 const WIDEST: u16 = 100;
 
-/// Said where somebody agrees before the end was on the screen.
-pub const READ_FIRST: &str = "the text goes on: scroll to its end first";
+/// Shown if the user agrees before the end of the text was on the screen.
+pub const READ_FIRST: &str = "scroll to the end of the text first";
 
-/// A text to agree to, and how far it was read.
+/// A consent text, and whether its end was reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     text: String,
     scroll: Scroll,
     shown: Duration,
-    /// Rows of text in the last frame.
     room: Cell<usize>,
-    /// The last line was on the screen.
+    /// Whether the last line was on the screen.
     read: Cell<bool>,
 }
 
 impl Agreement {
-    /// A text that is shown from now on.
+    /// Returns an unread consent text.
     pub fn new(text: impl Into<String>) -> Agreement {
         Agreement {
             text: text.into(),
@@ -44,19 +43,19 @@ impl Agreement {
         }
     }
 
-    /// How the person agrees; none while the end of the text was not on the screen.
+    /// Returns how the user agrees, or `None` if the end of the text was not on the screen yet.
     pub fn given(&self) -> Option<ConsentGiven> {
         let read_ms = steady().saturating_sub(self.shown).as_millis() as u64;
         let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
         self.read.get().then_some(given)
     }
 
-    /// Moves through the text; true if the action does that.
+    /// Scrolls the text. Returns whether the action was a scroll action.
     pub fn scroll(&mut self, action: Action) -> bool {
         self.scroll.act(action, self.room.get().max(1))
     }
 
-    /// Draws the text, and below it what can be done: `agree` and `decline` in words with their keys.
+    /// Draws the text and the choices below it. `agree` and `decline` are their labels with keys.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, title: &str, agree: &str, decline: &str) {
         canvas.clear(area, Role::Text);
         let width = area.width.saturating_sub(4).clamp(1, WIDEST);
@@ -92,7 +91,7 @@ impl Agreement {
         let below = Rect { y: inside.bottom().saturating_sub(1), height: inside.height.min(1), ..inside };
         match self.read.get() {
             true => canvas.text(below, &format!("{agree}   {decline}"), Role::Strong),
-            false => canvas.text(below, &format!("scroll to its end to agree   {decline}"), Role::Warning),
+            false => canvas.text(below, &format!("scroll to the end to agree   {decline}"), Role::Warning),
         }
         if last > 0 {
             canvas.pane_keys(area, "up/down/page down scroll");
@@ -114,7 +113,7 @@ mod tests {
     fn nobody_agrees_before_the_end_was_on_the_screen() {
         let text = (1..=30).map(|line| format!("- line {line}.")).collect::<Vec<_>>().join("\n");
         let mut long = Agreement::new(text);
-        assert!(drawn(&long, 16).contains("scroll to its end"));
+        assert!(drawn(&long, 16).contains("scroll to the end"));
         assert_eq!(long.given(), None);
         for _ in 0..2 {
             long.scroll(Action::PageDown);
@@ -124,7 +123,7 @@ mod tests {
         assert!(drawn(&long, 16).contains("line 30.") && drawn(&long, 16).contains("y agree"));
         long.scroll(Action::First);
         assert!(drawn(&long, 16).contains("line 1."));
-        assert!(long.given().is_some(), "what was read stays read");
+        assert!(long.given().is_some(), "scrolling back does not revoke it");
     }
 
     #[test]

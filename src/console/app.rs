@@ -1,6 +1,6 @@
-//! State of the console: a message becomes an action, an action changes state, orders go to the threads behind.
+//! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! Nothing here waits, reads a file or draws. What takes time is an [`Order`]; its result comes back as news.
+//! Nothing here blocks, reads a file or draws. Slow work is an [`Order`]; its result returns as a message.
 
 mod busy;
 mod guide;
@@ -65,114 +65,110 @@ use leaving::Closing;
 pub use settings::Settings;
 pub use stopped::Cover;
 
-/// Screens that back remembers.
 const SCREENS_KEPT: usize = 50;
 
-/// Something for the outside of the console.
+/// Work outside the console state.
 pub enum Order {
-    /// Work for the session's thread.
+    /// Work for the session thread.
     Job(Job),
-    /// A question of a page, and whether days are being simulated: a query does not wait for them.
+    /// A question of a page, and whether days are being simulated: queries do not wait for the simulation.
     Ask(Ask, bool),
-    /// Stop the user's query and what runs for the user.
+    /// Stop the user's query and other running work of the user.
     CancelQuery,
-    /// Put text into the clipboard of the terminal.
+    /// Copy text to the clipboard of the terminal.
     Copy(String),
     /// Write files.
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a query: its name, its title, the statement.
     SaveQuery(Configuration, [String; 3]),
-    /// Draw everything again.
+    /// Redraw the whole window.
     Redraw,
-    /// Use the mouse, or leave it to the terminal.
+    /// Capture the mouse, or leave it to the terminal.
     Mouse(bool),
-    /// Leave, with an exit code and what to print on the way.
+    /// Exit, with an exit code and a text to print.
     Exit(u8, Option<String>),
 }
 
-/// What the person is told in the last line.
+/// A status message in the footer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
-    /// Words.
+    /// The text.
     pub text: String,
-    /// Something was refused or went wrong.
+    /// Whether it reports an error or a rejection.
     pub bad: bool,
 }
 
-/// Days that are simulated one after the other.
+/// Progress of a simulation of several days.
 #[derive(Debug, Clone, Copy)]
 pub struct DaysRun {
-    /// Day before the first one.
+    /// The day before the first simulated day.
     pub from: u32,
     /// Last day.
     pub to: u32,
-    /// Day that was simulated last.
+    /// The day that was simulated last.
     pub now: u32,
-    /// What it came to, where that is news.
+    /// Figures of that day, if it was simulated for the first time.
     pub told: Option<DayTold>,
 }
 
 impl DaysRun {
-    /// None is simulated yet.
+    /// Returns the progress before the first day.
     pub fn between(from: u32, to: u32) -> DaysRun {
         DaysRun { from, to, now: from, told: None }
     }
 }
 
-/// Where the person is.
+/// The part of the program that the user is in.
 pub enum Stage {
-    /// In the start menu.
+    /// The start menu.
     Menu(Box<Menu>),
-    /// In a run.
+    /// A run.
     Run(Box<Run>),
-    /// On a page of a study.
+    /// A page of a study.
     Visit(Box<VisitPage>),
 }
 
-/// A run on the screen.
+/// A run that is open in the console.
 pub struct Run {
-    /// What there is to see.
+    /// The company as displayed.
     pub company: Arc<Company>,
-    /// The screen that is shown.
+    /// The current screen.
     pub here: ScreenId,
-    /// Screens shown before, the last one last.
+    /// Screens shown before, the latest last.
     pub before: Vec<ScreenId>,
-    /// Places from which what is shown was opened, the last one last.
+    /// Places from which the current one was opened, the latest last.
     trail: Vec<trail::Stop>,
-    /// Screens that were left with back, the last one last.
+    /// Screens that were left with `back`, the latest last.
     pub after: Vec<ScreenId>,
-    /// The focused pane has the whole screen.
+    /// Whether the focused pane fills the screen.
     pub zoomed: bool,
-    /// Since when it is shown, or the week is this one.
     shown: Option<Duration>,
-    /// The screen that was left for it.
     came_from: Option<ScreenId>,
-    /// The object that was open last: its screen, what it is, and which.
+    /// The open object: its screen, kind and name.
     selected: Option<(ScreenId, &'static str, String)>,
-    /// Every screen.
+    /// All screens.
     pub screens: Screens,
-    /// The dialog before a week.
+    /// The next-week dialog.
     pub filing: FilingDialog,
-    /// The story of the run, once it is over and was told.
+    /// The run report, after the run has ended and the report was built.
     pub story: Option<Arc<Story>>,
-    /// What was asked of the database since the run has changed last.
+    /// Readings requested since the run last changed.
     pub asked: BTreeMap<Reading, Pending<Reading>>,
-    /// The first steps, while they are shown.
+    /// The tour, while it is shown.
     pub tour: Option<Tour>,
-    /// The run is a recorded one that is played again.
+    /// Playback state, if the run is a recorded one.
     pub viewer: Option<Viewer>,
-    /// What the person has of the lesson it belongs to.
+    /// State of the lesson that the run belongs to.
     pub lesson: lesson::LessonView,
-    /// Whether true values stand on the screens.
     overlay: overlay::Overlay,
-    /// Time that is left to each limit of the rules.
+    /// Time left until each time limit.
     pub time_left: Vec<TimeLeft>,
-    /// Why the database is behind, while it is.
+    /// Why the database is behind, if it is.
     pub behind: Option<String>,
 }
 
 impl Run {
-    /// Changes the screen; what was to be seen on both counts as seen.
+    /// Both screens count as viewed.
     fn go_to(&mut self, screen: ScreenId) {
         self.screens.get_mut(self.here).looked_at();
         self.here = screen;
@@ -183,61 +179,51 @@ impl Run {
 
 /// The console.
 pub struct App {
-    /// Colours.
+    /// Colors.
     pub theme: Theme,
     /// Keys.
     pub keys: Keys,
-    /// What is drawn with.
+    /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
-    /// Whether the program has the mouse.
+    /// Whether the console captures the mouse.
     pub mouse: bool,
     themes: Vec<Theme>,
     configuration: Configuration,
-    /// Named queries.
     library: Library,
-    /// The command that goes on with the newest run.
     again: String,
-    /// Where the person is.
+    /// The part of the program that the user is in.
     pub stage: Stage,
     /// Dialogs, the topmost last.
     pub layers: Layers,
-    /// What lies over everything while the clock is stopped.
+    /// The screen shown while the clock is stopped.
     pub cover: Option<Cover>,
-    /// Time as the person has it.
+    /// Measures active time.
     pub stopwatch: Stopwatch,
     presence: PresenceWatch,
     typing: Typing,
-    /// Where the last change of a text came from.
     edit: Edit,
-    /// The term that is explained.
     term: Option<String>,
-    /// Says whether a word is the experimenter's code; none where there is no experimenter.
+    /// Checks the experimenter's code; `None` outside a study with a code.
     pub code_check: Option<CodeCheck>,
-    /// Texts as they were kept last, and when they are kept again.
     unsent: unsent::TextsKept,
-    /// The last line.
+    /// The status message.
     pub note: Option<Note>,
-    /// What the person waits for.
+    /// Work that the user waits for.
     pub busy: Option<Busy>,
-    /// Keys that were pressed and begin something.
+    /// Chords of an unfinished key sequence.
     pub pending: Vec<Chord>,
-    /// What plays the opponents of a run.
     opponents: PlayOpponents,
-    /// What is to follow when the run is closed.
     closing: Option<Closing>,
-    /// The screen on which the run that is being opened begins, where that is not the usual one.
+    /// The initial screen of the run that is being opened, if not the default.
     opens_on: Option<ScreenId>,
-    /// The run that is watched is drawn to be read from far away.
+    /// Whether the run is drawn for a projector.
     pub is_projected: bool,
-    /// The run that is being started shows the tour.
     tour_planned: bool,
-    /// The study whose participants are led.
     visit: Option<VisitState>,
-    /// What was told of time limits.
     limit: limits::LimitTold,
-    /// What could be clicked in the last frame.
+    /// Clickable areas of the last frame.
     pub clicks: Vec<(Rect, Click)>,
-    /// Rows that the focused list showed in the last frame.
+    /// Rows of the focused list in the last frame.
     pub page: u16,
     /// Columns and rows of the window in the last frame.
     pub window: (u16, u16),
@@ -245,7 +231,7 @@ pub struct App {
 }
 
 impl App {
-    /// The console in its start menu.
+    /// Returns a console in its start menu.
     pub fn new(settings: Settings) -> App {
         let menu = Box::new(Menu::new(&settings.configuration));
         let library = Library::of(&settings.configuration);
@@ -285,12 +271,12 @@ impl App {
         }
     }
 
-    /// Opens or creates a run instead of showing the menu.
+    /// Opens or creates a run in place of the start menu.
     pub fn start_with(&mut self, effect: Effect) {
         self.follow(vec![effect]);
     }
 
-    /// Takes a message; what has to be done outside is collected for [`App::take_orders`].
+    /// Handles a message. Outside work is collected for [`App::take_orders`].
     pub fn update(&mut self, message: Message) {
         match message {
             Message::Input(event) => self.take_input(event),
@@ -313,12 +299,12 @@ impl App {
         self.settle_record();
     }
 
-    /// What has to be done outside since the last time.
+    /// Returns the orders since the last call.
     pub fn take_orders(&mut self) -> Vec<Order> {
         std::mem::take(&mut self.orders)
     }
 
-    /// The work for the session's thread of it; other orders stay.
+    /// Returns the orders for the session thread; other orders stay.
     pub fn take_jobs(&mut self) -> Vec<Job> {
         let (jobs, others) = self.take_orders().into_iter().partition(|order| matches!(order, Order::Job(_)));
         self.orders = others;
@@ -326,7 +312,7 @@ impl App {
         Vec::into_iter(jobs).filter_map(job).collect()
     }
 
-    /// The run on the screen.
+    /// Returns the open run.
     pub fn run(&self) -> Option<&Run> {
         match &self.stage {
             Stage::Run(run) => Some(run),
@@ -334,12 +320,12 @@ impl App {
         }
     }
 
-    /// Whether the person waits: for a query, a script, a week. What is waited for shows how long it has taken.
+    /// Returns whether the user waits for a query, a script or a week, whose elapsed time is displayed.
     pub fn is_waiting(&self) -> bool {
         self.busy.is_some() || self.run().is_some_and(|run| run.screens.sql.is_running())
     }
 
-    /// Scopes of the place that has the focus, the innermost first.
+    /// Returns the scopes of the focused place, the innermost first.
     pub fn scopes(&self) -> Vec<Scope> {
         let mut scopes = match (self.layers.last(), &self.stage) {
             (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),
@@ -352,7 +338,7 @@ impl App {
         scopes
     }
 
-    /// Actions worth showing in the last line.
+    /// Returns the actions to show in the footer.
     pub fn hints(&self) -> Vec<Action> {
         match (self.layers.last(), &self.stage) {
             (Some(Layer::Dialog(dialog)), Stage::Run(run)) => {
@@ -374,7 +360,6 @@ impl App {
         self.note = Some(Note { text: text.into(), bad: true });
     }
 
-    /// Shows a screen.
     fn show(&mut self, screen: ScreenId) {
         if self.is_kept_shut(screen) {
             return;
@@ -425,7 +410,7 @@ impl App {
         }
     }
 
-    /// Asks the database for what the screen shows and is not known yet, or no longer true.
+    /// Requests the data of the current screen that is missing or outdated.
     fn load(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         for reading in run.screens.get(run.here).readings() {
@@ -439,7 +424,6 @@ impl App {
         self.ask_hidden_values();
     }
 
-    /// The screen that is shown, and what it may look at.
     fn with_screen<T>(&mut self, work: impl FnOnce(&mut dyn Screen, &Look<'_>) -> T) -> Option<T> {
         let Stage::Run(run) = &mut self.stage else { return None };
         let company = run.company.clone();

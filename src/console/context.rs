@@ -1,17 +1,17 @@
-//! What screens, dialogs and effects share: which screen, what a view reads, and figures that can be explained.
+//! Types that screens, dialogs and effects share: screen identifiers, the context of a view, and explainable figures.
 
 use super::action::{Action, Scope};
 use super::keys::Keys;
 use novamind_insight::WeekQuantity;
 use novamind_worker::company::Company;
 
-/// Text of charts and tables before the first week.
+/// Placeholder of charts and tables before the first week.
 pub const NO_DATA: &str = "no data yet: run a week (n)";
 
 /// The list of screens, in the order of their keys.
 macro_rules! screen_ids {
     ($($(#[$doc:meta])* $Screen:ident,)*) => {
-        /// Which screen.
+        /// A screen.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum ScreenId { $($(#[$doc])* $Screen,)* }
 
@@ -19,7 +19,7 @@ macro_rules! screen_ids {
             /// All screens in the order of their keys.
             pub const ALL: [ScreenId; [$(ScreenId::$Screen),*].len()] = [$(ScreenId::$Screen),*];
 
-            /// The action that shows it.
+            /// Returns the action that shows the screen.
             pub fn action(self) -> Action {
                 match self { $(ScreenId::$Screen => Action::$Screen,)* }
             }
@@ -28,17 +28,17 @@ macro_rules! screen_ids {
 }
 
 screen_ids! {
-    /// The company at a glance.
+    /// Key figures of the company.
     Overview,
-    /// Where money comes from and goes to.
+    /// Income and costs.
     Cash,
     /// The customer groups.
     Customers,
     /// Quality, capacity, issues, R&D.
     Product,
-    /// What people write, and our posts.
+    /// The social feed and the company's posts.
     Social,
-    /// Negotiations with companies.
+    /// Negotiations with enterprises.
     Inbox,
     /// Groups, studies, the economy.
     Market,
@@ -46,37 +46,37 @@ screen_ids! {
     Tools,
     /// The database.
     Sql,
-    /// What was done.
+    /// Past actions and forecast scores.
     Journal,
-    /// Hidden state, where it may be shown.
+    /// Hidden state, if permitted.
     Xray,
 }
 
 impl ScreenId {
-    /// Name for the trajectory.
+    /// Returns the name in the trajectory.
     pub fn id(self) -> &'static str {
         self.action().entry().name
     }
 
-    /// Whether it stands among the screens of a run: the X-ray only where hidden state may be shown.
+    /// Returns whether the screen is available: the x-ray requires permission to view hidden state.
     pub fn is_shown_in(self, company: &Company) -> bool {
         self != ScreenId::Xray || company.may_look_inside
     }
 }
 
-/// What a screen may look at.
+/// Context that a screen reads.
 #[derive(Clone, Copy)]
 pub struct Look<'a> {
     /// The company.
     pub company: &'a Company,
-    /// Keys, for hints.
+    /// Keys, for labels.
     pub keys: &'a Keys,
     /// Rows that the focused list showed last, for paging.
     pub page: u16,
 }
 
 impl Look<'_> {
-    /// A key with what it does, for borders: `ctrl-s apply`.
+    /// Returns an action with its key, for borders: `ctrl-s apply`.
     pub fn hint(&self, action: Action) -> String {
         match self.keys.label(action) {
             Some(key) => format!("{key} {}", action.entry().title),
@@ -84,39 +84,39 @@ impl Look<'_> {
         }
     }
 
-    /// Several of them.
+    /// Returns several actions with their keys.
     pub fn hints(&self, actions: &[Action]) -> String {
         actions.iter().map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
     }
 }
 
-/// A figure on a screen that can be explained, and followed to the rows that make it up.
+/// A figure that can be explained and traced to its source rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
-    /// What it is here: `cancellations of S1`.
+    /// Its title: `cancellations of S1`.
     pub title: String,
-    /// What explains it: an entry of the glossary (`churn`), a tool or its argument (`set_prices`, `set_prices.A`), or a
-    /// column of a table (`ledger.amount`).
+    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
+    /// column (`ledger.amount`).
     pub term: &'static str,
-    /// The question whose answer are the rows behind it, where rows make it up.
+    /// Query for the source rows, if it has any.
     pub sql: Option<String>,
-    /// The figure of a week that it is, whose change can be explained.
+    /// The weekly quantity that it shows and its week, if its change can be explained.
     pub why: Option<(WeekQuantity, u32)>,
 }
 
 impl Figure {
-    /// The same as a figure of a week whose change can be explained, if it is one.
+    /// Returns the figure with a weekly quantity, if it has one.
     pub fn of_week(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
         Figure { why: quantity.map(|quantity| (quantity, week)), ..self }
     }
 }
 
-/// The keys of one pane, for the help.
+/// Keys of a pane, for the help.
 pub struct PaneKeys {
-    /// What the pane is called.
+    /// Title of the pane.
     pub title: String,
-    /// Its scopes, the innermost first, without the global one.
+    /// Scopes of the pane, the innermost first, without the global scope.
     pub scopes: Vec<Scope>,
-    /// What one does in it most.
+    /// Most common actions of the pane.
     pub hints: Vec<Action>,
 }

@@ -1,4 +1,4 @@
-//! What an update asks for: work for the threads behind the screen, and changes of what is shown.
+//! Effects: work for the worker threads and changes of the display that an update requests.
 
 use serde_json::Value;
 
@@ -14,7 +14,7 @@ use novamind_worker::readings::Reading;
 use novamind_worker::request::{Recorded, Request};
 
 impl Effect {
-    /// Whether it would change the run.
+    /// Returns whether it would change the run.
     pub fn changes_run(&self) -> bool {
         match self {
             Effect::Request(request) => request.changes_run(),
@@ -26,81 +26,81 @@ impl Effect {
         }
     }
 
-    /// A call of a tool.
+    /// Returns the effect of a tool call.
     pub fn call(tool: ToolId, arguments: Value) -> Effect {
         Effect::Request(Request::Call { tool, arguments })
     }
 }
 
-/// Something an update asks for.
+/// An effect that an update requests.
 #[derive(Debug, Clone)]
 pub enum Effect {
-    /// Work for the thread that owns the session.
+    /// Send a request to the session thread.
     Request(Request),
-    /// Play a recorded run again from a moment on, and show its hidden state.
+    /// Replay a recorded run from a position, with its hidden state.
     ReplayInside(Recorded, Goal),
-    /// Follow a run that somebody else plays, drawn to be read from far away.
+    /// Follow a run that another program plays, drawn for a projector.
     Project(Recorded),
-    /// Go somewhere in the replay.
+    /// Seek in the playback.
     Go(Goal),
-    /// Ask the worker; the page that asks keeps what waits for the answer.
+    /// Send a question to the worker; the page that asks keeps the pending answer.
     Ask(Ask),
-    /// A text of the screen was sent: its place, as the record names it.
+    /// A draft of the screen was sent; its place in the record.
     SentText(&'static str),
-    /// Find out why a figure of a week changed.
+    /// Show the causes of the change of a weekly figure.
     AskWhy(Figure),
-    /// Show the rows behind a figure.
+    /// Show the source rows of a figure.
     ShowRows(Figure),
-    /// Close whatever lies over the screen.
+    /// Close all dialogs.
     CloseDialogs,
-    /// Show the curve of a group, of the first known one if none is named.
+    /// Show the participation curve of a group, by default of the first known one.
     ShowCurve(Option<Group>),
-    /// Show the page of the opponents.
+    /// Show the opponents page.
     ShowOpponents,
-    /// Leave what is open, after a question where text would be lost, and open another run of the folder by its id.
+    /// Open another run of the folder by its id, after a confirmation if there are drafts.
     OpenRun(String),
-    /// Ask once before words that set a parameter of the run.
+    /// Ask for confirmation of a command that sets a parameter of the run.
     ConfirmWords(String),
-    /// Send these words, which set a parameter of the run, from the X-ray screen.
+    /// Send a confirmed command that sets a parameter, from the X-ray screen.
     SendWords(String),
-    /// Stop what the person asked.
+    /// Stop the user's query.
     CancelQuery,
-    /// Ask the database for a screen.
+    /// Request a reading for a screen.
     Read(Reading),
-    /// Put text into the clipboard.
+    /// Copy text to the clipboard.
     Copy(String),
-    /// Show a text to read: its title and the text.
+    /// Show a text with a title.
     ShowText(String, String),
-    /// Write a file into the folder of the run; its name and contents. A name that is taken gets the next number.
+    /// Write a file into the run folder: name and contents. If the name exists, the next free number is used.
     Write(String, Vec<u8>),
-    /// Say something in the last line.
+    /// Show a status message.
     Say(String),
-    /// Say that something was refused.
+    /// Show an error message.
     Complain(String),
-    /// What follows begins a path of its own instead of going on with the one that led here.
+    /// Clear the breadcrumbs before the effects that follow.
     BeginPath,
     /// Show a screen.
     Show(ScreenId),
     /// Show the form of a tool.
     ShowTool(ToolId),
-    /// Show the form of a tool at the first cell that is for a group, a plan or the like.
+    /// Show the form of a tool at the first cell for a group, a plan or similar.
     ShowCell(ToolId, String),
-    /// Show the form of a tool with these arguments typed into it; none are with `Null`.
+    /// Show the form of a tool with arguments filled in; `Null` fills in none.
     Prefill {
         /// Tool.
         tool: ToolId,
         /// Arguments.
         arguments: Value,
     },
-    /// Show a thread in the inbox, by its number.
+    /// Show a thread in the inbox by number.
     ShowThread(u32),
-    /// Show a group on a screen that opens groups.
+    /// Show a group on a screen.
     ShowGroup(ScreenId, Group),
-    /// Put a statement into the SQL editor.
+    /// Copy a statement to the SQL editor.
     EditSql(String),
-    /// Put a statement into the SQL editor and run it.
+    /// Copy a statement to the SQL editor and run it.
     RunSql(String),
-    /// Save a statement into the person's own queries.
+    /// Save a statement as a named query.
     SaveQuery {
         /// Name of its file.
         name: String,
@@ -109,38 +109,38 @@ pub enum Effect {
         /// Statement.
         sql: String,
     },
-    /// Ask once before a call that cannot be taken back.
+    /// Ask for confirmation of an irreversible call.
     ConfirmCall {
         /// Tool.
         tool: ToolId,
         /// Arguments.
         arguments: Value,
-        /// What it means.
+        /// Description of the consequences.
         text: String,
     },
-    /// Ask once before calls that cannot be taken back.
+    /// Ask for confirmation of irreversible calls.
     ConfirmCalls {
-        /// Tools and arguments, in their order.
+        /// Tools and arguments, in order.
         calls: Vec<(ToolId, Value)>,
-        /// What they mean.
+        /// Description of the consequences.
         text: String,
     },
-    /// Ask once before a step of the lesson, counted from 0, is tried again.
+    /// Ask for confirmation before a step of the lesson, counted from 0, is retried.
     TryStepAgain(usize),
-    /// Open what came of the lesson.
+    /// Open the debrief.
     ShowDebrief,
-    /// Explain something over what is open.
+    /// Explain a subject.
     Explain(Subject),
-    /// Start a run for practice with the tour in it.
+    /// Open the practice run with the tour.
     StartTour,
-    /// Lead participants through a study; nothing else can be reached.
+    /// Start receiving participants of a study.
     Receive(Box<Study>),
-    /// Put texts of an earlier sitting back, or drop them.
+    /// Restore the offered drafts (`true`) or discard them.
     SettleOffer(bool),
-    /// Stop the clock, with the reason where it was asked.
+    /// Stop the clock, with a reason if one was asked.
     StopClock(Option<String>),
-    /// Save and leave, whatever is half typed.
+    /// Save and quit, discarding input in progress.
     LeaveNow,
-    /// Do what a key would do.
+    /// Execute an action.
     Do(Action),
 }

@@ -1,4 +1,4 @@
-//! Cash so far, and the fan of forecasts from the day they were filed.
+//! Chart of past cash and the forecasts of a day.
 
 use ratatui::layout::Rect;
 
@@ -9,13 +9,13 @@ use novamind_tui::widgets::Unit;
 use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, zero_if_near};
 use novamind_worker::company::Company;
 
-/// Forecasts that look as far ahead as half of what lies behind: farther ones would leave the past no room.
+/// Returns the forecasts with a horizon of at most half of the past, so that the chart keeps space for the past.
 pub fn near(company: &Company, forecasts: &[Forecast]) -> Vec<Forecast> {
     let reach = (company.seen.day / 2).max(7);
     forecasts.iter().copied().filter(|forecast| forecast.horizon_days <= reach).collect()
 }
 
-/// Draws cash and the fan of forecasts filed on a day.
+/// Draws cash and the forecasts made on a day.
 pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u32, forecasts: &[Forecast]) {
     let start = company.cash_by_day.get(filed as usize).copied().unwrap_or(company.seen.cash);
     let day = |forecast: &Forecast| f64::from(filed + forecast.horizon_days);
@@ -24,7 +24,7 @@ pub fn draw_fan(canvas: &mut Canvas<'_>, area: Rect, company: &Company, filed: u
     let ends = forecasts.iter().map(|forecast| (day(forecast), forecast.lower, forecast.upper));
     let band = Band { ends: std::iter::once((first.0, start, start)).chain(ends).collect(), name: "95 %" };
     let reach = forecasts.last().map_or(0, |forecast| forecast.horizon_days) as usize;
-    // A long past would leave the future no room.
+    // Limits the past so that the future keeps space.
     let from = (filed as usize).saturating_sub(3 * reach.max(28));
     let cash = company.cash_by_day.iter().enumerate().skip(from);
     let cash: Vec<(f64, f64)> = cash.map(|(day, cash)| (day as f64, *cash)).collect();

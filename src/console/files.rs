@@ -1,4 +1,4 @@
-//! Files that the console writes: never over one that is there.
+//! Files that the console writes. Existing files are never overwritten.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -12,7 +12,7 @@ use novamind_tools::Refusal;
 use novamind_worker::answer_on_thread;
 use novamind_worker::message::{Message, News};
 
-/// Writes files on a thread of its own and reports where they are.
+/// Writes files in the background and reports their paths.
 pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
     let write = |(path, contents): (PathBuf, Vec<u8>)| {
         let refused = |error| Refusal::new("io_error", format!("{}: {error}", path.display()));
@@ -24,7 +24,7 @@ pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
     });
 }
 
-/// Saves a person's own query on a thread of its own and reports what the library holds then.
+/// Saves a query of the user in the background and reports the new library.
 pub fn save_query_behind(
     configuration: Configuration,
     [name, title, sql]: [String; 3],
@@ -37,7 +37,7 @@ pub fn save_query_behind(
     answer_on_thread(news, work, |saved| News::QuerySaved(saved.map_err(|refusal| refusal.message)));
 }
 
-/// Where files are: the whole path of the first, then the names of those beside it.
+/// Formats the full path of the first file and the names of the others.
 fn in_words(paths: &[PathBuf]) -> String {
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut words: Vec<String> = paths.iter().map(name).collect();
@@ -47,7 +47,7 @@ fn in_words(paths: &[PathBuf]) -> String {
     format!("written: {}", words.join(", "))
 }
 
-/// Writes a new file; if the name is taken, its number is raised until it is free.
+/// Writes a new file. If the name exists, its number is increased until it is free.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -62,7 +62,7 @@ fn write_beside(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
     }
 }
 
-/// `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
+/// Returns the next name: `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
 fn next_name(path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
     let numbered = stem.rsplit_once('-').and_then(|(name, number)| Some((name, number.parse::<u32>().ok()?)));

@@ -1,4 +1,4 @@
-//! The frame around the screens: what counts on top, the screens below it, keys and the last message at the end.
+//! The frame: header, screen and footer.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -20,14 +20,14 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
 use novamind_worker::company::Company;
 
-/// Smallest window that is drawn.
+/// Minimum window size: columns, rows.
 pub const LEAST: (u16, u16) = (60, 16);
 
-/// What a drawn frame leaves behind.
+/// Data of a drawn frame.
 pub struct Drawn {
-    /// What can be clicked.
+    /// Clickable areas.
     pub clicks: Vec<(Rect, Click)>,
-    /// Where the cursor stands.
+    /// Position of the cursor.
     pub cursor: Option<Position>,
     /// Rows that the focused list showed.
     pub page: u16,
@@ -35,7 +35,7 @@ pub struct Drawn {
     pub window: (u16, u16),
 }
 
-/// Draws everything.
+/// Draws a frame.
 pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
@@ -77,7 +77,7 @@ fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
     }
 }
 
-/// What may follow the keys that were pressed, at the lower right corner.
+/// Lists the chords that can complete a key sequence, in the lower right corner.
 fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
     let following = app.keys.continuations(&app.scopes(), &app.pending);
     let keys = following.iter().map(|(keys, _)| keys.width()).max().unwrap_or(0) as u16;
@@ -131,7 +131,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         super::lesson::draw_beside(canvas, Rect { x: screen.right(), width: beside, ..body }, page, &look);
     }
     if let Some(viewer) = &run.viewer {
-        // A list beside the screen is not what paging goes by.
+        // A list in the side pane does not determine the page size.
         let page = canvas.page;
         if beside > 0 {
             let own = Rect { x: screen.right(), width: beside, ..body };
@@ -148,7 +148,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
 
 fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: &Look<'_>) {
     for layer in app.layers.iter() {
-        // What lies below a dialog can be seen but not clicked.
+        // The screen below a dialog is visible but not clickable.
         canvas.clicks.clear();
         canvas.cursor = None;
         match layer {
@@ -158,21 +158,20 @@ fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: 
     }
 }
 
-/// Whether the screen shows what the database told before it fell behind.
+/// Returns whether the screen shows data from before the database fell behind.
 fn is_stale(run: &Run) -> bool {
     run.behind.is_some() && (run.here == ScreenId::Sql || !run.screens.get(run.here).readings().is_empty())
 }
 
-/// The line that stays as long as the database is behind.
 fn draw_behind(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
     let here = if is_stale(run) { "Panes marked stale show older figures; it" } else { "It" };
     let problem = run.behind.as_deref().unwrap_or_default();
-    let text = format!(" ! The database is behind: {problem}. {here} is tried again every few seconds.");
+    let text = format!(" ! The database is behind: {problem}. {here} is retried every few seconds.");
     canvas.clear(row, Role::Bad);
     canvas.text(row, &text, Role::Bad);
 }
 
-/// What is said of a time limit, above the screen and everything that lies over it; the rows it takes.
+/// Draws the time limit notice above everything else. Returns the rows that it takes.
 fn draw_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     let Some(text) = app.limit_notice() else { return 0 };
     let lines = wrapped(&text, usize::from(area.width.saturating_sub(4)));
@@ -189,7 +188,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let seen = &company.seen;
     let change = seen.cash_change;
     let runway = match seen.weeks_of_cash() {
-        // No sign of ASCII stands for it: one that looks like it is a number.
+        // ASCII has no unambiguous symbol for it.
         None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
         None => "∞".to_owned(),
         Some(weeks) => format!("{weeks} wk"),
@@ -220,15 +219,15 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         Some(Ended::Horizon) => "FINISHED".to_owned(),
         Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
         Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
-        Some(Ended::Lesson) => "LESSON OVER".to_owned(),
+        Some(Ended::Lesson) => "LESSON ENDED".to_owned(),
     };
     let state = format!("{}{state} ", time_left(app));
     let width = (state.width() as u16).min(row.width);
     let mut left = Rect { width: row.width - width, ..row };
-    // Where the result is not shown, the head ends with the day.
+    // If the result is hidden, the header ends with the day.
     let shown = if hides_result { 3 } else { pieces.len() };
     for (piece, role) in pieces.into_iter().take(shown) {
-        // Half a figure would be a wrong one.
+        // A truncated figure would be wrong.
         let taken = piece.width() as u16;
         if taken + 1 > left.width {
             break;
@@ -239,7 +238,7 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     canvas.aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
-/// The least time that is left to a limit, where the rules have one.
+/// Returns the least time left to any limit.
 fn time_left(app: &App) -> String {
     let running = app.run().filter(|run| run.company.is_running());
     let left = running.map_or(&[][..], |run| run.time_left.as_slice());
@@ -247,12 +246,12 @@ fn time_left(app: &App) -> String {
     minutes.map_or(String::new(), |minutes| format!("{} min left · ", minutes.max(0)))
 }
 
-/// Writes a tab: key, title and badge of a screen, and whether it is the one that is shown.
+/// Formats a tab from key, title and badge of a screen, and whether it is the current one.
 type Way = fn(&str, &str, &str, bool) -> String;
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
-    // The first way in which every screen has its tab; the last one if none has. Only the screen that is shown keeps
-    // its name in the narrowest windows.
+    // The first format in which every tab fits, or else the last one. In the narrowest windows only the current
+    // screen has its name.
     let ways: [Way; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),
@@ -267,7 +266,7 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     ];
     let is_shown = |screen: &ScreenId| screen.is_shown_in(&run.company);
     let all: Vec<ScreenId> = ScreenId::ALL.into_iter().filter(is_shown).collect();
-    // The X-ray gives way before the names of the others do.
+    // The x-ray tab is shortened before the others.
     let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.here == ScreenId::Xray;
     let fewer: Vec<ScreenId> = all.iter().copied().filter(others).collect();
     let texts = |screens: &[ScreenId], way: &Way| {
@@ -303,7 +302,6 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// Short names of screens for windows in which the long ones do not fit beside each other.
 fn short(title: &str) -> &str {
     match title {
         "Overview" => "Over",
@@ -314,13 +312,12 @@ fn short(title: &str) -> &str {
     }
 }
 
-/// What waits on a screen.
 fn badge(run: &Run, screen: ScreenId) -> String {
     let count = match screen {
         ScreenId::Product => run.company.seen.running_research as usize,
         ScreenId::Inbox => run.company.seen.waiting.len(),
         ScreenId::Tools => run.company.seen.changes.len(),
-        // What arrives while one looks at it is not new.
+        // Items that arrive on the current screen are not new.
         _ if screen == run.here => 0,
         _ => run.screens.get(screen).unseen(),
     };
@@ -329,7 +326,7 @@ fn badge(run: &Run, screen: ScreenId) -> String {
 
 fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.note) {
-        // What was refused because a script runs.
+        // An action was rejected because a script runs.
         (Some(busy), Some(note)) if busy.is_script() && note.bad => {
             Some((format!("! {}", note.text), Role::Bad))
         }
@@ -341,13 +338,13 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
     };
-    // Two blanks before a message and one after it.
+    // Two spaces before a message, one after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
     let mut actions = actions_shown(app).into_iter().peekable();
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
-        // An arrow says by its name what it does; both together choose.
+        // An arrow key is labeled with its action; both arrows together are labeled as choosing.
         let mut title = Some(title_of(app, action)).filter(|title| *title != key).unwrap_or_default();
         if action == Action::Left && actions.next_if_eq(&Action::Right).is_some() {
             key = format!("{key} {}", app.keys.label(Action::Right).unwrap_or_default());
@@ -369,12 +366,12 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// What an action is called where it can be done: at the end of a run the key of the next week shows the final page,
-/// at that of a lesson the page that leads on, or the debrief.
+/// Returns the title of an action in the current state. After the end of a run, the next-week key opens the final
+/// page; after a lesson, the next part or the debrief.
 fn title_of(app: &App, action: Action) -> &'static str {
     match app.run() {
         Some(run) if action == Action::NextWeek && !run.company.is_running() => match &run.company.lesson {
-            Some(page) if page.next_part.is_some() => "lead on",
+            Some(page) if page.next_part.is_some() => "next part",
             Some(_) => "debrief",
             None => "final page",
         },
@@ -382,7 +379,7 @@ fn title_of(app: &App, action: Action) -> &'static str {
     }
 }
 
-/// Keys in the last line: those of the place first, then those that always help.
+/// Returns the actions for the footer: those of the focused place, then general ones.
 fn actions_shown(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
@@ -412,7 +409,7 @@ fn actions_shown(app: &App) -> Vec<Action> {
     actions
 }
 
-/// What one waits for, and how far it has come; where there is room, what the days so far came to. A script is stopped by a key.
+/// Describes running work and its progress, with figures in wide windows. A script shows the key that stops it.
 fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
     let seconds = busy.since.elapsed().as_secs_f64();
     let Some(days) = busy.days else {
@@ -445,7 +442,7 @@ mod tests {
         assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");
         assert!(text.width() < 76, "{text}");
         assert!(!waiting(&busy(days), 60, "esc").contains("cash"));
-        // Nothing is told before it is known.
+        // Figures appear after the first day.
         let begun = waiting(&busy(DaysRun::between(70, 77)), 120, "esc");
         assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
         // The last week is shorter.

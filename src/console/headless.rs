@@ -1,5 +1,5 @@
-//! The console without a terminal: the real application and its threads, drawn into cells. Tests play it, the speed
-//! table measures it, and the pictures of the documentation are taken of it.
+//! The console without a terminal: the real application and its threads, drawn into a buffer. Used by tests, by the
+//! speed benchmark and for the pictures of the documentation.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -21,30 +21,29 @@ use novamind_worker::message::{Message, News, VisitNews};
 use novamind_worker::request::{Recorded, Request, VisitRequest};
 use novamind_worker::{Job, Workers};
 
-/// An answer that takes longer than this does not come.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A console that nobody sees.
+/// A console without a terminal.
 pub struct Headless {
     /// The application.
     pub app: App,
     /// Columns and rows of the window.
     pub size: (u16, u16),
-    /// Exit code and last words, once it has left.
+    /// Exit code and final text, after it has exited.
     pub left: Option<(u8, Option<String>)>,
-    /// What was put into the clipboard.
+    /// Texts that were copied to the clipboard.
     pub copied: Vec<String>,
-    /// Where the cursor stood in the last frame.
+    /// Cursor position in the last frame.
     pub cursor: Option<Position>,
     workers: Workers,
     sender: Sender<Message>,
     messages: Receiver<Message>,
-    /// Answers that are still to come.
+    /// Number of awaited responses.
     waiting: u32,
 }
 
 impl Headless {
-    /// A console that has shown nothing yet.
+    /// Returns a console that has drawn nothing yet.
     pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
         let workers = Workers::start(
@@ -68,73 +67,73 @@ impl Headless {
         }
     }
 
-    /// Opens a run, to go on with it, and waits until everything about it is known.
+    /// Opens a run for play and waits until all its data has arrived.
     ///
     /// # Errors
-    /// It does not open.
+    /// The run does not open.
     pub fn open(&mut self, run: &str) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Write)))
     }
 
-    /// Receives participants of a study, and waits for the first page.
+    /// Starts receiving participants of a study and waits for the first page.
     ///
     /// # Errors
-    /// It does not come.
+    /// The page does not arrive.
     pub fn lead(&mut self, study: Study) -> io::Result<()> {
         self.app.start_with(Effect::Receive(Box::new(study)));
         self.settle()
     }
 
-    /// Asks for something as a screen would, and waits for what follows.
+    /// Sends a request as a screen would, and waits for its consequences.
     ///
     /// # Errors
-    /// An answer does not come.
+    /// A response does not arrive.
     pub fn request(&mut self, request: Request) -> io::Result<()> {
         self.app.start_with(Effect::Request(request));
         self.settle()
     }
 
-    /// Opens a run, to look at it, and waits until everything about it is known.
+    /// Opens a run read-only and waits until all its data has arrived.
     ///
     /// # Errors
-    /// It does not open.
+    /// The run does not open.
     pub fn look_at(&mut self, run: &str) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Read)))
     }
 
-    /// Plays a recorded run again from a moment on, and waits until everything about it is known.
+    /// Replays a recorded run from a position and waits until all its data has arrived.
     ///
     /// # Errors
-    /// It does not open.
+    /// The run does not open.
     pub fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Replay { recorded, goal, follow }))
     }
 
-    /// Goes somewhere in the replay.
+    /// Seeks in the playback.
     ///
     /// # Errors
-    /// It does not get there.
+    /// The position is not reached.
     pub fn go(&mut self, goal: Goal) -> io::Result<()> {
         self.open_with(Effect::Go(goal))
     }
 
-    /// Where the replay is; none where nothing is replayed.
+    /// Returns the position of the playback, or `None` if nothing is replayed.
     pub fn place(&self) -> Option<&PlaybackPosition> {
         self.app.run()?.viewer.as_ref().map(|viewer| &viewer.place)
     }
 
-    /// Plays a recorded run again from a moment on, and shows its hidden state where it may.
+    /// Replays a recorded run from a position, with its hidden state if permitted.
     ///
     /// # Errors
-    /// It does not open.
+    /// The run does not open.
     pub fn replay_inside(&mut self, recorded: Recorded, goal: Goal) -> io::Result<()> {
         self.open_with(Effect::ReplayInside(recorded, goal))
     }
 
-    /// Follows a run that somebody else plays, drawn to be read from far away.
+    /// Follows a run that another program plays, drawn for a projector.
     ///
     /// # Errors
-    /// It does not open.
+    /// The run does not open.
     pub fn project(&mut self, recorded: Recorded) -> io::Result<()> {
         self.open_with(Effect::Project(recorded))
     }
@@ -149,16 +148,16 @@ impl Headless {
         }
     }
 
-    /// Where input comes from while a week runs.
+    /// Returns the sender of messages, for input while a week runs.
     pub fn sender(&self) -> Sender<Message> {
         self.sender.clone()
     }
 
-    /// Presses keys, written as the key file writes them, one after the other; `_` is a blank, and a word in single
+    /// Presses keys in the notation of the key file, separated by spaces; `_` is the space key, and a word in single
     /// quotes is typed letter by letter.
     ///
     /// # Errors
-    /// A key that there is not; an answer does not come.
+    /// A key does not exist, or a response does not arrive.
     pub fn press(&mut self, keys: &str) -> io::Result<()> {
         for word in keys.split(' ').filter(|word| !word.is_empty()) {
             match word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\'')) {
@@ -169,29 +168,29 @@ impl Headless {
         Ok(())
     }
 
-    /// Presses one key and waits for what follows.
+    /// Presses one key and waits for its consequences.
     ///
     /// # Errors
-    /// There is no such key; an answer does not come.
+    /// The key does not exist, or a response does not arrive.
     pub fn key(&mut self, key: &str) -> io::Result<()> {
         let event = event(if key == "_" { "space" } else { key })?;
         self.send(event)
     }
 
-    /// Lets something happen in the window as it is drawn now, and waits for what follows.
+    /// Draws a frame, handles an event in it, and waits for the consequences.
     ///
     /// # Errors
-    /// An answer does not come.
+    /// A response does not arrive.
     pub fn send(&mut self, event: Event) -> io::Result<()> {
         self.draw();
         self.app.update(Message::Input(event));
         self.settle()
     }
 
-    /// Waits until nothing is left to do.
+    /// Waits until no response is awaited.
     ///
     /// # Errors
-    /// An answer does not come.
+    /// A response does not arrive.
     pub fn settle(&mut self) -> io::Result<()> {
         self.hand_over();
         while self.waiting > 0 && self.left.is_none() {
@@ -202,22 +201,23 @@ impl Headless {
         Ok(())
     }
 
-    /// Waits until what was handed over without a question is done, too: notes of what the person did.
+    /// Waits until jobs without a response are done too, such as recorded activity.
     pub fn finish_notes(&self) {
         self.workers.settle(PATIENCE);
     }
 
-    /// The next thing that arrives.
+    /// Returns the next message, waiting for it.
     ///
     /// # Errors
-    /// Nothing arrives.
+    /// No message arrives.
     pub fn receive(&mut self) -> io::Result<Message> {
-        let message = self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no answer came"))?;
+        let message =
+            self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no response arrived"))?;
         self.count(&message);
         Ok(message)
     }
 
-    /// The next thing that has arrived already.
+    /// Returns the next message if one has arrived.
     pub fn received(&mut self) -> Option<Message> {
         let message = self.messages.try_recv().ok()?;
         self.count(&message);
@@ -246,7 +246,7 @@ impl Headless {
         self.waiting -= u32::from(is_answer).min(self.waiting);
     }
 
-    /// Hands over what has to be done outside.
+    /// Executes the orders of the application.
     pub fn hand_over(&mut self) {
         for order in self.app.take_orders() {
             match order {
@@ -284,14 +284,14 @@ impl Headless {
         }
     }
 
-    /// Draws a frame; returns its cells.
+    /// Draws a frame into a new buffer.
     pub fn draw(&mut self) -> Buffer {
         let mut buffer = Buffer::empty(Rect::new(0, 0, self.size.0, self.size.1));
         self.draw_into(&mut buffer);
         buffer
     }
 
-    /// Draws a frame into cells.
+    /// Draws a frame into a buffer.
     pub fn draw_into(&mut self, buffer: &mut Buffer) {
         let drawn = frame::draw(&self.app, buffer);
         self.app.clicks = drawn.clicks;
@@ -300,10 +300,10 @@ impl Headless {
         self.cursor = drawn.cursor;
     }
 
-    /// Lets time pass without waiting for it, and what follows.
+    /// Advances the time and waits for the consequences.
     ///
     /// # Errors
-    /// An answer does not come.
+    /// A response does not arrive.
     pub fn pass(&mut self, time: Duration) -> io::Result<()> {
         self.app.stopwatch.turn_on(time);
         self.app.update(Message::Time);
@@ -317,10 +317,10 @@ impl Headless {
     }
 }
 
-/// The event of a key.
+/// Returns the event of a key.
 ///
 /// # Errors
-/// There is no such key.
+/// The key does not exist.
 pub fn event(key: &str) -> io::Result<Event> {
     Chord::parse(key).map(|chord| Event::Key(chord.event())).map_err(io::Error::other)
 }

@@ -1,6 +1,7 @@
-//! Keys: which chords ask for which action where. Read from `configs/keys.toml`; a person's file patches it.
+//! Key bindings: which chords trigger which action in which scope. Read from `configs/keys.toml`; a file of the user
+//! patches them.
 //!
-//! A binding is one chord or a few pressed one after the other: `n`, `; c`. Nothing depends on how fast they come.
+//! A binding is one chord or a short sequence: `n`, `; c`. Timing does not matter.
 
 use std::collections::BTreeMap;
 
@@ -9,35 +10,35 @@ use toml::Table;
 use super::action::{Action, Scope};
 use novamind_tui::chord::{Chord, sequence, written};
 
-/// What chords mean where the focus is.
+/// The meaning of chords in the focused place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Meaning {
-    /// They ask for an action.
+    /// The chords trigger an action.
     Action(Action),
-    /// They begin something: another chord has to follow.
+    /// The chords are the start of a sequence.
     Begin,
-    /// Nothing.
+    /// The chords are not bound.
     Nothing,
 }
 
-/// What chords mean in every scope.
+/// The bindings of every scope.
 #[derive(Debug, Clone)]
 pub struct Keys(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
 
 const SHIPPED: &str = include_str!("../../configs/keys.toml");
 
 impl Keys {
-    /// The shipped keys.
+    /// Returns the bundled bindings.
     pub fn shipped() -> Keys {
         let mut keys = Keys(BTreeMap::new());
-        keys.patch(SHIPPED).expect("a test reads the shipped keys");
+        keys.patch(SHIPPED).expect("a test parses the bundled keys");
         keys
     }
 
-    /// The shipped keys, patched by a person's file.
+    /// Returns the bundled bindings, patched by the file of the user.
     ///
     /// # Errors
-    /// What is wrong with the file, with its name.
+    /// The file is invalid; the error contains its name.
     pub fn of_user(
         configuration: &novamind_record::folder::configuration::Configuration,
     ) -> Result<Keys, String> {
@@ -48,15 +49,15 @@ impl Keys {
         Ok(keys)
     }
 
-    /// Replaces the keys of the actions that a file names.
+    /// Replaces the bindings of the actions that a file names.
     fn patch(&mut self, text: &str) -> Result<(), String> {
         let file: Table = text.parse().map_err(|error: toml::de::Error| error.to_string())?;
         for (name, actions) in &file {
             let scope = Scope::ALL
                 .into_iter()
                 .find(|scope| scope.id() == name)
-                .ok_or_else(|| format!("there is no place {name}"))?;
-            let actions = actions.as_table().ok_or_else(|| format!("[{name}] is no table"))?;
+                .ok_or_else(|| format!("there is no section {name}"))?;
+            let actions = actions.as_table().ok_or_else(|| format!("[{name}] is not a table"))?;
             for (own, chords) in actions {
                 let action =
                     Action::named(scope, own).ok_or_else(|| format!("[{name}] has no action {own}"))?;
@@ -67,10 +68,10 @@ impl Keys {
     }
 
     fn bind(&mut self, scope: Scope, action: Action, chords: &toml::Value) -> Result<(), String> {
-        let list = chords.as_array().ok_or("a list of keys is expected, for instance [\"n\"]")?;
+        let list = chords.as_array().ok_or("expected a list of keys, for example [\"n\"]")?;
         let parsed: Result<Vec<Vec<Chord>>, String> = list
             .iter()
-            .map(|chords| sequence(chords.as_str().ok_or("a key is text, for instance \"n\"")?))
+            .map(|chords| sequence(chords.as_str().ok_or("expected a key as text, for example \"n\"")?))
             .collect();
         let bindings = self.0.entry(scope).or_default();
         bindings.retain(|(_, own)| *own != action);
@@ -84,7 +85,7 @@ impl Keys {
         Ok(())
     }
 
-    /// What chords pressed one after the other mean in the first of these scopes that knows them.
+    /// Returns the meaning of a chord sequence in the innermost scope that binds it.
     pub fn meaning(&self, scopes: &[Scope], pressed: &[Chord]) -> Meaning {
         let in_scope = |scope: &Scope| {
             let mut begins = self.0.get(scope)?.iter().filter(|(bound, _)| bound.starts_with(pressed));
@@ -94,7 +95,7 @@ impl Keys {
         scopes.iter().find_map(in_scope).unwrap_or(Meaning::Nothing)
     }
 
-    /// What may follow chords: the next ones, and the action at their end.
+    /// Returns the possible continuations of a sequence: the next chords and the final action.
     pub fn continuations(&self, scopes: &[Scope], pressed: &[Chord]) -> Vec<(String, Action)> {
         let longer = |(bound, action): &(Vec<Chord>, Action)| {
             let rest = bound.strip_prefix(pressed).filter(|rest| !rest.is_empty());
@@ -109,7 +110,7 @@ impl Keys {
         following
     }
 
-    /// What one chord means in the first of these scopes that knows it.
+    /// Returns the action of a single chord in the innermost scope that binds it.
     pub fn action(&self, scopes: &[Scope], chord: Chord) -> Option<Action> {
         match self.meaning(scopes, &[chord]) {
             Meaning::Action(action) => Some(action),
@@ -117,18 +118,18 @@ impl Keys {
         }
     }
 
-    /// The first keys of an action, as the footer shows them.
+    /// Returns the first binding of an action, as labels show it.
     pub fn label(&self, action: Action) -> Option<String> {
         self.chords(action).next().map(written)
     }
 
-    /// All keys of an action.
+    /// Returns all bindings of an action.
     pub fn chords(&self, action: Action) -> impl Iterator<Item = &[Chord]> + '_ {
         let bindings = self.0.get(&action.entry().scope).into_iter().flatten();
         bindings.filter(move |(_, own)| *own == action).map(|(chords, _)| chords.as_slice())
     }
 
-    /// Keys that ask for an action where these scopes hold: not those that an inner scope uses for something else.
+    /// Returns the bindings of an action that work in these scopes, without those that an inner scope overrides.
     pub fn working(&self, action: Action, scopes: &[Scope]) -> Vec<String> {
         let works = |chords: &&[Chord]| self.meaning(scopes, chords) == Meaning::Action(action);
         self.chords(action).filter(works).map(written).collect()
@@ -158,10 +159,10 @@ mod tests {
         assert_eq!(keys.label(Action::Quit).as_deref(), Some("ctrl-q"));
         assert_eq!(keys.label(Action::NextWeek).as_deref(), Some("n"));
         for (file, part) in [
-            ("[globl]\nquit = []", "there is no place globl"),
+            ("[globl]\nquit = []", "there is no section globl"),
             ("[global]\nquitt = []", "has no action quitt"),
-            ("[global]\nquit = \"q\"", "a list of keys"),
-            ("[global]\nquit = [\"hyper-q\"]", "is no key"),
+            ("[global]\nquit = \"q\"", "expected a list of keys"),
+            ("[global]\nquit = [\"hyper-q\"]", "is not a key"),
             ("[global]\nquit = [\"n\"]", "already means next-week"),
             ("[global", "expected"),
         ] {

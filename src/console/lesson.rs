@@ -1,4 +1,4 @@
-//! The task of a lesson beside the screen: what is asked, where the goals stand, hints, pitfalls, what is locked.
+//! The task of a lesson next to the screen: question, goals, hints, pitfalls and closed features.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -14,15 +14,15 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::spark::bar;
 use novamind_worker::company::Company;
 
-/// Columns of the task beside the screen.
+/// Width of the side pane, in columns.
 pub const COLUMNS: u16 = 38;
-/// Columns of the window from which the task has room beside the screen.
+/// Minimum window width for the side pane, in columns.
 pub const WIDE: u16 = 118;
 
-/// Screens that every lesson has: where things stand, how to decide, what was decided.
+/// Screens that are open in every lesson.
 const ALWAYS: [ScreenId; 3] = [ScreenId::Overview, ScreenId::Tools, ScreenId::Journal];
 
-/// Why a screen is not open in the lesson that is played; none where it is.
+/// Returns why a screen is closed in the current lesson, or `None` if it is open.
 pub fn why_closed(screen: ScreenId, company: &Company) -> Option<String> {
     let lesson = company.running_lesson()?;
     let screens = lesson.screens.as_ref()?;
@@ -31,16 +31,16 @@ pub fn why_closed(screen: ScreenId, company: &Company) -> Option<String> {
         let asks = own == ScreenId::Sql && queries;
         asks || ALWAYS.contains(&own) || screens.iter().any(|name| name.eq_ignore_ascii_case(own.id()))
     };
-    // Hidden state has rules of its own.
+    // Hidden state has its own permission.
     if screen == ScreenId::Xray || open(screen) {
         return None;
     }
     let title = |own: ScreenId| own.action().entry().title;
     let all: Vec<&str> = ScreenId::ALL.into_iter().filter(|own| open(*own)).map(title).collect();
-    Some(format!("{} is not in this lesson; it has {}", title(screen), all.join(", ")))
+    Some(format!("{} is closed in this lesson; open screens: {}", title(screen), all.join(", ")))
 }
 
-/// Draws the task into an area beside the screen; more of it than fits is on the page.
+/// Draws the task next to the screen. The lesson page shows all of it.
 pub fn draw_beside(canvas: &mut Canvas<'_>, area: Rect, page: &LessonPage, look: &Look<'_>) {
     canvas.clear(area, Role::Text);
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
@@ -50,13 +50,13 @@ pub fn draw_beside(canvas: &mut Canvas<'_>, area: Rect, page: &LessonPage, look:
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
-        true => format!("{} for all of it", look.hint(Action::LessonPage)),
+        true => format!("{} for more", look.hint(Action::LessonPage)),
         false => look.hints(&[Action::LessonPage, Action::Lesson]),
     };
     canvas.pane_keys(area, &keys);
 }
 
-/// Writes lines from one of them on.
+/// Draws lines from an index.
 pub fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, lines: &[(String, Role)], from: usize) {
     let shown = lines.iter().skip(from).take(area.height as usize);
     let shown: Vec<Line<'_>> =
@@ -64,7 +64,6 @@ pub fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, lines: &[(String, Role)],
     canvas.lines(area, &shown);
 }
 
-/// Lines that are collected for a width.
 struct Lines {
     width: usize,
     all: Vec<(String, Role)>,
@@ -82,16 +81,16 @@ impl Lines {
     }
 }
 
-/// Where the task stands: keys of its page do other things beside a screen.
+/// Where the task is drawn, which determines its keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Where {
-    /// Beside the screen.
+    /// Next to the screen.
     Beside,
-    /// On a page of its own.
+    /// On the lesson page.
     OnPage,
 }
 
-/// The task in lines of a width.
+/// Formats the task as lines of a width.
 pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Where)) -> Vec<(String, Role)> {
     let mut lines = Lines { width, all: Vec::new() };
     lines.say(&page.title, Role::Title);
@@ -100,7 +99,7 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Wher
     }
     if let Some(before) = &page.before {
         lines.gap();
-        lines.say(&format!("Step {} is over: {}", page.step, before.title), Role::Header);
+        lines.say(&format!("Step {} is complete: {}", page.step, before.title), Role::Header);
         say_outcome(&mut lines, before.question.as_ref(), &before.goals);
     }
     lines.gap();
@@ -115,7 +114,7 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Wher
         lines.say(&what_follows(page, look, place), Role::Key);
         return lines.all;
     }
-    // What is to be reached stands above what a small window cuts off.
+    // Goals come first, because small windows truncate the end.
     for goal in &page.goals {
         say_goal(&mut lines, goal);
     }
@@ -133,29 +132,28 @@ pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Wher
     lines.all
 }
 
-/// What can be done once a part is over.
 fn what_follows(page: &LessonPage, look: &Look<'_>, place: Where) -> String {
     if place == Where::Beside {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         return match page.next_part {
-            Some(_) => format!("This part is over: {key} opens the page that leads on."),
-            None => format!("The lesson is over: {key} opens the debrief."),
+            Some(_) => format!("This part has ended: {key} opens the page with the next part."),
+            None => format!("The lesson has ended: {key} opens the debrief."),
         };
     }
     let again = look.hint(Action::TryAgain);
     let debrief = look.hint(Action::Debrief);
     match page.next_part {
-        Some(_) => format!("This part is over: {}, {again}, {debrief}.", look.hint(Action::NextPart)),
-        None => format!("The lesson is over: {debrief}, {again}."),
+        Some(_) => format!("This part has ended: {}, {again}, {debrief}.", look.hint(Action::NextPart)),
+        None => format!("The lesson has ended: {debrief}, {again}."),
     }
 }
 
-/// The step that would be tried again, counted from 0: the one that goes on, or the one that is just over.
+/// Returns the step that a retry starts with, counted from 0: the current one, or the one that has just ended.
 pub fn step_to_try(page: &LessonPage) -> usize {
     page.step - usize::from(page.before.is_some())
 }
 
-/// Paragraphs whose lines were broken for the file.
+/// Joins the wrapped lines of each paragraph.
 fn unwrapped(text: &str) -> String {
     let paragraphs = text.trim().split("\n\n");
     let joined = paragraphs.map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
@@ -170,12 +168,11 @@ fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
             for (at, choice) in question.choices.iter().enumerate() {
                 lines.say(&format!("{}) {choice}", at + 1), Role::Text);
             }
-            lines.say(&format!("{} asks for it", look.hint(Action::NextWeek)), Role::Key);
+            lines.say(&format!("{} asks for your guess", look.hint(Action::NextWeek)), Role::Key);
         }
     }
 }
 
-/// The guess beside the outcome, and the goals that were reached or missed.
 fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
     if let Some(question) = question {
         lines.say(&question.text, Role::Dim);
@@ -186,7 +183,7 @@ fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[Go
     }
 }
 
-/// A goal with a bar of how far it has come.
+/// Adds a goal with a progress bar.
 fn say_goal(lines: &mut Lines, goal: &GoalPage) {
     let (mark, role) = match goal.met {
         Some(true) => ("reached: ", Role::Good),
@@ -198,7 +195,7 @@ fn say_goal(lines: &mut Lines, goal: &GoalPage) {
     let room = lines.width.saturating_sub(at.chars().count() + 1).min(16);
     match goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0 && room > 3) {
         Some((value, bound)) => {
-            // A bar is full where the goal is reached, and nowhere else.
+            // A bar is full only if the goal is reached.
             let most = if goal.met == Some(true) || value >= bound { 1.0 } else { 1.0 - 1.0 / room as f64 };
             lines.say(&format!("{} {at}", bar((value / bound).min(most), room)), Role::Text);
         }
@@ -222,25 +219,24 @@ fn say_hints(lines: &mut Lines, page: &LessonPage, look: &Look<'_>) {
     let more = page.hints.len() < page.hints_in_all;
     let keys = || {
         let key = |action| look.keys.label(action).unwrap_or_default();
-        format!(" · {} {} takes one", key(Action::LessonPage), key(Action::NextHint))
+        format!(" · {} {} shows one", key(Action::LessonPage), key(Action::NextHint))
     };
     lines.say(&if more { count + &keys() } else { count }, Role::Dim);
 }
 
-/// What of the program the lesson has.
 fn say_locked(lines: &mut Lines, look: &Look<'_>) {
     let Some(lesson) = look.company.running_lesson() else { return };
     lines.gap();
     if let Some(tools) = &lesson.tools {
         let names: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
-        lines.say(&format!("Tools: {}; the others are not in this lesson.", names.join(", ")), Role::Dim);
+        lines.say(&format!("Tools in this lesson: {}.", names.join(", ")), Role::Dim);
     }
     if lesson.screens.is_some() {
         let is_closed = |screen: &ScreenId| why_closed(*screen, look.company).is_some();
         let closed = ScreenId::ALL.into_iter().filter(is_closed);
         let closed: Vec<&str> = closed.map(|screen| screen.action().entry().title).collect();
         if !closed.is_empty() {
-            lines.say(&format!("Not in this lesson: {}.", closed.join(", ")), Role::Dim);
+            lines.say(&format!("Closed in this lesson: {}.", closed.join(", ")), Role::Dim);
         }
     }
 }

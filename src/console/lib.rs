@@ -1,8 +1,8 @@
 //! The terminal application.
 //!
-//! Input becomes an action, an action changes state, a pure view draws it. The session and the database work on
-//! threads of their own and report through the channel that also carries the input; the screen never waits.
-//! Everything shown comes from tool results, the weekly dashboard or guarded queries.
+//! Input triggers actions, actions change the state, and a pure view draws it. The session and the database run on
+//! their own threads and report through the channel of the input; the screen never blocks. All displayed data comes
+//! from tool results, the weekly dashboard or guarded queries.
 
 mod action;
 mod agreement;
@@ -38,16 +38,16 @@ use novamind_tui::terminal::{TerminalScreen, set_panic_note};
 use novamind_worker::Workers;
 use novamind_worker::message::Message;
 
-/// How often a frame is drawn while only time passes.
+/// Frame interval while only elapsed times change.
 const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
-/// How long is waited for a message when nothing on the screen depends on the time.
+/// Timeout for a message while nothing on the screen depends on the time.
 const FOREVER: Duration = Duration::from_secs(3600);
 
-/// How long the shell waits for the record of a program that it suspends, should a week be simulated just then.
+/// Maximum delay of a suspension for recording it, in case a week is being simulated.
 #[cfg(unix)]
 const BEFORE_SUSPENSION: Duration = Duration::from_millis(500);
 
-/// Runs the console; returns the exit code and what to print on the way out.
+/// Runs the console. Returns the exit code and the text to print on exit.
 ///
 /// # Errors
 /// The terminal fails.
@@ -90,9 +90,8 @@ struct Console {
     screen: TerminalScreen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
-    /// Command that resumes the newest run.
     again: String,
-    /// The program went on after a suspension, and the message of the signal that continued it is still to come.
+    /// Whether the program has resumed and the message of the continue signal is still to come.
     #[cfg(unix)]
     has_resumed: bool,
 }
@@ -117,7 +116,7 @@ impl Console {
                 Err(RecvTimeoutError::Timeout) => self.app.update(Message::Time),
                 Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
             }
-            // Everything that has arrived meanwhile is drawn once.
+            // Draws once after all messages that have arrived.
             while let Ok(message) = self.messages.try_recv() {
                 self.hear(message)?;
             }
@@ -136,7 +135,7 @@ impl Console {
                 }
                 self.workers.settle(BEFORE_SUSPENSION);
                 self.screen.suspend(self.app.mouse)?;
-                // Recorded here: a key that ends the program may arrive before the message of the signal.
+                // Recorded here, because a key that ends the program could be handled before the continue signal.
                 self.app.resume();
                 self.has_resumed = true;
             }
@@ -173,24 +172,23 @@ impl Console {
             Stage::Menu(_) | Stage::Visit(_) => None,
         };
         set_panic_note(folder.map(|folder| {
-            format!("novamind: everything confirmed is safe in {folder}; `{}` continues", self.again)
+            format!("novamind: all confirmed actions are saved in {folder}; resume with `{}`", self.again)
         }));
         Ok(None)
     }
 }
 
-/// Fails at f12 if the environment asks for it, so that what a failure leaves behind can be tested. Not in release
-/// builds.
+/// Panics at f12 if the environment requests it, to test recovery. Not in release builds.
 #[cfg(debug_assertions)]
 fn fail_on_purpose(message: &Message) {
     use crossterm::event::{Event, KeyCode};
     let pressed = matches!(message, Message::Input(Event::Key(key)) if key.code == KeyCode::F(12));
     if pressed && std::env::var("NOVAMIND_FAULT").is_ok_and(|fault| fault == "panic") {
-        panic!("asked to fail by NOVAMIND_FAULT");
+        panic!("panic requested by NOVAMIND_FAULT");
     }
 }
 
-/// Listens to keys and signals, each on a thread of its own; they end with the program.
+/// Receives keys and signals on two threads that end with the program.
 fn listen(sender: Sender<Message>) {
     let keys = sender.clone();
     std::thread::spawn(move || {
@@ -199,7 +197,7 @@ fn listen(sender: Sender<Message>) {
                 return;
             }
         }
-        // The terminal has gone away.
+        // The terminal is gone.
         let _ = keys.send(Message::Signal(1));
     });
     #[cfg(unix)]

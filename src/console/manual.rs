@@ -1,10 +1,9 @@
-//! Every key of the console as text, made from the table of actions: for the terminal and for the documents.
+//! The list of all key bindings as text, for the terminal and the documentation.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
 use super::keys::Keys;
 use novamind_tui::chord::written;
 
-/// Actions of each place that has any, with their keys: the place, then title, keys and explanation of each action.
 fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
     Scope::ALL.into_iter().filter_map(move |scope| {
         let own = ACTIONS.iter().filter(|entry| entry.scope == scope);
@@ -15,7 +14,7 @@ fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry
     })
 }
 
-/// Aligned columns.
+/// Formats the list in aligned columns.
 pub fn text(keys: &Keys) -> String {
     let mut text = String::new();
     for (scope, rows) in places(keys) {
@@ -31,7 +30,7 @@ pub fn text(keys: &Keys) -> String {
     text
 }
 
-/// Tables in Markdown, one for each place.
+/// Formats the list as Markdown, a table per scope.
 pub fn markdown(keys: &Keys) -> String {
     let mut text = String::new();
     for (scope, rows) in places(keys) {
@@ -73,7 +72,7 @@ mod tests {
         }
         assert!(
             std::env::var_os("NOVAMIND_WRITE_DOCUMENTS").is_some(),
-            "docs/interfaces/keys.md is out of date; with NOVAMIND_WRITE_DOCUMENTS=1 this test writes it anew"
+            "docs/interfaces/keys.md is out of date; run this test with NOVAMIND_WRITE_DOCUMENTS=1 to update it"
         );
         let first = format!("**{}**", Scope::Global.title());
         let words = page.split_once(&first).map_or(page.as_str(), |(words, _)| words);

@@ -1,4 +1,4 @@
-//! A run that is watched from far away: four figures, the curve of cash, and what was decided.
+//! The projector view: four figures, the cash curve and the decisions of a followed run.
 
 use ratatui::layout::Rect;
 
@@ -12,9 +12,9 @@ use novamind_tui::widgets::large::{LETTER, PointSize, draw_large};
 use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 
-/// Letters of the longest figure: `-$12.3M`.
+/// Characters of the longest figure: `-$12.3M`.
 const LONGEST: u16 = 7;
-/// Columns that the four figures take side by side when a point is a column wide.
+/// Columns of four figures side by side at one column per point.
 const SIDE_BY_SIDE: u16 = 4 * (LONGEST * LETTER + 1);
 
 /// Draws the view.
@@ -24,7 +24,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &Viewer, look: &Look<'_
         false => PointSize::Small,
     };
     let beside = if area.width >= SIDE_BY_SIDE * size.columns() - 36 { 4 } else { 2 };
-    // Label and letters.
+    // Label and digits.
     let tall = size.rows() + 1;
     let gap = u16::from(area.height >= 24);
     for (at, (label, figure, role)) in (0u16..).zip(figures(look.company)) {

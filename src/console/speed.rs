@@ -1,4 +1,4 @@
-//! How quickly the console answers: the real application and its threads, drawn into a terminal that nobody sees.
+//! Response times of the console: the real application and its threads, drawn to a discarded terminal.
 
 use std::io::{self, Sink};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -12,19 +12,18 @@ use super::app::Settings;
 use super::headless::{Headless, event};
 use novamind_worker::message::Message;
 
-/// Window that is drawn: columns, rows.
 const WINDOW: (u16, u16) = (200, 60);
-/// Keys that are pressed while a week runs: every screen, and moving about in it.
+/// Keys pressed while a week runs: every screen, and navigation in it.
 const KEYS: [&str; 12] = ["1", "down", "2", "up", "3", "down", "4", "tab", "8", "down", "0", "up"];
-/// Between two of these keys: faster than anybody types, and about what a held key repeats.
+/// Interval between the keys: faster than typing, about the repeat rate of a held key.
 const BETWEEN_KEYS: Duration = Duration::from_millis(12);
-/// The dialog before a week: on to the reason, the reason, on, the naive forecasts, go.
+/// Keys of the next-week dialog: continue, a rationale, continue, fill in the forecasts, run.
 const WEEK: [&str; 8] = ["n", "enter", "t", "r", "y", "enter", "f", "enter"];
 
-/// Seconds from the start of the console to its first frame.
+/// Returns the seconds from the start of the console to its first frame.
 ///
 /// # Errors
-/// The settings cannot be made; the drawing fails.
+/// The settings cannot be created, or drawing fails.
 pub fn first_frame<E: From<io::Error>>(settings: impl FnOnce() -> Result<Settings, E>) -> Result<f64, E> {
     let started = Instant::now();
     let mut console = Measured::start(settings()?)?;
@@ -34,10 +33,10 @@ pub fn first_frame<E: From<io::Error>>(settings: impl FnOnce() -> Result<Setting
     Ok(seconds)
 }
 
-/// Seconds from each key that is pressed while a week is simulated to the frame that shows what it did.
+/// Returns the seconds from each key pressed during a simulated week to the frame that shows its effect.
 ///
 /// # Errors
-/// The run does not open, a week does not pass, the drawing fails.
+/// The run does not open, a week does not complete, or drawing fails.
 pub fn keys_during_weeks(settings: Settings, run: &str, weeks: usize) -> io::Result<Vec<f64>> {
     let mut console = Measured::start(settings)?;
     console.headless.open(run)?;
@@ -55,7 +54,7 @@ pub fn keys_during_weeks(settings: Settings, run: &str, weeks: usize) -> io::Res
     Ok(seconds)
 }
 
-/// A headless whose frames go to a terminal that nobody sees: what is written to it is part of the time.
+/// A headless console whose frames are written to a discarded terminal, so that writing is part of the time.
 struct Measured {
     headless: Headless,
     terminal: Terminal<CrosstermBackend<Sink>>,
@@ -69,7 +68,6 @@ impl Measured {
         Ok(Measured { headless: Headless::new(settings, WINDOW), terminal })
     }
 
-    /// Weeks that have passed in the run that is shown.
     fn weeks(&self) -> usize {
         self.headless.app.run().map_or(0, |run| run.company.weeks.len())
     }
@@ -77,14 +75,13 @@ impl Measured {
     fn draw(&mut self) -> io::Result<()> {
         self.headless.hand_over();
         if let Some((_, words)) = &self.headless.left {
-            return Err(io::Error::other(words.clone().unwrap_or_else(|| "the console left".to_owned())));
+            return Err(io::Error::other(words.clone().unwrap_or_else(|| "the console exited".to_owned())));
         }
         let headless = &mut self.headless;
         self.terminal.draw(|whole| headless.draw_into(whole.buffer_mut()))?;
         Ok(())
     }
 
-    /// Presses keys from another thread, as a person does, until a week has passed.
     fn keys_until_week(&mut self, week: usize) -> io::Result<Vec<f64>> {
         let (stop, stopped) = channel::<()>();
         let (press, pressed) = channel();
@@ -104,7 +101,7 @@ impl Measured {
         while self.weeks() < week {
             let mut keys = 0;
             let mut next = Some(self.headless.receive()?);
-            // Everything that has arrived meanwhile is drawn once, as the console does.
+            // Draws once after all messages that have arrived, as the console does.
             while let Some(message) = next {
                 keys += usize::from(matches!(message, Message::Input(_)));
                 self.headless.app.update(message);

@@ -1,5 +1,5 @@
-//! What the tests of the screens share: companies from runs in memory, a screen that was told everything, its picture
-//! as text, and windows of every size.
+//! Test helpers for screens: companies of in-memory runs, screens with all their data, rendered text, and windows of
+//! many sizes.
 
 use std::path::Path;
 
@@ -24,12 +24,12 @@ use novamind_worker::company::Company;
 use novamind_worker::readings::Reading;
 pub use novamind_worker::test_kit::{courted, played, session};
 
-/// A company on its first day.
+/// Returns a company on its first day.
 pub fn company() -> Company {
     Company::of(&session())
 }
 
-/// Answers of the database to what a screen asks.
+/// Returns the query results for the readings of a screen.
 pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());
@@ -38,7 +38,7 @@ pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows
     screen.readings().iter().map(ask).collect()
 }
 
-/// A screen that knows all of a company.
+/// Returns a screen with all data of a company.
 pub fn shown<S: Screen + Default>(session: &mut Session, company: &Company) -> S {
     let mut screen = S::default();
     let keys = Keys::shipped();
@@ -50,7 +50,7 @@ pub fn shown<S: Screen + Default>(session: &mut Session, company: &Company) -> S
     screen
 }
 
-/// A run that was played for some weeks, its company, and a screen that knows all of it.
+/// Plays a run for some weeks. Returns it with its company and a screen with all data.
 pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
     let mut session = played(weeks);
     let company = Company::of(&session);
@@ -58,13 +58,13 @@ pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
     (session, company, screen)
 }
 
-/// Lets a screen do an action.
+/// Lets a screen handle an action.
 pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
     let keys = Keys::shipped();
     screen.act(action, &Look { company, keys: &keys, page: 5 })
 }
 
-/// How the console looks in tests.
+/// Returns the settings of test consoles.
 pub fn settings(runs: &Path) -> Settings {
     Settings {
         theme: Theme::bundled("dark").expect("a theme"),
@@ -78,7 +78,7 @@ pub fn settings(runs: &Path) -> Settings {
     }
 }
 
-/// The question that effects ask, and none but it.
+/// Returns the only question among effects.
 pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
     let mut asks = effects.iter().filter_map(|effect| match effect {
         Effect::Ask(ask) => Some(ask),
@@ -90,12 +90,12 @@ pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
     }
 }
 
-/// Draws a screen in a window; the lines of text that are seen.
+/// Draws a screen and returns the lines of text.
 pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
     pictured(screen, company, (width, height), false)
 }
 
-/// The focused pane of a screen with the whole window, as one text.
+/// Draws the focused pane of a screen zoomed and returns the text.
 pub fn zoomed(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
     pictured(screen, company, (width, height), true).join("\n")
 }
@@ -113,13 +113,13 @@ fn pictured(
     })
 }
 
-/// The same picture as one text.
+/// Draws a screen and returns the text.
 pub fn drawn(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
     picture(screen, company, width, height).join("\n")
 }
 
-/// Draws a screen in a few small and some large windows, with each of its panes in the focus. `tests/console/sizes.rs` draws
-/// every screen in many more.
+/// Draws a screen in some small and large windows, with the focus on each pane. `tests/console/sizes.rs` covers more
+/// sizes.
 pub fn sweep(screen: &mut dyn Screen, company: &Company) {
     for focus in 0..screen.panes() {
         screen.set_focus(focus);
@@ -127,7 +127,7 @@ pub fn sweep(screen: &mut dyn Screen, company: &Company) {
         let small = small.filter(|(width, height)| (width + 3 * height) % 151 == 0);
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             drawn(screen, company, width, height);
-            // Some of these are enough to see that a pane alone fits as well.
+            // A few of these sizes suffice for zoomed panes.
             if height % 6 == 0 || height == 37 {
                 zoomed(screen, company, width, height);
             }
@@ -135,13 +135,13 @@ pub fn sweep(screen: &mut dyn Screen, company: &Company) {
     }
 }
 
-/// Lets a dialog do an action.
+/// Lets a dialog handle an action.
 pub fn in_dialog(dialog: &mut dyn Dialog, action: Action, company: &Company) -> Outcome {
     let keys = Keys::shipped();
     dialog.act(action, &Look { company, keys: &keys, page: 5 })
 }
 
-/// Draws a dialog in a window, as one text.
+/// Draws a dialog and returns the text.
 pub fn dialog_picture(dialog: &dyn Dialog, company: &Company, width: u16, height: u16) -> String {
     let keys = Keys::shipped();
     let draw =
@@ -149,7 +149,7 @@ pub fn dialog_picture(dialog: &dyn Dialog, company: &Company, width: u16, height
     painted(width, height, draw).join("\n")
 }
 
-/// What is drawn into a window: the lines of text that are seen.
+/// Draws into a window and returns the lines of text.
 pub fn painted(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);

@@ -1,4 +1,4 @@
-//! The first steps in the game, over the real game: what to look at, what to press, and whether it was done.
+//! The tour: steps over the real game, each with an explanation, keys and a completion condition.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// How a step shows that it was done.
+/// Completion condition of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Done {
@@ -50,7 +50,7 @@ struct TourStep {
     done: Done,
 }
 
-/// The whole tour, and the run it is played in.
+/// The steps of the tour, and its run.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Course {
@@ -61,37 +61,36 @@ struct Course {
 
 static COURSE: LazyLock<Course> = LazyLock::new(|| {
     let text = include_str!("../../assets/tour.toml");
-    toml::from_str(text).expect("a test reads the shipped tour")
+    toml::from_str(text).expect("a test parses the bundled tour")
 });
 
-/// The steps, in their order.
 fn steps() -> &'static [TourStep] {
     &COURSE.step
 }
 
-/// Scenario in which the tour is played.
+/// Returns the scenario of the tour.
 pub fn scenario() -> &'static str {
     &COURSE.scenario
 }
 
-/// The run in which the tour is played.
+/// Returns the definition of the practice run.
 pub fn practice_run() -> NewRun {
     NewRun { seed: Some(COURSE.seed), scenario: COURSE.scenario.clone(), ..NewRun::default() }
 }
 
-/// What a step is judged by.
+/// State that completion conditions depend on.
 pub struct TourFacts<'a> {
     /// The company.
     pub company: &'a Company,
-    /// The screen that is shown.
+    /// The current screen.
     pub here: ScreenId,
     /// Screens shown before.
     pub before: &'a [ScreenId],
-    /// Step of the dialog before a week, from 1, while it is open.
+    /// Step of the next-week dialog, from 1, while it is open.
     pub filing: Option<usize>,
-    /// A dialog lies over the screen.
+    /// Whether a dialog is open.
     pub dialog: bool,
-    /// A group is open on the screen of customers.
+    /// Whether a group is open on the Customers screen.
     pub group_open: bool,
 }
 
@@ -125,7 +124,7 @@ impl Done {
     }
 }
 
-/// Whether a number above 0 is somewhere in present arguments.
+/// Returns whether the arguments contain a number above 0.
 fn spends(arguments: &serde_json::Map<String, Value>) -> bool {
     fn holds(value: &Value) -> bool {
         match value {
@@ -136,17 +135,16 @@ fn spends(arguments: &serde_json::Map<String, Value>) -> bool {
     arguments.values().any(holds)
 }
 
-/// Most lines of a step below its title.
 const MOST_LINES: usize = 4;
 
-/// Where the person is in the tour.
+/// Progress in the tour.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tour {
     at: usize,
 }
 
 impl Tour {
-    /// Goes on over every step that is done; false when none is left.
+    /// Advances past completed steps. Returns false if none is left.
     pub fn settle(&mut self, facts: &TourFacts<'_>) -> bool {
         while steps().get(self.at).is_some_and(|step| step.done.holds(facts)) {
             self.at += 1;
@@ -154,17 +152,17 @@ impl Tour {
         self.at < steps().len()
     }
 
-    /// Goes on without doing the step.
+    /// Skips the current step.
     pub fn skip(&mut self) {
         self.at += 1;
     }
 
-    /// Rows it needs in a window of a width: a rule and a few lines.
+    /// Returns the height in a window of a width: a rule and the lines.
     pub fn height(&self, keys: &Keys, numbers: &Numbers, width: u16) -> u16 {
         1 + self.lines(keys, numbers, width).len() as u16
     }
 
-    /// What is written below the rule: lines, and whether they say what to press.
+    /// Returns the lines below the rule, and whether each names keys to press.
     fn lines(&self, keys: &Keys, numbers: &Numbers, width: u16) -> Vec<(String, bool)> {
         let Some(step) = steps().get(self.at) else { return Vec::new() };
         let room = width.saturating_sub(2) as usize;
@@ -175,7 +173,7 @@ impl Tour {
         look.chain(press).take(MOST_LINES).collect()
     }
 
-    /// Draws the step into its rows.
+    /// Draws the step.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &Keys, numbers: &Numbers) {
         let Some(step) = steps().get(self.at) else { return };
         canvas.clear(area, Role::Text);
@@ -204,7 +202,7 @@ impl Tour {
     }
 }
 
-/// Words with the keys of the actions they name; an action without a key is found in the palette.
+/// Replaces action names in braces with their keys, or with the palette if an action has none.
 fn with_keys(text: &str, keys: &Keys) -> String {
     let mut words = String::new();
     let mut rest = text;
@@ -291,12 +289,12 @@ mod tests {
         let played = Company::of(&played(2));
         let mut tour = Tour::default();
         assert!(tour.settle(&facts(&played)));
-        assert_eq!(steps()[tour.at].done, Done::Asked, "a person who comes back goes on near the end");
+        assert_eq!(steps()[tour.at].done, Done::Asked, "a returning user continues near the end");
         assert!(tour.settle(&TourFacts { here: ScreenId::Sql, ..facts(&played) }));
         assert_eq!(steps()[tour.at].done, Done::ThirdWeek);
         tour.skip();
         tour.skip();
-        assert!(!tour.settle(&facts(&played)), "the tour is over");
+        assert!(!tour.settle(&facts(&played)), "the tour is complete");
     }
 
     #[test]
@@ -342,19 +340,19 @@ mod tests {
         let (leads, signed) = (first.new_individual_leads, first.new_individual_subscribers);
         assert!(leads > 100 && signed > 0 && signed * 5 < leads, "few signed: {signed} of {leads}");
         let company = Company::of(&run);
-        let need = company.needs.first().expect("something needs the person");
+        let need = company.needs.first().expect("an action item");
         let Place::Call(tool, arguments) = &need.place else { panic!("{need:?}") };
         assert_eq!((*tool, arguments), (ToolId::SetModelTiers, &json!({"B": 3})), "a better model for B");
         run.call("set_model_tiers", arguments, Via::Script).expect("the call of the need");
         run.call("set_targeted_dev_spend", &json!({"targeted_spend": {"S2": 1100}}), Via::Script)
             .expect("development");
         let second = week(&mut run);
-        assert!(second.new_individual_subscribers > signed, "it was mended: {second:?}");
+        assert!(second.new_individual_subscribers > signed, "the better model helps: {second:?}");
         let mut left = 0;
         while run.company().observe().ended.is_none() {
             left += week(&mut run).cancellations;
         }
-        assert!(left > 0, "somebody leaves before the end");
+        assert!(left > 0, "a subscriber leaves before the end");
         let numbers = Company::of(&run).numbers.fill("{billing.billing_period_days}");
         assert_eq!(numbers, "30");
     }

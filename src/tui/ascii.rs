@@ -1,8 +1,8 @@
-//! Drawing without box, block and braille characters: one pass over the finished frame.
+//! Replaces box-drawing, block and braille characters in a finished frame.
 
 use ratatui::buffer::Buffer;
 
-/// Replaces every character outside ASCII by one that stands in for it.
+/// Replaces every character outside ASCII by a similar ASCII character.
 pub fn plain(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
@@ -14,7 +14,7 @@ pub fn plain(buffer: &mut Buffer) {
 
 fn stand_in(letter: char) -> char {
     match letter {
-        // Thick lines are those of the focus.
+        // Thick lines mark the focus.
         '━' => '=',
         '┃' | '┏' | '┓' | '┗' | '┛' => '#',
         '─' | '–' | '—' | '⠤' | '⎯' => '-',

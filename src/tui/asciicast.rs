@@ -1,4 +1,4 @@
-//! A recording of frames as an asciicast of version 2, which terminal players show (<https://docs.asciinema.org>).
+//! Writes frames as an asciicast, version 2, for terminal players (<https://docs.asciinema.org>).
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use serde_json::json;
 
-/// The cursor is hidden, and the window is empty.
+/// Hides the cursor and clears the window.
 const BEGINNING: &str = "\u{1b}[?25l\u{1b}[0m\u{1b}[2J";
 
-/// Frames one after the other, each as what changes in the window.
+/// A recording of frames. Each frame is stored as its differences from the previous one.
 pub struct Asciicast {
     lines: String,
     shown: Buffer,
@@ -18,9 +18,9 @@ pub struct Asciicast {
 }
 
 impl Asciicast {
-    /// A recording in a window of so many columns and rows.
+    /// Starts a recording of a window with a size in columns and rows.
     pub fn new((columns, rows): (u16, u16), title: &str) -> Asciicast {
-        // Colours belong to the recording, whatever the terminal of this process shows.
+        // The recording needs colors even if the terminal of this process has none.
         crossterm::style::force_color_output(true);
         let header = json!({
             "version": 2, "width": columns, "height": rows, "title": title, "env": { "TERM": "xterm-256color" },
@@ -34,10 +34,10 @@ impl Asciicast {
         recording
     }
 
-    /// Shows a frame of that window for a while.
+    /// Adds a frame that stays for some time.
     ///
     /// # Errors
-    /// It cannot be written as what a terminal understands.
+    /// The frame cannot be written as terminal output.
     pub fn show(&mut self, frame: &Buffer, stays: Duration) -> std::io::Result<()> {
         let mut bytes = Vec::new();
         CrosstermBackend::new(&mut bytes).draw(self.shown.diff(frame).into_iter())?;
@@ -47,7 +47,7 @@ impl Asciicast {
         Ok(())
     }
 
-    /// The recording; its last frame stays as long as was asked.
+    /// Returns the recording. The last frame stays for its requested time.
     pub fn finish(mut self) -> String {
         self.write("");
         self.lines

@@ -1,4 +1,4 @@
-//! What views draw on: the cells of a frame, what can be clicked, and where the cursor stands.
+//! The drawing surface of views: cells of a frame, clickable areas, and the cursor.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -11,18 +11,18 @@ use unicode_width::UnicodeWidthStr;
 
 use super::theme::{Role, Theme};
 
-/// The number of a command. The application defines the commands and their numbers.
+/// The number of a command, which the application defines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Command(pub u16);
 
-/// What a click on a part of the screen asks for.
+/// The target of a click.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
     /// A command.
     Do(Command),
-    /// A pane, by its number on the screen: it takes the focus.
+    /// A pane, by its number on the screen: it receives the focus.
     Pane(usize),
-    /// A row of a pane.
+    /// A row, by the number of its pane and its own.
     Row(usize, usize),
 }
 
@@ -30,27 +30,27 @@ pub enum Click {
 pub struct Canvas<'a> {
     /// Cells.
     pub buffer: &'a mut Buffer,
-    /// Colours.
+    /// Colors.
     pub theme: &'a Theme,
-    /// What can be clicked; later entries lie on top.
+    /// Clickable areas; later ones are on top.
     pub clicks: Vec<(Rect, Click)>,
-    /// Where the cursor stands, if it is shown.
+    /// Position of the cursor, if it is shown.
     pub cursor: Option<Position>,
     /// Rows that the focused list shows, for paging.
     pub page: u16,
-    /// The focused pane has the whole screen; the others are not drawn.
+    /// Whether the focused pane fills the screen and the others are not drawn.
     pub zoomed: bool,
-    /// What is drawn comes from a database that is behind: every pane says so.
+    /// Whether the data is from a database that is behind; every pane shows that.
     pub stale: bool,
     /// Text of a chart without data.
     pub no_data: &'static str,
-    /// What curves are drawn with.
+    /// Marker that curves are drawn with.
     pub marker: Marker,
-    /// Places from which the focused pane was reached; they stand before its title.
+    /// Breadcrumbs of the focused pane, which precede its title.
     pub path: Vec<String>,
 }
 
-/// Side of a cell to which text is pushed.
+/// Alignment of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// Left.
@@ -60,7 +60,7 @@ pub enum Align {
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas over cells.
+    /// Returns a canvas over cells.
     pub fn new(buffer: &'a mut Buffer, theme: &'a Theme) -> Canvas<'a> {
         Canvas {
             buffer,
@@ -76,34 +76,34 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The whole area.
+    /// Returns the whole area.
     pub fn area(&self) -> Rect {
         self.buffer.area
     }
 
-    /// Style of a meaning.
+    /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         self.theme.style(role)
     }
 
-    /// A piece of text in a meaning.
+    /// Returns a styled span.
     pub fn span<'t>(&self, text: impl Into<std::borrow::Cow<'t, str>>, role: Role) -> Span<'t> {
         Span::styled(text, self.style(role))
     }
 
-    /// Fills an area with a meaning's background and blanks.
+    /// Fills an area with spaces and the background of a role.
     pub fn clear(&mut self, area: Rect, role: Role) {
         let area = area.intersection(self.buffer.area);
         ratatui::widgets::Clear.render(area, self.buffer);
         self.buffer.set_style(area, self.style(role));
     }
 
-    /// Writes text into one row, cut with an ellipsis to the width of the area.
+    /// Draws text in one row, truncated with an ellipsis.
     pub fn text(&mut self, area: Rect, text: &str, role: Role) {
         self.aligned(area, text, role, Align::Left);
     }
 
-    /// Writes text into one row, pushed to a side.
+    /// Draws aligned text in one row, truncated with an ellipsis.
     pub fn aligned(&mut self, area: Rect, text: &str, role: Role, align: Align) {
         if area.is_empty() {
             return;
@@ -117,24 +117,24 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Writes pieces of text into one row; what does not fit is cut.
+    /// Draws spans in one row, truncated.
     pub fn line(&mut self, area: Rect, line: &Line<'_>) {
         if !area.is_empty() && self.buffer.area.contains(area.as_position()) {
             self.buffer.set_line(area.x, area.y, line, area.width);
         }
     }
 
-    /// Writes lines below each other; what does not fit is left out.
+    /// Draws lines below each other; lines that do not fit are omitted.
     pub fn lines(&mut self, area: Rect, lines: &[Line<'_>]) {
         for (row, line) in rows_of(area).zip(lines) {
             self.line(row, line);
         }
     }
 
-    /// Draws the border of a pane and returns its inside. The title carries what the pane is, the right end of the
-    /// upper border what is worth knowing about it.
+    /// Draws the border of a pane and returns the area inside. The title is at the left, the note at the right end of
+    /// the upper border.
     pub fn pane(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
-        // The focus is told by the lines themselves: without colour, too.
+        // Line styles show the focus without color, too.
         let (kind, role) =
             if focused { (BorderType::Thick, Role::Focus) } else { (BorderType::Plain, Role::Border) };
         let mut block = Block::bordered().border_type(kind).border_style(self.style(role));
@@ -146,7 +146,7 @@ impl<'a> Canvas<'a> {
         };
         let way = if focused && !title.is_empty() { self.path.as_slice() } else { &[] };
         let in_room = |room: usize| path_before(way, title, room);
-        // The note gives way to the nearest place.
+        // The nearest breadcrumb takes precedence over the note.
         let path = Some(in_room(room.saturating_sub(note.width() + 6)))
             .filter(|path| !path.is_empty())
             .unwrap_or_else(|| in_room(room.saturating_sub(2)));
@@ -166,7 +166,7 @@ impl<'a> Canvas<'a> {
         inside
     }
 
-    /// Writes keys that work here into the lower border of a pane.
+    /// Draws key labels into the lower border of a pane.
     pub fn pane_keys(&mut self, area: Rect, text: &str) {
         if area.height < 2 || area.width < 6 {
             return;
@@ -183,8 +183,8 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// The way to a title in at most the room that the title leaves: `Customers › S2 › `. Nearer places stay longer; one
-/// that the title names itself is not said twice.
+/// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. Distant ones are dropped
+/// first, and one that the title names is omitted.
 fn path_before(path: &[String], title: &str, room: usize) -> String {
     let said = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
     let path = &path[..path.len() - usize::from(said)];
@@ -196,7 +196,7 @@ fn path_before(path: &[String], title: &str, room: usize) -> String {
     (0..path.len()).map(words).find(fits).unwrap_or_default()
 }
 
-/// As many keys of a list as fit, each with all of its words; the first one in any case.
+/// Truncates a list of keys between its items; the first item always stays.
 fn whole_keys(text: &str, width: usize) -> String {
     let mut shown = String::new();
     for key in text.split(" · ") {
@@ -209,12 +209,12 @@ fn whole_keys(text: &str, width: usize) -> String {
     fit(&shown, width)
 }
 
-/// The rows of an area, each one cell high.
+/// Returns the rows of an area, each one cell high.
 pub fn rows_of(area: Rect) -> impl Iterator<Item = Rect> {
     (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
 }
 
-/// Text of at most a width, with an ellipsis where it was cut. Widths are those of whole graphemes.
+/// Truncates text to a width with an ellipsis, between graphemes.
 pub fn fit(text: &str, width: usize) -> String {
     if text.width() <= width && !text.contains(|letter: char| letter.is_control()) {
         return text.to_owned();
@@ -239,7 +239,7 @@ pub fn fit(text: &str, width: usize) -> String {
     fitted
 }
 
-/// A rectangle of a size in the middle of an area, cut to it.
+/// Returns a rectangle in the middle of an area, clipped to it.
 pub fn centered(area: Rect, width: u16, height: u16) -> Rect {
     let (width, height) = (width.min(area.width), height.min(area.height));
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }

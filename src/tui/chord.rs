@@ -1,10 +1,9 @@
-//! Keys with their modifiers, as key files write them: `n`, `ctrl-s`, `shift-tab`.
+//! Keys with modifiers, in the notation of key files: `n`, `ctrl-s`, `shift-tab`.
 
 use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Longest row of chords for one action.
 const LONGEST: usize = 3;
 
 /// A key with its modifiers.
@@ -16,7 +15,7 @@ pub struct Chord {
     shift: bool,
 }
 
-/// Names of keys that are no characters.
+/// Names of keys that are not characters.
 const NAMED: [(&str, KeyCode); 15] = [
     ("enter", KeyCode::Enter),
     ("esc", KeyCode::Esc),
@@ -36,24 +35,24 @@ const NAMED: [(&str, KeyCode); 15] = [
 ];
 
 impl Chord {
-    /// The chord of a key event.
+    /// Returns the chord of a key event.
     pub fn of(event: &KeyEvent) -> Chord {
         let has = |modifier| event.modifiers.contains(modifier);
         let (mut code, mut shift) = (event.code, has(KeyModifiers::SHIFT));
         if code == KeyCode::BackTab {
             (code, shift) = (KeyCode::Tab, true);
         }
-        // A character already says whether shift was held.
+        // The character already reflects the shift key.
         if matches!(code, KeyCode::Char(_)) {
             shift = false;
         }
         Chord { code, ctrl: has(KeyModifiers::CONTROL), alt: has(KeyModifiers::ALT), shift }
     }
 
-    /// Reads a chord as the key file writes it.
+    /// Parses a chord in the notation of key files.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The text is not a chord; the message says why.
     pub fn parse(text: &str) -> Result<Chord, String> {
         let mut chord = Chord { code: KeyCode::Null, ctrl: false, alt: false, shift: false };
         let mut rest = text;
@@ -84,13 +83,13 @@ impl Chord {
                     .and_then(|number| number.parse::<u8>().ok())
                     .filter(|number| (1..=12).contains(number))
                     .map(KeyCode::F)
-                    .ok_or_else(|| format!("{text:?} is no key"))?,
+                    .ok_or_else(|| format!("{text:?} is not a key"))?,
             },
         };
         Ok(chord)
     }
 
-    /// The event a terminal would send.
+    /// Returns the event that a terminal would send.
     pub fn event(&self) -> KeyEvent {
         let mut modifiers = KeyModifiers::NONE;
         for (held, modifier) in [
@@ -103,24 +102,24 @@ impl Chord {
         KeyEvent::new(self.code, modifiers)
     }
 
-    /// Whether it is the key that cancels.
+    /// Returns whether it is the escape key.
     pub fn is_escape(&self) -> bool {
         self.code == KeyCode::Esc
     }
 
-    /// Whether it is a character that is typed.
+    /// Returns whether it is a printable character.
     pub fn is_printable(&self) -> bool {
         matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
     }
 
-    /// Whether it begins a number.
+    /// Returns whether it can start a number.
     pub fn begins_number(&self) -> bool {
         matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
             && !self.ctrl
             && !self.alt
     }
 
-    /// Whether a text field wants it for itself.
+    /// Returns whether a text field handles it.
     pub fn is_text(&self) -> bool {
         match self.code {
             KeyCode::Char(_) => !self.ctrl && !self.alt,
@@ -159,7 +158,7 @@ impl fmt::Display for Chord {
     }
 }
 
-/// Reads chords that are pressed one after the other.
+/// Parses a sequence of chords.
 ///
 /// # Errors
 /// A chord cannot be parsed, or there are too many.
@@ -167,12 +166,12 @@ pub fn sequence(text: &str) -> Result<Vec<Chord>, String> {
     let chords: Result<Vec<Chord>, String> = text.split(' ').map(Chord::parse).collect();
     let chords = chords?;
     if chords.len() > LONGEST {
-        return Err(format!("{text:?} is longer than {LONGEST} keys"));
+        return Err(format!("{text:?} has more than {LONGEST} keys"));
     }
     Ok(chords)
 }
 
-/// Chords as the key file writes them.
+/// Formats chords in the notation of key files.
 pub fn written(chords: &[Chord]) -> String {
     chords.iter().map(Chord::to_string).collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Finding by typing parts of names: what matches, the best first, and which letters did.
+//! Fuzzy search: finds entries by parts of their names, the best match first.
 
 use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
@@ -9,11 +9,11 @@ use unicode_width::UnicodeWidthStr;
 use super::canvas::Canvas;
 use super::theme::Role;
 
-/// Something that matches: its number among all, and the letters of its title that matched.
+/// A match: the index of the entry, and the positions of matched letters in its title.
 pub type Found = (usize, Vec<u32>);
 
-/// What matches, the best first; a match in the title counts more than one in the explanation. Without anything
-/// typed, everything in its order.
+/// Returns the matches, the best first; matches in titles rank higher than those in explanations. Without a search
+/// text, returns everything in order.
 pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<Found> {
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
     let mut matcher = Matcher::new(Config::DEFAULT);
@@ -32,10 +32,10 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
     scored.into_iter().map(|(_, at, places)| (at, places)).collect()
 }
 
-/// Writes a title with the letters that matched in another meaning.
+/// Draws a title with its matched letters highlighted.
 pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
     canvas.text(area, title, roles[0]);
-    // Where the title is cut, an ellipsis stands in the last column.
+    // A truncated title ends with an ellipsis in the last column.
     let cut = title.width() > area.width as usize;
     let room = area.width.saturating_sub(u16::from(cut));
     let mut column = 0;

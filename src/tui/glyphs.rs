@@ -1,22 +1,22 @@
-//! What frames are drawn with.
+//! Sets of characters for drawing frames.
 
 use ratatui::symbols::Marker;
 use serde::{Deserialize, Serialize};
 
-/// What a frame is drawn with.
+/// A set of characters for drawing frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Glyphs {
-    /// Curves of braille dots.
+    /// Braille dots for curves.
     Braille,
-    /// Curves of half blocks, for fonts without braille.
+    /// Half blocks for curves, for fonts without braille.
     Blocks,
-    /// ASCII alone.
+    /// ASCII only.
     Ascii,
 }
 
 impl Glyphs {
-    /// The next ones, the first ones again after the last.
+    /// Returns the next set, cyclically.
     pub fn next(self) -> Glyphs {
         match self {
             Glyphs::Braille => Glyphs::Blocks,
@@ -25,7 +25,7 @@ impl Glyphs {
         }
     }
 
-    /// What curves are drawn with.
+    /// Returns the marker for curves.
     pub fn marker(self) -> Marker {
         match self {
             Glyphs::Braille => Marker::Braille,
@@ -34,12 +34,12 @@ impl Glyphs {
         }
     }
 
-    /// In words.
+    /// Returns the name.
     pub fn words(self) -> &'static str {
         match self {
             Glyphs::Braille => "braille dots",
             Glyphs::Blocks => "blocks",
-            Glyphs::Ascii => "ASCII signs",
+            Glyphs::Ascii => "ASCII characters",
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Parts of terminal applications that know nothing of companies and runs: canvas, themes, widgets, keys, fuzzy search,
-//! and pictures of frames.
+//! Parts of terminal applications that are independent of the game: canvas, themes, widgets, keys, fuzzy search, and
+//! pictures of frames.
 
 pub mod ascii;
 pub mod asciicast;
@@ -14,7 +14,7 @@ pub mod text;
 pub mod theme;
 pub mod widgets;
 
-/// Returns the rows of a window after `draw`, without blanks at their ends.
+/// Returns the rows of a window after `draw`, without trailing spaces.
 #[cfg(test)]
 fn painted(
     width: u16,

@@ -1,4 +1,4 @@
-//! Pictures of frames: text, and SVG with the colours of a terminal.
+//! Exports frames as text, and as SVG with terminal colors.
 
 mod signs;
 
@@ -10,14 +10,13 @@ use unicode_width::UnicodeWidthStr;
 
 use novamind_base::notation::escaped_html;
 
-/// Width of a cell, pixels.
+/// Width of a cell, in pixels.
 const WIDTH: f64 = 8.4;
-/// Height of a cell, pixels.
+/// Height of a cell, in pixels.
 const HEIGHT: f64 = 18.0;
-/// Room around the cells, pixels.
 const MARGIN: f64 = 14.0;
 
-/// Colours of a terminal's own ink and paper.
+/// Default foreground and background colors of a terminal.
 #[derive(Debug, Clone, Copy)]
 pub struct Paper {
     ink: &'static str,
@@ -25,13 +24,13 @@ pub struct Paper {
 }
 
 impl Paper {
-    /// Light signs on a dark ground.
+    /// Light text on a dark background.
     pub const DARK: Paper = Paper { ink: "#d6dae1", paper: "#14171c" };
-    /// Dark signs on a light ground.
+    /// Dark text on a light background.
     pub const LIGHT: Paper = Paper { ink: "#24292f", paper: "#fbfbfa" };
 }
 
-/// The letters of a frame, a line for each row.
+/// Returns the text of a frame, one line per row.
 pub fn text(buffer: &Buffer) -> String {
     let row = |y| {
         let mut line = String::new();
@@ -46,7 +45,7 @@ pub fn text(buffer: &Buffer) -> String {
     (0..buffer.area.height).map(row).collect()
 }
 
-/// A frame as an SVG picture that needs nothing besides itself.
+/// Returns a frame as a self-contained SVG picture.
 pub fn svg(buffer: &Buffer, paper: Paper) -> String {
     let width = f64::from(buffer.area.width) * WIDTH + 2.0 * MARGIN;
     let height = f64::from(buffer.area.height) * HEIGHT + 2.0 * MARGIN;
@@ -72,12 +71,12 @@ fn draw_row(out: &mut String, buffer: &Buffer, y: u16, paper: Paper) {
     }
 }
 
-/// Cells of one row that look the same: their ground, the signs that are drawn, the letters that are written.
+/// Draws consecutive cells of a row that have the same style: background, drawn characters and text.
 fn draw_piece(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper: Paper) {
     let (ink, ground) = colours(cells[0], paper);
     let place = |column: usize| MARGIN + (x + column) as f64 * WIDTH;
     let top = MARGIN + f64::from(y) * HEIGHT;
-    // Writing into a text cannot fail.
+    // Writing to a string cannot fail.
     if let Some(ground) = ground {
         let (left, width) = (place(0), cells.len() as f64 * WIDTH);
         let _ = writeln!(
@@ -93,7 +92,7 @@ fn draw_piece(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper: Pa
             let path = signs::path(sign, place(column), top, (WIDTH, HEIGHT));
             path.map(|path| shapes.push_str(&path)).is_some()
         });
-        // Blanks between words belong to neither.
+        // Spaces between words belong to neither.
         let written = !drawn && cell.symbol() != " ";
         match letters.last_mut() {
             Some((_, word)) if written && beside => word.push_str(cell.symbol()),
@@ -114,7 +113,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks
     let weight = if looks.contains(Modifier::BOLD) { " font-weight=\"bold\"" } else { "" };
     let faint = if looks.contains(Modifier::DIM) { " opacity=\"0.6\"" } else { "" };
     let line = if looks.contains(Modifier::UNDERLINED) { " text-decoration=\"underline\"" } else { "" };
-    // The length keeps columns where they are, whatever font the reader has.
+    // The length keeps columns aligned with any font.
     let length = word.width() as f64 * WIDTH;
     let base = top + HEIGHT * 0.76;
     let _ = writeln!(
@@ -125,7 +124,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks
     );
 }
 
-/// Ink of a cell, and its ground where it is not the paper.
+/// Returns the foreground of a cell, and its background if it differs from the default.
 fn colours(cell: &Cell, paper: Paper) -> (String, Option<String>) {
     let ink = colour(cell.fg).unwrap_or_else(|| paper.ink.to_owned());
     let ground = colour(cell.bg);
@@ -136,7 +135,7 @@ fn colours(cell: &Cell, paper: Paper) -> (String, Option<String>) {
     }
 }
 
-/// A colour of a terminal as the web writes it; none for the terminal's own.
+/// Returns a terminal color in CSS notation, or `None` for the default color.
 fn colour(colour: Color) -> Option<String> {
     let name = match colour {
         Color::Reset => return None,
@@ -162,7 +161,7 @@ fn colour(colour: Color) -> Option<String> {
     Some(name.to_owned())
 }
 
-/// A colour of the cube of 256.
+/// Returns a color of the 256-color palette.
 fn indexed(number: u8) -> String {
     let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
     let (red, green, blue) = match number {

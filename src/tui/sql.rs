@@ -1,29 +1,29 @@
-//! Pieces of SQL, for colours and completion. Half-typed statements are the usual case, so nothing is an error:
-//! what does not end simply goes on to the end of the text.
+//! SQL tokens, for highlighting and completion. Unfinished statements are common, so nothing is an error: an
+//! unterminated token extends to the end of the text.
 
 use std::ops::Range;
 
 use crate::theme::Role;
 
-/// What a piece is.
+/// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LexemeKind {
-    /// A word of the language.
+    /// A keyword.
     Keyword,
-    /// A name, plain or quoted.
+    /// A plain or quoted identifier.
     Name,
-    /// A text in single quotes.
+    /// A string in single quotes.
     Text,
     /// A number.
     Number,
     /// A comment.
     Comment,
-    /// Anything else that is no blank.
+    /// Any other character that is not white space.
     Sign,
 }
 
 impl LexemeKind {
-    /// How it is drawn.
+    /// Returns the role for drawing it.
     pub fn role(self) -> Role {
         match self {
             LexemeKind::Keyword => Role::Keyword,
@@ -35,16 +35,16 @@ impl LexemeKind {
     }
 }
 
-/// A piece and where it stands, in bytes.
+/// A token and its byte range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// The kind.
     pub kind: LexemeKind,
-    /// Where it stands.
+    /// The byte range.
     pub place: Range<usize>,
 }
 
-/// Words of the language that are worth completing.
+/// Keywords for completion.
 pub const KEYWORDS: [&str; 66] = [
     "SELECT",
     "FROM",
@@ -114,7 +114,7 @@ pub const KEYWORDS: [&str; 66] = [
     "FALSE",
 ];
 
-/// Functions that are worth completing; an opening bracket follows them.
+/// Functions for completion; an opening parenthesis follows them.
 pub const FUNCTIONS: [&str; 32] = [
     "count",
     "sum",
@@ -150,12 +150,12 @@ pub const FUNCTIONS: [&str; 32] = [
     "ceil",
 ];
 
-/// Whether a character belongs to a word.
+/// Returns whether a character is part of a word.
 pub fn is_word(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// The pieces of a text, in order; blanks between them are left out.
+/// Returns the tokens of a text in order, without white space.
 pub fn tokens(sql: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -190,7 +190,7 @@ pub fn tokens(sql: &str) -> Vec<Token> {
     found
 }
 
-/// Length of a quoted piece; a doubled quote does not end it.
+/// Returns the length of a quoted token; a doubled quote does not end it.
 fn quoted(rest: &str, quote: char) -> usize {
     let mut at = 1;
     while let Some(end) = rest[at..].find(quote) {
@@ -203,7 +203,7 @@ fn quoted(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Length of a number: digits, a point, an exponent.
+/// Returns the length of a number: digits, a point, an exponent.
 fn number(rest: &str) -> usize {
     let mut before = ' ';
     let part_of = |letter: char| {
@@ -215,8 +215,8 @@ fn number(rest: &str) -> usize {
     rest.find(|letter| !part_of(letter)).unwrap_or(rest.len())
 }
 
-/// The statement in which a place lies, without the semicolon that ends it; with the number of the statement and of
-/// all of them. A place behind the last semicolon belongs to the statement before it if nothing follows.
+/// Returns the statement at a position without its final semicolon, its number, and the number of statements. A
+/// position after the last semicolon belongs to the last statement if nothing follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokens(sql);
     let ends =

@@ -1,4 +1,4 @@
-//! The terminal: prepared once, restored whatever happens.
+//! Setup of the terminal, which is restored in every case.
 
 use std::io::{self, Stdout, Write};
 use std::sync::Mutex;
@@ -19,7 +19,7 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Position;
 
-/// The terminal while the console has it; given back when this is dropped.
+/// The terminal while the application uses it; restored on drop.
 pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
@@ -33,16 +33,16 @@ pub fn set_panic_note(note: Option<String>) {
 }
 
 impl TerminalScreen {
-    /// Takes the terminal. If the main thread panics, the terminal is given back before the message is printed.
+    /// Prepares the terminal. If the main thread panics, the terminal is restored before the message is printed.
     ///
     /// # Errors
-    /// It does not let itself be taken.
+    /// The terminal cannot be prepared.
     pub fn take() -> io::Result<TerminalScreen> {
         let taken = prepare().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
         let terminal = taken.inspect_err(|_| restore())?;
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            // The application handles panics of its other threads itself.
+            // The application handles panics of its other threads.
             if std::thread::current().name() == Some("main") {
                 restore();
                 usual(panic);
@@ -55,10 +55,10 @@ impl TerminalScreen {
         Ok(TerminalScreen { terminal })
     }
 
-    /// Gives the terminal back and stops the program until it is continued; then takes the terminal again.
+    /// Restores the terminal, stops the program until it is continued, and prepares the terminal again.
     ///
     /// # Errors
-    /// The terminal does not let itself be taken.
+    /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn suspend(&mut self, mouse: bool) -> io::Result<()> {
         restore();
@@ -66,23 +66,24 @@ impl TerminalScreen {
         self.resume(mouse)
     }
 
-    /// Takes the terminal again after the program was stopped: whoever stopped it may have changed the terminal.
+    /// Prepares the terminal again after the program was stopped, because the terminal may have been changed
+    /// meanwhile.
     ///
     /// # Errors
-    /// It does not let itself be taken.
+    /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn resume(&mut self, mouse: bool) -> io::Result<()> {
-        // Raw mode that is believed to be on is not turned on again.
+        // Enabling raw mode has no effect while it counts as enabled.
         let _ = disable_raw_mode();
         prepare()?;
         self.mouse(mouse);
         self.clear()
     }
 
-    /// Draws a frame with `paint`, which returns where the cursor is shown.
+    /// Draws a frame with `paint`, which returns the position of the cursor.
     ///
     /// # Errors
-    /// The terminal does not take it.
+    /// Writing to the terminal fails.
     pub fn draw(&mut self, paint: impl FnOnce(&mut Buffer) -> Option<Position>) -> io::Result<()> {
         execute!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
         self.terminal.draw(|whole| {
@@ -93,28 +94,29 @@ impl TerminalScreen {
         execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)
     }
 
-    /// Forgets what is on the screen, so that the next frame is drawn whole.
+    /// Clears the screen, so that the next frame is drawn completely.
     ///
     /// # Errors
-    /// The terminal does not take it.
+    /// Writing to the terminal fails.
     pub fn clear(&mut self) -> io::Result<()> {
-        // Clearing it would ask the terminal where its cursor is, and the answer goes to the thread that reads keys.
+        // The clear function of the library asks for the cursor position, but the thread that reads keys would
+        // receive the answer.
         let size = self.terminal.size()?;
         self.terminal.resize(size.into())
     }
 
-    /// Takes the mouse, or leaves it to the terminal, which then selects text with it.
+    /// Captures the mouse, or leaves it to the terminal, which then selects text with it.
     pub fn mouse(&mut self, taken: bool) {
-        // A terminal without a mouse ignores it.
+        // Terminals without a mouse ignore it.
         let _ = match taken {
             true => execute!(self.terminal.backend_mut(), EnableMouseCapture),
             false => execute!(self.terminal.backend_mut(), DisableMouseCapture),
         };
     }
 
-    /// Puts text into the clipboard, where the terminal lets programs do that.
+    /// Copies text to the clipboard, if the terminal permits it.
     pub fn copy(&mut self, text: &str) {
-        // A terminal without a clipboard ignores it; the text is on the screen anyway.
+        // Terminals without a clipboard ignore it; the text is on the screen anyway.
         let _ = execute!(self.terminal.backend_mut(), CopyToClipboard::to_clipboard_from(text));
     }
 }
@@ -125,16 +127,16 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// Raw mode, the alternate screen, pasted text as a whole, whether the window has the focus, the mouse.
+/// Enables raw mode, the alternate screen, bracketed paste, focus events and the mouse.
 fn prepare() -> io::Result<()> {
     enable_raw_mode()?;
     execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
-/// Gives the terminal back. May be called more than once.
+/// Restores the terminal. May be called repeatedly.
 fn restore() {
     let mut out = io::stdout();
-    // Nothing better can be done for a terminal that has gone away.
+    // Errors are ignored, because the terminal may be gone.
     let _ = execute!(
         out,
         DisableMouseCapture,

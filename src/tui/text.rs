@@ -1,15 +1,15 @@
-//! Breaking text into lines, and small words for figures.
+//! Wrapping of text, and short formats of figures.
 
 use unicode_width::UnicodeWidthStr;
 
 use novamind_base::notation::grouped;
 
-/// Text in lines of at most a width, broken between words where that is possible.
+/// Wraps text to a width, between words if possible.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     for paragraph in text.lines() {
-        // What fits stays as it is: blanks may line up columns.
+        // Text that fits is kept, because spaces may align columns.
         if paragraph.width() <= width {
             lines.push(paragraph.to_owned());
             continue;
@@ -41,7 +41,7 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A change with its direction in sign and glyph: `▲ 120`, `▼ 3`, `=`.
+/// Formats a change with its direction: `▲ 120`, `▼ 3`, `=`.
 pub fn arrow(change: f64, shown: &str) -> String {
     match change {
         change if change > 0.0 => format!("▲ {shown}"),
@@ -50,20 +50,20 @@ pub fn arrow(change: f64, shown: &str) -> String {
     }
 }
 
-/// A count with its noun: `1 seat`, `1,200 seats`.
+/// Formats a count with its noun: `1 seat`, `1,200 seats`.
 pub fn count(number: f64, noun: &str) -> String {
     novamind_base::notation::count(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
 }
 
-/// A number with as many decimals as it needs, at most two.
+/// Formats a number with as many decimals as it needs, at most two.
 pub fn number(value: f64) -> String {
-    // A sum over nothing is minus zero.
+    // An empty sum is minus zero.
     let value = value + 0.0;
     let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
     grouped(value, decimals)
 }
 
-/// The first wording that fits into some columns; the last one if none does.
+/// Returns the first wording that fits into a width, or the last one.
 pub fn fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
     let mut last = String::new();
     for wording in wordings {
@@ -75,8 +75,7 @@ pub fn fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> Stri
     last
 }
 
-/// Pieces side by side with dots between them, in lines that are not wider than some columns; no piece is broken unless
-/// it is wider than a line.
+/// Joins pieces with dots and wraps the result between pieces. Only a piece wider than a line is split.
 pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for piece in pieces {

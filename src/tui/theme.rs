@@ -1,9 +1,9 @@
-//! Colours by meaning, read from `configs/themes/*.toml`.
+//! Colors by role, read from `configs/themes/*.toml`.
 
 use ratatui::style::{Color, Modifier, Style};
 use serde::Deserialize;
 
-/// What a piece of the screen means.
+/// The role of a piece of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Ordinary text.
@@ -22,31 +22,31 @@ pub enum Role {
     Selection,
     /// Selected row of another list.
     SelectionIdle,
-    /// Names of the screens.
+    /// Tabs of screens.
     Tab,
-    /// The screen that is shown.
+    /// Tab of the current screen.
     TabHere,
     /// Keys.
     Key,
-    /// Better than before.
+    /// An improvement.
     Good,
-    /// Worse than before, refused.
+    /// A deterioration or a rejection.
     Bad,
-    /// Needs the person.
+    /// Requires attention.
     Warning,
-    /// Heads of columns.
+    /// Column heads.
     Header,
-    /// Where text is typed.
+    /// Text fields.
     Field,
-    /// Differs from what holds.
+    /// A value that differs from the current one.
     Changed,
-    /// Lines of charts, by number.
+    /// Chart series, by number.
     Series(usize),
-    /// Intervals of forecasts.
+    /// Forecast intervals.
     Fan,
     /// SQL keywords.
     Keyword,
-    /// SQL texts.
+    /// SQL strings.
     SqlText,
     /// SQL numbers.
     Number,
@@ -107,7 +107,7 @@ struct File {
     comment: RoleStyle,
 }
 
-/// A set of colours.
+/// A theme.
 #[derive(Debug, Clone)]
 pub struct Theme {
     /// Name.
@@ -125,7 +125,7 @@ impl Theme {
     /// Parses the text of a theme file.
     ///
     /// # Errors
-    /// The text is not TOML, a role is missing or unknown, or there is no colour for series.
+    /// The text is not TOML, a role is missing or unknown, or there is no color for series.
     pub fn parse(name: &str, text: &str) -> Result<Theme, String> {
         let looks: File = toml::from_str(text).map_err(|error| error.to_string())?;
         if looks.series.is_empty() {
@@ -134,13 +134,13 @@ impl Theme {
         Ok(Theme { name: name.to_owned(), looks })
     }
 
-    /// Whether so many series can be told apart by colour alone.
+    /// Returns whether `count` series can be distinguished by color alone.
     pub fn colours_apart(&self, count: usize) -> bool {
         let colours = || (0..count).map(|number| self.style(Role::Series(number)).fg);
         colours().enumerate().all(|(at, own)| own.is_some() && colours().take(at).all(|other| other != own))
     }
 
-    /// The style of a meaning.
+    /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         let looks = &self.looks;
         let look = match role {
@@ -186,13 +186,13 @@ mod tests {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
         }
         assert!(!mono.colours_apart(2));
-        // Colour 8 is the background on many palettes: no words stand in it.
+        // Color 8 is the background on many palettes, so no text uses it.
         for name in ["dark", "light"] {
             let theme = Theme::bundled(name).expect(name);
             for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {
                 assert_ne!(theme.style(role).fg, Some(Color::DarkGray), "{name} {role:?}");
             }
-            assert!(theme.colours_apart(12), "{name}: one colour a category");
+            assert!(theme.colours_apart(12), "{name}: one color per category");
         }
         assert!(Theme::bundled("pink").is_none());
     }

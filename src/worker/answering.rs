@@ -1,4 +1,4 @@
-//! Work on its own thread whose question is always answered.
+//! Background work that always produces an answer.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
@@ -7,8 +7,8 @@ use std::sync::{Mutex, MutexGuard};
 use crate::message::{Message, News};
 use novamind_tools::Refusal;
 
-/// Runs `work` on its own thread and reports its result. A panic is reported as a refusal, so that no pane waits forever.
-/// Nothing is reported if `work` returns `None`: the user has stopped it.
+/// Runs `work` on its own thread and reports its result. A panic is reported as a rejection, so that no pane waits
+/// forever. Reports nothing if `work` returns `None` because the user has cancelled it.
 pub fn answer_on_thread<T>(
     news: Sender<Message>,
     work: impl FnOnce() -> Result<Option<T>, Refusal> + Send + 'static,
@@ -22,27 +22,25 @@ pub fn answer_on_thread<T>(
     });
 }
 
-/// Runs `work`, and returns a refusal if it panics.
+/// Runs `work`, and returns a rejection if it panics.
 ///
 /// # Errors
-/// `internal_error`: `work` has panicked. What it used may be half done.
+/// `internal_error`: `work` has panicked. Values that it used may be inconsistent.
 pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let reason = words_of(&*panic);
-        let message = format!(
-            "the program has a defect ({reason}); nothing was changed; the run is safe, and play can continue"
-        );
+        let message =
+            format!("internal error ({reason}); nothing was changed, the run is safe and you can continue");
         Refusal::new("internal_error", message)
     })
 }
 
-/// The message of a panic.
 pub(super) fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
 }
 
-/// Locks what an earlier question has kept. A panic during that question may have left it half done: then it is dropped.
+/// Locks a cache. Resets it if a panic may have left it inconsistent.
 pub(super) fn lock_kept<T: Default>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
     kept.lock().unwrap_or_else(|poisoned| {
         let mut guard = poisoned.into_inner();
@@ -81,10 +79,7 @@ mod tests {
         assert_eq!(answered(|| Err(Refusal::new("no", "refused"))), [Err("refused".to_owned())]);
         let defect = answered(|| panic!("row 3 is missing"));
         let [Err(words)] = defect.as_slice() else { panic!("{defect:?}") };
-        assert!(
-            words.starts_with("the program has a defect (row 3 is missing); nothing was changed"),
-            "{words}"
-        );
+        assert!(words.starts_with("internal error (row 3 is missing); nothing was changed"), "{words}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! Questions of pages and their answers. A page keeps a [`Pending`], the worker a [`Reply`] to it: an answer reaches the page
-//! that asked, as the answer to what it asked last, and no one has to compare anything.
+//! Questions of pages and their answers. A page keeps a [`Pending`], the worker the matching [`Reply`]: an answer
+//! reaches only the page that asked, and only for its latest question.
 //!
-//! An answer arrives with a [`Message`], after everything that was reported before it and before everything that follows.
+//! An answer arrives as a [`Message`], in order with all other messages.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -15,29 +15,28 @@ use crate::message::{Delivery, Message};
 use novamind_database::Ticket;
 use novamind_tools::Refusal;
 
-/// A question that a page asks the worker.
+/// A question that a page sends to the worker.
 pub trait Question: Clone + Debug + Send + Sync + 'static {
-    /// What answers it.
+    /// The answer.
     type Answer: Send + 'static;
-    /// How far the work for it has come; `()` if that is not reported.
+    /// Progress of the work; `()` if it is not reported.
     type Progress: Copy + Send + 'static;
 
-    /// Answers on the session's thread, or passes the reply on to another one.
+    /// Answers on the session thread, or passes the reply to another thread.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>);
 
-    /// Answers without the session's thread, which is busy with a week, if that is possible.
+    /// Answers without the session thread, which is busy with a week, if possible.
     fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
         workers.ask_in_turn(self, reply);
     }
 }
 
-/// What a page keeps while it waits. If it is dropped, or asks something else, the answer is dropped and the work stops where
-/// it can.
+/// The page's side of a question. If it is dropped or asks again, the answer is dropped and the work is cancelled if
+/// possible.
 pub struct Pending<Q: Question>(Option<(Q, Arc<Slot<Q>>)>);
 
 type Slot<Q> = Mutex<Arrived<Q>>;
 
-/// What has arrived for a question.
 struct Arrived<Q: Question> {
     progress: Option<Q::Progress>,
     answer: Option<Result<Q::Answer, Refusal>>,
@@ -49,7 +48,7 @@ impl<Q: Question> Default for Arrived<Q> {
     }
 }
 
-/// Nothing is done while this is locked that could leave it half done.
+/// Ignores poisoning: no code panics between dependent changes.
 fn lock<Q: Question>(slot: &Slot<Q>) -> MutexGuard<'_, Arrived<Q>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -61,14 +60,14 @@ impl<Q: Question> Default for Pending<Q> {
 }
 
 impl<Q: Question> Pending<Q> {
-    /// Asks a first question.
+    /// Returns the pending question, and the question to send.
     pub fn asking(question: Q) -> (Pending<Q>, Ask) {
         let mut pending = Pending::default();
         let ask = pending.ask(question);
         (pending, ask)
     }
 
-    /// Asks; what was asked before is cancelled.
+    /// Asks a question, and cancels the previous one.
     pub fn ask(&mut self, question: Q) -> Ask {
         let slot = Arc::default();
         let asked = Asked { question: question.clone(), slot: Arc::downgrade(&slot) };
@@ -76,35 +75,35 @@ impl<Q: Question> Pending<Q> {
         Ask(Arc::new(asked))
     }
 
-    /// The question that is not answered yet.
+    /// Returns the unanswered question.
     pub fn question(&self) -> Option<&Q> {
         self.0.as_ref().map(|(question, _)| question)
     }
 
-    /// Whether an answer is awaited.
+    /// Returns whether a question is unanswered.
     pub fn is_waiting(&self) -> bool {
         self.0.is_some()
     }
 
-    /// How far the work has come, as it was reported last.
+    /// Returns the last reported progress.
     pub fn progress(&self) -> Option<Q::Progress> {
         lock(&self.0.as_ref()?.1).progress
     }
 
-    /// Takes the answer once it has arrived, with the question.
+    /// Takes the question and its answer if it has arrived.
     pub fn try_take(&mut self) -> Option<(Q, Result<Q::Answer, Refusal>)> {
         let answer = lock(&self.0.as_ref()?.1).answer.take()?;
         let (question, _) = self.0.take()?;
         Some((question, answer))
     }
 
-    /// Waits no longer.
+    /// Cancels the question.
     pub fn cancel(&mut self) {
         self.0 = None;
     }
 }
 
-/// A question on its way to the worker.
+/// A question to send to the worker.
 #[derive(Debug, Clone)]
 pub struct Ask(Arc<dyn AnyAsked>);
 
@@ -121,7 +120,7 @@ trait AnyAsked: Any + Debug + Send + Sync {
 impl<Q: Question> AnyAsked for Asked<Q> {
     fn hand_over(&self, workers: &Workers, is_busy: bool) {
         let news = workers.news.clone();
-        // Drawn now: a stop may come before the query has begun.
+        // The ticket is taken now, because a stop may arrive before the query starts.
         let ticket = workers.queries.ticket();
         let reply = Reply { slot: self.slot.clone(), news, ticket, is_answered: false };
         let question = self.question.clone();
@@ -133,23 +132,23 @@ impl<Q: Question> AnyAsked for Asked<Q> {
 }
 
 impl Workers {
-    /// Hands over a question. The session's thread may be busy with a week.
+    /// Sends a question. With `is_busy`, the session thread is busy with a week.
     pub fn ask(&self, ask: &Ask, is_busy: bool) {
         ask.0.hand_over(self, is_busy);
     }
 
-    /// Asks the session's thread, after everything that was handed over before.
+    /// Asks the session thread, after all earlier jobs.
     pub(super) fn ask_in_turn<Q: Question>(&self, question: Q, reply: Reply<Q>) {
         self.send(Job::Ask(Box::new(move |thread| question.answer(thread, reply))));
     }
 }
 
-/// The way back to the page that asked. A reply that is dropped, because the work for it panicked or was impossible, tells the
-/// page so.
+/// The worker's side of a question. If it is dropped without an answer, because the work panicked or was impossible,
+/// the page receives an error.
 pub struct Reply<Q: Question> {
     slot: Weak<Slot<Q>>,
     news: Sender<Message>,
-    /// By which a query of the user is stopped.
+    /// Stops a query of the user.
     pub(super) ticket: Option<Ticket>,
     is_answered: bool,
 }
@@ -165,12 +164,12 @@ impl<Q: Question> Reply<Q> {
         self.deliver(true, |arrived| arrived.answer = Some(answer));
     }
 
-    /// Reports how far the work has come.
+    /// Reports the progress of the work.
     pub fn report(&self, progress: Q::Progress) {
         self.deliver(false, move |arrived| arrived.progress = Some(progress));
     }
 
-    /// Whether the work goes on: no one waits for it any more otherwise.
+    /// Returns `Break` if the page no longer waits.
     pub fn go_on(&self) -> ControlFlow<()> {
         match self.slot.strong_count() {
             0 => ControlFlow::Break(()),
@@ -178,8 +177,8 @@ impl<Q: Question> Reply<Q> {
         }
     }
 
-    /// Answers with what `work` finds on its own thread. A panic is answered with a refusal; nothing was found if no one waits
-    /// any more.
+    /// Runs `work` on its own thread and answers with its result. A panic is answered with a rejection. `work`
+    /// returns `None` if the page no longer waits.
     pub fn answer_on_thread(
         self,
         work: impl FnOnce(&Reply<Q>) -> Result<Option<Q::Answer>, Refusal> + Send + 'static,
@@ -199,7 +198,7 @@ impl<Q: Question> Reply<Q> {
                 put(&mut lock(&slot));
             }
         });
-        // No one listens once the program ends.
+        // The receiver is gone when the program ends.
         let _ = self.news.send(Message::Arrived(Delivery { put, is_answer }));
     }
 }
@@ -207,26 +206,26 @@ impl<Q: Question> Reply<Q> {
 impl<Q: Question> Drop for Reply<Q> {
     fn drop(&mut self) {
         if !self.is_answered {
-            let message = "this was not answered, nothing was changed; ask again";
+            let message = "not answered because of an internal error; nothing was changed, try again";
             self.send_answer(Err(Refusal::new("internal_error", message)));
         }
     }
 }
 
-/// What tests of pages do in place of the worker.
+/// Replaces the worker in tests of pages.
 #[cfg(any(test, feature = "test-kit"))]
 mod in_tests {
     use super::*;
 
     impl<Q: Question> Pending<Q> {
-        /// Gives an answer to the question that waits for one.
+        /// Sets the answer to the pending question.
         pub fn put(&self, answer: Result<Q::Answer, Refusal>) {
             if let Some((_, slot)) = &self.0 {
                 lock(slot).answer = Some(answer);
             }
         }
 
-        /// Reports how far the work has come.
+        /// Sets the progress of the pending question.
         #[cfg(any(test, feature = "test-kit"))]
         pub fn put_progress(&self, progress: Q::Progress) {
             if let Some((_, slot)) = &self.0 {
@@ -236,12 +235,12 @@ mod in_tests {
     }
 
     impl Ask {
-        /// The question, if it is one of this type.
+        /// Returns the question if it has this type.
         pub fn question<Q: Question>(&self) -> Option<&Q> {
             self.asked().map(|asked| &asked.question)
         }
 
-        /// The way back to the page, if the question is one of this type.
+        /// Returns a reply to the page if the question has this type.
         pub fn reply<Q: Question>(&self, news: Sender<Message>) -> Option<Reply<Q>> {
             let slot = self.asked::<Q>()?.slot.clone();
             Some(Reply { slot, news, ticket: None, is_answered: false })
@@ -263,7 +262,7 @@ mod tests {
     use crate::message::News;
     use novamind_record::folder::configuration::Configuration;
 
-    /// Answers with its number, or panics.
+    /// Answers with its number, or fails.
     #[derive(Debug, Clone, PartialEq)]
     enum Test {
         Number(u32),
@@ -296,7 +295,7 @@ mod tests {
         (Workers::start(sender, Configuration::shipped(), "nowhere".into(), false), messages)
     }
 
-    /// Delivers what arrives, up to an answer.
+    /// Delivers messages up to the next answer.
     fn until_answer(messages: &Receiver<Message>) {
         loop {
             if let Message::Arrived(delivery) = messages.recv_timeout(PATIENCE).expect("a message") {
@@ -333,7 +332,7 @@ mod tests {
         assert!(pending.try_take().is_none() && pending.progress().is_none(), "the first answer");
         until_answer(&messages);
         assert_eq!(pending.try_take().and_then(|(_, answer)| answer.ok()), Some(2));
-        // The same where the later question is asked when the earlier answer is on its way.
+        // The same if the later question is asked while the earlier answer is in transit.
         workers.ask(&pending.ask(Test::Number(3)), false);
         let first = messages.iter().find_map(|message| match message {
             Message::Arrived(delivery) if delivery.is_answer => Some(delivery),
@@ -355,13 +354,13 @@ mod tests {
         assert!(reply.go_on().is_break());
         reply.report(1);
         reply.answer(Ok(1));
-        assert_eq!(messages.iter().count(), 2, "they arrive, and reach no one");
+        assert_eq!(messages.iter().count(), 2, "both messages arrive and are dropped");
     }
 
     #[test]
     fn a_question_that_crashes_or_is_forgotten_ends_the_waiting_of_its_page() {
         for (question, words) in
-            [(Test::CrashOnThread, "the program has a defect (a defect)"), (Test::Forget, "not answered")]
+            [(Test::CrashOnThread, "internal error (a defect)"), (Test::Forget, "not answered")]
         {
             let (workers, messages) = workers();
             let mut pending = Pending::default();
@@ -372,7 +371,7 @@ mod tests {
             assert!(refusal.code == "internal_error" && refusal.message.contains(words), "{refusal}");
             workers.finish();
         }
-        // On the session's thread the program ends; what was asked after it is answered, too.
+        // A panic on the session thread ends the program; later questions are answered too.
         let (workers, messages) = workers();
         let mut pages = [Pending::default(), Pending::default()];
         for (page, question) in pages.iter_mut().zip([Test::Crash, Test::Number(1)]) {

@@ -1,4 +1,4 @@
-//! What would have been: found on its own thread, while the run goes on.
+//! What-if analysis on its own thread, while the run continues.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -16,34 +16,34 @@ use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Access, Session};
 use novamind_tools::Refusal;
 
-/// What is asked of the run's record.
+/// A question about the recorded decisions of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchesQuestion {
-    /// Which calls can be decided otherwise.
+    /// List the decisions that can be changed.
     Decisions,
-    /// What comes of alternatives from a week on; with futures, also under luck drawn anew.
+    /// Compare alternatives from a week on; with futures, also for new random draws.
     Compare {
-        /// The week.
+        /// The first week that the alternatives change.
         week: u32,
-        /// What each alternative decides otherwise.
+        /// The edits of each alternative.
         alternatives: Vec<Vec<DecisionEdit>>,
-        /// How many futures.
+        /// Number of futures per branch.
         futures: Option<u32>,
     },
 }
 
-/// What was found.
+/// The answer.
 #[derive(Debug, Clone)]
 pub enum BranchesFound {
-    /// The calls of the run, and of how many days its weeks are.
+    /// The decisions of the run, and its days per week.
     Decisions(Vec<PastDecision>, u32),
-    /// Branches side by side.
+    /// The compared branches, and the futures.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
 }
 
 impl Question for BranchesQuestion {
     type Answer = BranchesFound;
-    /// How many days were simulated, and of how many.
+    /// Simulated days, and all days to simulate.
     type Progress = (usize, usize);
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
@@ -67,14 +67,14 @@ impl Question for BranchesQuestion {
 }
 
 impl SessionThread {
-    /// Makes a branch that keeps the decisions of the run, some of them edited, and opens it.
+    /// Creates a branch that keeps the recorded decisions with some edits, and opens it.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
         let Some(open) = &mut self.open else { return };
         let mode = open.session().manifest().mode.of_branch();
         let mut on = |_| ControlFlow::Continue(());
         let adopted = match open {
             Open::Played(session) => branch_with_decisions(session, week, edits, mode, &mut on),
-            // The moment that is shown is not the end of the record.
+            // A playback has not read the record to its end.
             Open::Replayed(_) => folder_of(open).and_then(|folder| {
                 let whole = Session::open(&folder, Access::Read, false);
                 let whole = whole.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
@@ -86,11 +86,12 @@ impl SessionThread {
                 let parent = open.session().manifest().id.clone();
                 let refused = match adopted.refused.len() {
                     0 => String::new(),
-                    some => format!("; {some} calls were refused in it, the Journal shows them"),
+                    some => format!("; {some} calls were rejected, see the Journal"),
                 };
                 let (id, day) = (adopted.session.manifest().id.clone(), adopted.session.day());
-                let remark =
-                    format!("this is run {id} now, played to day {day}; run {parent} is unchanged{refused}");
+                let remark = format!(
+                    "now playing run {id}, simulated to day {day}; run {parent} is unchanged{refused}"
+                );
                 let _ = self.put_down(LeavingCause::Quit);
                 self.take(Ok(adopted.session), "", Some(remark));
             }
@@ -106,7 +107,7 @@ fn answer(
 ) -> Result<Option<BranchesFound>, Refusal> {
     let told = Mutex::new(Instant::now());
     let progress = |done, all| {
-        // Every processor tells of every day; the screen needs no more than it can show.
+        // Every thread reports every day, which is more often than the screen needs.
         if let Ok(mut told) = told.try_lock()
             && told.elapsed() >= BETWEEN_DAYS
         {

@@ -1,4 +1,4 @@
-//! Why a figure changed in a week: found on its own thread, while the run goes on.
+//! Causes of changes of figures, computed on their own thread while the run continues.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use crate::asking::{Question, Reply};
 use novamind_insight::{WeekQuantity, WeekQuestion, Why, WhyProgress, folder_of_causes, look_at_figure};
 use novamind_tools::Refusal;
 
-/// Why a figure changed in a week.
+/// Asks for the causes of a figure's change in a week.
 #[derive(Debug, Clone)]
 pub struct WhyQuestion {
     /// The figure.
@@ -26,7 +26,7 @@ impl Question for WhyQuestion {
         let question = WeekQuestion { quantity: self.quantity, week: Some(self.week) };
         let mut folder = folder_of(open);
         if question.quantity.is_hidden() {
-            // A look, which is recorded before anything is shown.
+            // The inspection is recorded before anything is shown.
             let looked =
                 thread.session_to_look_into(false).and_then(|session| look_at_figure(session, &question));
             folder = looked.and(folder);
@@ -42,13 +42,12 @@ impl Question for WhyQuestion {
     }
 }
 
-/// The folder from which a run is simulated again.
 pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
     match open {
         Open::Played(session) => folder_of_causes(session),
-        // What a record allows is read from it: it may be over though this moment of it is not.
+        // Permissions depend on the whole record: the run may have ended after this position.
         Open::Replayed(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
-            Refusal::new("not_possible", "this trajectory stands alone, without the folder of its run")
+            Refusal::new("not_possible", "not possible: this trajectory file has no run folder")
         }),
     }
 }

@@ -1,4 +1,4 @@
-//! The session's thread with classes: what was collected of one, and the hand-out of a student.
+//! Classes on the session thread: reading a collected class, and opening the handout of a student.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use novamind_report::class::{ClassView, Shown};
 use novamind_session::{Access, Session};
 
 impl SessionThread {
-    /// Reads a class; what is not there of what is to be shown is told instead.
+    /// Reads a class. Reports an error if it lacks data for the requested display.
     pub(super) fn read_class(&self, folder: &Path, shown: Shown) {
         let read = CollectedClass::read(&from_home(folder)).map_err(|error| error.to_string());
         let checked = read.and_then(|class| {
@@ -21,13 +21,13 @@ impl SessionThread {
         self.say(News::Class(Box::new(checked)));
     }
 
-    /// Begins, or goes on with, what a hand-out holds. The runs are those of its student then.
+    /// Starts or resumes the lesson of a handout. The runs folder becomes that of its student.
     pub(super) fn open_handout(&mut self, path: &Path) {
         let placed = Handout::read(&from_home(path)).and_then(|handout| {
             let (base, whose) = base_of_runs(&self.first_runs);
             if let Some(whose) = whose.filter(|whose| *whose != handout.label) {
                 return Err(RunError::NotPossible(format!(
-                    "this is the hand-out of {}, not of {whose}, whose runs these are. Nothing was begun",
+                    "this is the handout of {}, but this folder has the runs of {whose}. Nothing was started",
                     handout.label
                 )));
             }
@@ -46,7 +46,6 @@ impl SessionThread {
     }
 }
 
-/// A path as somebody types it: `~/` stands for the home folder, as in a shell.
 fn from_home(path: &Path) -> PathBuf {
     match (path.strip_prefix("~"), std::env::home_dir()) {
         (Ok(rest), Some(home)) => home.join(rest),

@@ -1,4 +1,4 @@
-//! What the screens show of the run: made by the session's thread after everything that changes it.
+//! The company as displayed by the screens. The session thread creates it after every change.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -31,9 +31,9 @@ use novamind_tools::{
 /// The company as a player may know it.
 #[derive(Debug, Clone)]
 pub struct Company {
-    /// At a glance.
+    /// Key figures.
     pub seen: Observation,
-    /// Folder of the run.
+    /// Run folder.
     pub folder: Option<PathBuf>,
     /// First day after the next week, or the last day.
     pub next_decision_day: u32,
@@ -41,81 +41,81 @@ pub struct Company {
     pub cash_by_day: Vec<f64>,
     /// Figures of every week.
     pub weeks: Vec<WeekFigures>,
-    /// The last week told.
+    /// Report of the last week.
     pub week: Option<WeekReport>,
-    /// The way of companies to a deal, by known group.
+    /// Negotiation funnel, by known group.
     pub funnels: Vec<Funnel>,
-    /// Every known group beside the plans.
+    /// Fit of the plans with every known group.
     pub fits: Vec<Fit>,
-    /// What leads cost, by channel and group.
+    /// Costs per lead, by channel and group.
     pub lead_costs: Vec<PairCost>,
-    /// Figures of the groups for every week.
+    /// Figures by group for every week.
     pub group_weeks: Arc<[ByGroup<GroupWeek>]>,
-    /// What needs the person, the most urgent first.
+    /// Action items, the most urgent first.
     pub needs: Vec<Need>,
-    /// What the last week put into the inbox: day and text.
+    /// Notices of the last week: day and text.
     pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
     pub quality: Vec<DeliveredQuality>,
-    /// Quality before any improvement, and what development has added for everybody.
+    /// Base quality before development, and the quality that general development has added.
     pub quality_base: (f64, f64),
-    /// The naive projection of cash.
+    /// Naive forecasts of cash.
     pub naive: Forecasts,
-    /// How forecasts did so far.
+    /// Scores of past forecasts.
     pub scores: Vec<ForecastScore>,
-    /// Everything that was done.
+    /// Journal of past actions.
     pub journal: Vec<JournalEntry>,
-    /// Statements the database was asked, the newest last.
+    /// Past queries, the newest last.
     pub asked: Vec<String>,
-    /// The last day on which each screen was left in an earlier sitting.
+    /// Last day on which each screen was viewed in an earlier session.
     pub viewed: BTreeMap<String, u32>,
     /// Notes of the run.
     pub memo: String,
-    /// Present arguments of every tool.
+    /// Current arguments of every tool.
     pub settings: BTreeMap<ToolId, Map<String, Value>>,
-    /// What models and capacity cost.
+    /// Prices of models and capacity.
     pub costs: PriceList,
-    /// What can be researched.
+    /// Available and started R&D projects.
     pub projects: ResearchProjects,
     /// Mean duration and gain of each R&D tier, the first tier first.
     pub research_means: Vec<ResearchMeans>,
-    /// Everything that people have written, as get_social_posts tells it.
+    /// Posts of others, as returned by `get_social_posts`.
     pub posts: Posts,
     /// The known groups and the economy.
     pub market: MarketOverview,
-    /// What companies are called.
+    /// Names of enterprises.
     pub names: CompanyNames,
-    /// What is known of every known group.
+    /// Insights of every known group.
     pub insights: BTreeMap<Group, GroupInsights>,
-    /// ToolLimits of the tools.
+    /// Limits of tool arguments.
     pub terms: ToolLimits,
-    /// The numbers that documentation names.
+    /// Parameters that texts mention.
     pub numbers: Arc<Numbers>,
-    /// Studies of groups that run.
+    /// Running market studies.
     pub studies: Vec<RunningStudy>,
-    /// What the person should know about the opening of the run.
+    /// Remarks on the opening of the run.
     pub remarks: Vec<String>,
-    /// It is a moment of a recorded run that is played again: nothing can be done.
+    /// Whether it is a position of a playback, which is read-only.
     pub replayed: bool,
     /// Whether hidden state may be shown.
     pub may_look_inside: bool,
-    /// True values of the day, while they stand on the screens.
+    /// True values of the day, while the screens show them.
     pub hidden: Option<Arc<HiddenValues>>,
-    /// By which rules it is played.
+    /// Session rules of the run.
     pub rules: SessionRules,
-    /// The study it belongs to.
+    /// Study that the run belongs to.
     pub study: Option<StudyStamp>,
-    /// Where the person stands in the lesson it belongs to.
+    /// State of the lesson that the run belongs to.
     pub lesson: Option<LessonPage>,
 }
 
 impl Company {
-    /// What a session shows now.
+    /// Returns the current company of a session.
     pub fn of(session: &Session) -> Company {
         Company::after(session, None)
     }
 
-    /// The same, with what an earlier look at this run has read already.
+    /// Returns the current company of a session. Data that is unchanged since `before` is shared.
     pub fn after(session: &Session, before: Option<&Company>) -> Company {
         let settings = ToolId::all().map(|tool| (tool, tool.tool().current(session.settings())));
         Company {
@@ -160,18 +160,18 @@ impl Company {
         }
     }
 
-    /// The same of a run that may belong to a lesson: what it stands at is measured.
+    /// Returns the current company of a session, with the state of its lesson.
     pub fn in_lesson(session: &mut Session, before: Option<&Company>) -> Company {
         let lesson = LessonPage::of(session);
         Company { lesson, ..Company::after(session, before) }
     }
 
-    /// The lesson, as long as it says what the person may do.
+    /// Returns the lesson while it restricts the user.
     pub fn running_lesson(&self) -> Option<&LessonPage> {
         self.lesson.as_ref().filter(|_| self.is_running() && !self.replayed)
     }
 
-    /// Whether the person has a tool: a lesson has some of them.
+    /// Returns whether a tool is available; a lesson may restrict the tools.
     pub fn has_tool(&self, tool: ToolId) -> bool {
         let tools = self.running_lesson().and_then(|lesson| lesson.tools.as_ref());
         !tool.spec().kind.acts()
@@ -179,38 +179,37 @@ impl Company {
             || tools.is_none_or(|tools| tools.contains(&tool))
     }
 
-    /// Whether time can still pass.
+    /// Returns whether the run has not ended.
     pub fn is_running(&self) -> bool {
         self.seen.ended.is_none()
     }
 
-    /// Whether the run is a baseline.
+    /// Returns whether the run is a baseline run.
     pub fn is_baseline(&self) -> bool {
         self.seen.mode == Mode::Baseline
     }
 
-    /// Whether the person may ask why a figure changed: not in an unfinished baseline run.
+    /// Returns whether causes of changes may be shown: not in an unfinished baseline run.
     pub fn tells_causes(&self) -> bool {
         !self.is_baseline() || self.may_look_inside
     }
 
-    /// Whether the person may see how their own forecasts have done: where that is no part of the session, once it is
-    /// over.
+    /// Returns whether forecast scores may be shown. Some rules permit them only after the end.
     pub fn shows_calibration(&self) -> bool {
         self.rules.calibration || !self.is_running()
     }
 
-    /// A known group beside the plans.
+    /// Returns the fit of a known group.
     pub fn fit(&self, group: Group) -> Option<&Fit> {
         self.fits.iter().find(|fit| fit.group == group)
     }
 
-    /// A present argument of a tool as a number, 0 if it has none.
+    /// Returns a current argument of a tool as a number, or 0 if it has none.
     pub fn setting(&self, tool: ToolId, argument: &str) -> f64 {
         self.settings.get(&tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
     }
 
-    /// The forecasts that were filed last: decision day and forecasts.
+    /// Returns the latest forecasts with their decision day.
     pub fn last_forecasts(&self) -> Option<(u32, &[novamind_tools::Forecast])> {
         self.journal.iter().rev().find_map(|entry| match entry {
             JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.as_slice())),
@@ -218,20 +217,20 @@ impl Company {
         })
     }
 
-    /// One figure of the last weeks, oldest first.
+    /// Returns a figure of the last `count` weeks, oldest first.
     pub fn trend(&self, count: usize, figure: impl Fn(&WeekFigures) -> f64) -> Vec<f64> {
         let from = self.weeks.len().saturating_sub(count);
         self.weeks[from..].iter().map(figure).collect()
     }
 
-    /// Mean of a figure over the last four weeks; none before the first.
+    /// Returns the mean of a figure over the last four weeks, or `None` before the first week.
     pub fn mean_of_four(&self, figure: impl Fn(&WeekFigures) -> f64) -> Option<f64> {
         let last = self.trend(4, figure);
         (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
     }
 }
 
-/// What is known of every known group; free, and not recorded.
+/// These calls are free and not recorded.
 fn insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
     let known = session.company().observe().known_groups;
     let told = |group: Group| Some((group, session.company().look_up(&GetGroupInsights, group)?));

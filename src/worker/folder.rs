@@ -1,4 +1,4 @@
-//! The session's thread with the folder of runs: what is there, and opening a run of it.
+//! The runs folder on the session thread: listing, opening, ending and deleting runs.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use novamind_rules::answers_to_companies;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, end_run, rescue};
 use novamind_tools::Refusal;
 
-/// How a run of the folder went.
+/// Asks for a preview of a run.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
     /// Id of the run.
@@ -42,7 +42,7 @@ impl SessionThread {
         self.say(News::Runs(done, self.listed().map_err(|error| error.to_string())));
     }
 
-    /// The runs of the folder; for the experimenter of a study those of all participants.
+    /// Lists the runs of the folder; for experimenters, those of all participants.
     fn listed(&self) -> Result<Vec<RunSummary>, RunError> {
         if !self.lists_everybody {
             return list_runs(&self.runs);
@@ -56,19 +56,18 @@ impl SessionThread {
     }
 
     pub(super) fn end_run(&self, id: &str) {
-        self.say_kept(end_run(&self.runs, id), format!("run {id} is given up; you can still open it"));
+        self.say_kept(end_run(&self.runs, id), format!("run {id} has been ended; you can still open it"));
     }
 
     pub(super) fn delete_run(&self, id: &str) {
-        self.say_kept(delete_run(&self.runs, id), format!("run {id} is deleted"));
+        self.say_kept(delete_run(&self.runs, id), format!("run {id} has been deleted"));
     }
 
-    /// What became of a run of the folder, and the runs that are there now.
     fn say_kept(&self, done: Result<(), RunError>, words: String) {
         self.list_runs(Some(done.map(|()| words).map_err(|error| error.to_string())));
     }
 
-    /// Starts a run in the folder; every call of it is on the disk before it is confirmed.
+    /// Creates a run in the folder. Its calls are synced to disk before they are confirmed.
     pub(super) fn create(&mut self, new: NewRun) {
         let storage = Storage::Runs(self.runs.clone());
         let new = NewRun { storage, projection: true, sync_calls: true, ..new };
@@ -89,7 +88,7 @@ impl SessionThread {
             Access::Write => find_run(&self.runs, id),
             Access::Read => find_run_to_read(&self.runs, id),
         };
-        // It may be the run that is looked into, whose folder this thread holds for that.
+        // The run that is inspected may be the one to open; its lock is released here.
         self.inside = None;
         let opened = found.and_then(|folder| {
             self.refuse_session_of_study(&folder, access)?;
@@ -99,30 +98,29 @@ impl SessionThread {
             }
         });
         if opened.is_ok() {
-            // Everything confirmed is on the disk already; what is left are rows that can be made again.
+            // All confirmed actions are on disk; only derived rows can be missing.
             let _ = self.put_down(LeavingCause::Quit);
         }
         self.take(opened, id, None);
     }
 
-    /// Only its participant goes on with a session of a study, under its protocol.
+    /// Only its participant may continue a session of a study, under its protocol.
     fn refuse_session_of_study(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs.as_path());
         if self.lists_everybody && access == Access::Write && is_elsewhere {
             return Err(RunError::NotPossible(
-                "only its participant goes on with this run: replay it instead".to_owned(),
+                "only its participant can continue this run; replay it instead".to_owned(),
             ));
         }
         Ok(())
     }
 
-    /// Opens the good beginning of a damaged run as a branch.
     pub(super) fn rescue(&mut self, id: &str) {
         let rescued =
             find_run_to_read(&self.runs, id).and_then(|folder| rescue(&folder, &SealKey::default()));
         let opened = rescued.and_then(|found| {
             let remark = format!(
-                "run {} holds lines 1 to {} of run {id}, which is unchanged; {}",
+                "run {} has lines 1 to {} of run {id}, which is unchanged; {}",
                 found.run, found.lines, found.problem
             );
             Session::open(&self.runs.join(&found.run), Access::Write, true).map(|session| (session, remark))
@@ -133,7 +131,7 @@ impl SessionThread {
         }
     }
 
-    /// Shows a run that was opened, with a remark; if it does not open, what can be done instead.
+    /// Shows an opened run with a remark. If opening failed, reports the error and a fallback.
     pub(super) fn take(&mut self, opened: Result<Session, RunError>, id: &str, remark: Option<String>) {
         let mut session = match opened {
             Ok(session) => session,

@@ -1,4 +1,4 @@
-//! The session's thread with the lesson of a run: answers, hints, other tries and parts, the debrief.
+//! Lessons on the session thread: guesses, hints, retries, parts and the debrief.
 
 use std::sync::Arc;
 
@@ -13,7 +13,6 @@ use novamind_session::Session;
 use novamind_tools::Refusal;
 
 impl SessionThread {
-    /// Does what a person asks of a lesson.
     pub(super) fn in_lesson(&mut self, asked: LessonRequest) {
         match asked {
             LessonRequest::Guess(value) => self.report(|run| {
@@ -26,16 +25,15 @@ impl SessionThread {
             }),
             LessonRequest::TryAgain(step) => self.go_to(
                 |session| try_step_again(session, step),
-                &format!("step {} again; the run before is unchanged", step + 1),
+                &format!("retrying step {}; the previous run is unchanged", step + 1),
             ),
             LessonRequest::BeginPart(part) => {
-                self.go_to(|session| begin_part(session, part), &format!("part {} begins", part + 1));
+                self.go_to(|session| begin_part(session, part), &format!("part {} starts", part + 1));
             }
             LessonRequest::Debrief => self.find_debrief(),
         }
     }
 
-    /// Goes on in another run of the lesson.
     fn go_to(&mut self, begin: impl FnOnce(&Session) -> Result<Session, Refusal>, remark: &str) {
         let Some(Open::Played(session)) = &self.open else { return };
         match begin(session) {
@@ -47,7 +45,7 @@ impl SessionThread {
         }
     }
 
-    /// Finds what came of the lesson on a thread of its own: its plays are simulated.
+    /// Computes the debrief on its own thread, because it simulates the reference play.
     fn find_debrief(&mut self) {
         let Some(open) = &mut self.open else { return };
         let (played, news) = (PlayedPart::of(open.session()), self.news.clone());

@@ -1,8 +1,9 @@
-//! The threads behind the screen: one that owns the session, two that ask the database.
+//! The worker threads of the console: one owns the session, two query the database.
 //!
-//! The screen sends jobs and never waits. The result returns through the channel that also carries the input: as the answer to
-//! the page that asked ([`asking`]), or as news if it concerns more than one page. A query waits for the session's thread, so
-//! that it sees everything that was confirmed, unless a week is running: then it sees the state before it.
+//! The console sends jobs and never blocks. A result returns through the channel that also carries the input: as the
+//! answer to the page that asked ([`asking`]), or as a response if it concerns more than one page. A query waits for
+//! the session thread, so that it sees all confirmed actions. While a week runs it does not wait, and sees the state
+//! before the week.
 
 mod answering;
 pub mod asking;
@@ -53,50 +54,50 @@ use visit::Desk;
 
 pub use answering::answer_on_thread;
 
-/// Work for the session's thread.
+/// A job for the session thread.
 pub enum Job {
-    /// What a person asked for.
+    /// Execute a request of the user.
     Do(Request),
-    /// Go somewhere in the replay, unless it is stopped on the way.
+    /// Seek in the playback; the flag stops it.
     Go(Goal, Arc<AtomicBool>),
-    /// Go a week on in the replay after a while.
+    /// Play the next week of the playback after a pause.
     GoOn(Duration),
-    /// Do not go on.
+    /// Cancel the scheduled next week.
     Hold,
     /// Answer a question of a page.
     Ask(Box<dyn FnOnce(&mut SessionThread) + Send>),
-    /// Give the query threads new connections: a defect has ended one.
+    /// Reconnect the query threads after a panic has ended a connection.
     Reconnect,
-    /// Record what the person asked.
+    /// Record a query of the user.
     NoteQuery(String, Result<Rows, Refusal>, Duration, QuerySource),
-    /// Record that the person takes up the run.
+    /// Record that the user has opened the run.
     TakeUp(Interface),
-    /// Record something about the user; nothing is reported.
+    /// Record user activity; nothing is reported.
     Note(Box<dyn FnOnce(&mut Session) + Send>),
-    /// Record that the clock was started again.
+    /// Record that the clock was started.
     StartClock,
-    /// Say that everything handed over before is done.
+    /// Signal that all earlier jobs are done.
     Settle(Sender<()>),
-    /// Start with this look the next time, too. One after the other: what was chosen last counts.
+    /// Save preferences for the next start.
     Remember(Preferences),
-    /// Save and close the run, which is left for a reason.
+    /// Save and close the run.
     Close(LeavingCause),
     /// Save, close the run and end the thread.
     End,
 }
 
-/// The threads behind the screen.
+/// The worker threads.
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
     news: Sender<Message>,
-    /// Stops the script that the session's thread runs, or its question to the tables of the x-ray, while it does.
+    /// Stops the running script or query of hidden tables.
     running_stop: Arc<Mutex<Option<Interrupt>>>,
     session: Option<JoinHandle<()>>,
 }
 
 impl Workers {
-    /// Starts the threads; what they report goes into the channel.
+    /// Starts the threads, which send their messages to `news`.
     pub fn start(
         news: Sender<Message>,
         configuration: Configuration,
@@ -135,26 +136,26 @@ impl Workers {
         Workers { jobs, queries, news: for_answers, running_stop, session: Some(session) }
     }
 
-    /// Hands over a job.
+    /// Sends a job.
     pub fn send(&self, job: Job) {
         let _ = self.jobs.send(job);
     }
 
-    /// Stops the query of the user, the script that runs, and the question that the tables of the x-ray are asked.
+    /// Stops the user's query, the running script and the query of hidden tables.
     pub fn stop_what_runs(&self) {
         self.queries.stop();
         let stop = self.running_stop.lock().unwrap_or_else(PoisonError::into_inner);
         stop.iter().for_each(Interrupt::stop);
     }
 
-    /// Waits until everything handed over is done, but not for a week that is simulated.
+    /// Waits until all earlier jobs are done, up to a timeout.
     pub fn settle(&self, patience: Duration) {
         let (done, waits) = channel();
         self.send(Job::Settle(done));
         let _ = waits.recv_timeout(patience);
     }
 
-    /// Waits until everything handed over is done and the run is closed.
+    /// Waits until all earlier jobs are done and the run is closed.
     pub fn finish(mut self) {
         self.send(Job::End);
         self.queries.disconnect();
@@ -164,7 +165,6 @@ impl Workers {
     }
 }
 
-/// The run that is open.
 enum Open {
     Played(Box<Session>),
     Replayed(Box<Playback>),
@@ -182,42 +182,32 @@ impl Open {
 /// The thread that owns the session.
 pub struct SessionThread {
     open: Option<Open>,
-    /// The folder of runs: after a hand-out was opened that of its student.
+    /// The runs folder; after opening a handout, that of its student.
     runs: PathBuf,
-    /// The folder of runs with which the program began.
     first_runs: PathBuf,
-    /// The company as it was shown last.
     company: Option<Arc<Company>>,
-    /// When the replay goes on by itself.
+    /// When the next week of the playback is due.
     due: Option<Instant>,
-    /// When somebody else's lines were looked for.
+    /// When new lines of a followed run were last polled.
     looked: Instant,
-    /// The database could not be written: when it is tried again.
     mending: Option<Instant>,
-    /// The study whose participants are led.
     desk: Option<Desk>,
-    /// The experimenter's code was given: the list holds the runs of all participants.
     lists_everybody: bool,
-    /// When time limits are looked at next; none where the rules have none.
+    /// When time limits are checked next; `None` if there are none.
     limits: Option<Instant>,
-    /// Minutes that are left to each limit, as they were told last.
     minutes_left: Vec<i64>,
-    /// What was simulated to answer the last question why.
     causes: Arc<Mutex<LastRead<Causes>>>,
-    /// What was simulated to answer the last question what would have been.
     branches: Arc<Mutex<LastRead<WhatIf>>>,
-    /// The run that is looked into where the one that is open keeps no lines.
+    /// The session for inspections, if the open one is read-only and cannot record them.
     inside: Option<Box<Session>>,
-    /// It has a database.
     inside_has_rows: bool,
-    /// Stops the script that runs, and what is asked of the tables of the x-ray.
+    /// Stops the running script or query of hidden tables.
     running_stop: Arc<Mutex<Option<Interrupt>>>,
     news: Sender<Message>,
     queries: QueryThreads,
     configuration: Configuration,
 }
 
-/// Days are reported at most this often: the screen needs no more.
 const BETWEEN_DAYS: Duration = Duration::from_millis(40);
 
 impl SessionThread {
@@ -263,7 +253,7 @@ impl SessionThread {
                 }
             }
             Job::Close(cause) => self.close(cause),
-            // A run that is still open was not left in good order: the terminal has failed.
+            // A run that is still open was not left regularly: the terminal has failed.
             Job::End => self.close(LeavingCause::Hangup),
             Job::Ask(answer) => answer(self),
             Job::Reconnect => drop(self.with_run(|run| run.queries.connect(run.session))),
@@ -274,7 +264,7 @@ impl SessionThread {
             Job::Note(note) => self.with_session(note),
             Job::StartClock => {
                 self.with_session(|session| drop(session.activity().start_clock()));
-                // Questions may be due after a break.
+                // Questions may be due after a pause.
                 self.tell_due();
             }
             Job::Settle(done) => drop(done.send(())),
@@ -302,7 +292,7 @@ impl SessionThread {
         self.tell_due();
     }
 
-    /// Records that the run is left, and puts everything on the disk.
+    /// Records that the user leaves the run, and syncs it to disk.
     fn put_down(&mut self, cause: LeavingCause) -> Result<(), RunError> {
         match &mut self.open {
             Some(Open::Played(session)) => {
@@ -321,7 +311,6 @@ impl SessionThread {
         self.say(News::Closed(problem.map(|error| error.to_string())));
     }
 
-    /// Does what a person asked for.
     fn answer(&mut self, request: Request) {
         match request {
             Request::ListRuns => self.list_runs(None),
@@ -350,7 +339,7 @@ impl SessionThread {
         }
     }
 
-    /// Works on the run that is open, if there is one.
+    /// Works on the open run, if there is one.
     fn with_run<T>(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> T) -> Option<T> {
         let SessionThread { open: Some(open), company: shown, news, queries, running_stop: stop, .. } = self
         else {
@@ -359,7 +348,7 @@ impl SessionThread {
         let result = work(&mut OpenRun { session: open.session(), shown, news, queries, stop });
         let loss = self.open.as_mut().and_then(|open| open.session().log().loss().map(str::to_owned));
         if let Some(words) = loss {
-            // Before what came of the work: nothing goes on from here.
+            // Sent before the response to the work, because nothing else can follow.
             self.say(News::RecordLost(words));
         }
         self.tell_due();
@@ -367,14 +356,12 @@ impl SessionThread {
         Some(result)
     }
 
-    /// The same, and reports what came of it.
     fn report(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> News) {
         if let Some(news) = self.with_run(work) {
             self.say(news);
         }
     }
 
-    /// Notices a line that the disk has refused, as after any other work.
     fn notice_losses(&mut self) {
         self.with_run(|_| ());
     }

@@ -1,5 +1,5 @@
-//! What the X-ray screen asks of the hidden state of a run, answered in the words of plain mode: the session's thread simulates
-//! days again.
+//! Inspections of hidden state for the X-ray screen, described as in plain mode. The session thread simulates days
+//! again for them.
 
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
@@ -18,67 +18,67 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Access, REFUSED_LOOK, Session};
 use novamind_tools::Refusal;
 
-/// A look at hidden state. Days are those that are over.
+/// An inspection of hidden state. Days are completed days.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LookQuestion {
-    /// The equation of a group's leads on a day, with factors held at values.
+    /// The lead equation of a group on a day, with factors fixed at values.
     Leads(Group, u32, Vec<(LeadFactor, f64)>),
-    /// What was delivered to a group on a day.
+    /// The delivered quality of a group on a day.
     Quality(Group, u32),
-    /// What moved the satisfaction of a group on a day.
+    /// The change of a group's satisfaction on a day.
     Satisfaction(Group, u32),
-    /// What moved the reputation of a group on a day.
+    /// The change of the reputation in a group on a day.
     Reputation(Group, u32),
-    /// How changes of reputation spilled over on a day.
+    /// The spillover of reputation changes on a day.
     Spillover(u32),
-    /// What rivals could copy and did on a day.
+    /// The information and actions of competitors on a day.
     Rivals(u32),
-    /// What the market has added to expectations and budgets up to a day.
+    /// The drift of expectations and budgets up to a day.
     Drift(u32),
-    /// The draws of a part on the day after a day.
+    /// The random draws of a part on the day after a day.
     Draws(DrawnPart, u32),
-    /// A customer on a day.
+    /// A customer (number) on a day.
     Customer(u32, u32),
-    /// Of breakpoints.
+    /// A breakpoint command.
     Breakpoints(BreakpointWork),
-    /// Words as plain mode takes them; as they were typed, and read.
+    /// A plain-mode command: its text, and parsed.
     Words(String, AskedWords),
 }
 
-/// What is done with breakpoints, besides running to them.
+/// A command on breakpoints, other than running to them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BreakpointWork {
-    /// List them.
+    /// Lists the breakpoints.
     List,
-    /// Set one.
+    /// Sets a breakpoint.
     Set(Condition),
-    /// Remove one, by its number.
+    /// Removes a breakpoint by number.
     Remove(u32),
-    /// Say since when each is true or false.
+    /// Returns since when each condition has been true or false.
     LookBack,
 }
 
-/// What a look has found.
+/// The result of an inspection.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LookFound {
-    /// Words.
+    /// Lines of text.
     pub lines: Vec<String>,
-    /// Figures of days beside some of them.
+    /// Daily figures for some of the lines.
     pub curves: Vec<LookCurve>,
-    /// Spills as a map, which is shown in place of the words.
+    /// Spillover map, shown in place of the lines.
     pub map: Option<SpillMap>,
-    /// The day that is shown, where it can be another one than was asked for: a customer who has left shows its last one.
+    /// The displayed day if it differs from the requested one: for a customer who has left, its last day.
     pub day: Option<u32>,
-    /// The breakpoints that are set; only told where breakpoints are asked for.
+    /// The breakpoints, after a breakpoint command.
     pub breakpoints: Vec<Breakpoint>,
 }
 
-/// A figure of days that end with the one that is shown.
+/// A daily figure up to the displayed day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LookCurve {
-    /// Place of the line that tells of it.
+    /// Index of the line that it belongs to.
     pub line: usize,
-    /// The figure day by day; not a number where it has no value.
+    /// Daily values; NaN if there is no value.
     pub days: Vec<f64>,
 }
 
@@ -86,7 +86,7 @@ impl Question for LookQuestion {
     type Answer = LookFound;
     type Progress = ();
 
-    /// A look that has changed the run is answered after the news of it.
+    /// If the inspection changed the run, the changed company is sent before the answer.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
         let changes_run = matches!(&self, LookQuestion::Words(_, asked) if asked.changes_run());
         let found = match thread.refuse_to_change().filter(|_| changes_run) {
@@ -102,7 +102,7 @@ impl Question for LookQuestion {
 }
 
 impl SessionThread {
-    /// Asks the database and the tables of the x-ray. In a replay the table that shows one day shows that of the moment.
+    /// Queries the database and the hidden tables. In a playback, the table of one day shows the current day.
     pub(super) fn ask_inside(&mut self, sql: &str) -> Result<(Rows, Duration), Refusal> {
         let started = Instant::now();
         let stop = self.running_stop.clone();
@@ -113,7 +113,7 @@ impl SessionThread {
         };
         let rows = self.session_to_look_into(true).and_then(|session| {
             let interrupt = session.inspect().xray_interrupt()?;
-            // What is stopped from here on is this question.
+            // A stop now affects this query.
             let ticket = interrupt.ticket();
             hold(Some(interrupt));
             session.inspect().xray_query_as(ticket, sql, day)
@@ -123,21 +123,18 @@ impl SessionThread {
         Ok((rows?, started.elapsed()))
     }
 
-    /// Why nothing can be changed in the run that is open: it is only read, or played again.
     fn refuse_to_change(&self) -> Option<Refusal> {
         match &self.open {
-            Some(Open::Replayed(_)) => {
-                Some(Refusal::new("read_only", "this is a replay: nothing is changed"))
-            }
+            Some(Open::Replayed(_)) => Some(Refusal::new("read_only", "a replay is read-only")),
             Some(Open::Played(session)) if !session.log().is_written() && session.folder().is_some() => {
-                Some(Refusal::new("read_only", "this run is only read: nothing is changed"))
+                Some(Refusal::new("read_only", "this run is open read-only"))
             }
             _ => None,
         }
     }
 
-    /// The run that is open; where it keeps no lines, because it is only read or played again, the same run opened as for
-    /// play: each look is a line of it. It has a database where one is needed.
+    /// Returns the open session, or a writable session of the same run if the open one is read-only, because each
+    /// inspection is recorded. With `with_rows`, it has a database.
     pub(super) fn session_to_look_into(&mut self, with_rows: bool) -> Result<&mut Session, Refusal> {
         let (is_allowed, folder) = match &self.open {
             None => return Err(Refusal::new("not_possible", "no run is open")),
@@ -210,7 +207,6 @@ fn answer(session: &mut Session, question: &LookQuestion) -> Result<LookFound, R
     Ok(LookFound { lines, ..LookFound::default() })
 }
 
-/// The equation of the leads, each factor with its days.
 fn of_leads(
     session: &mut Session,
     group: Group,
@@ -229,7 +225,7 @@ fn of_leads(
     Ok(LookFound { lines, curves, ..LookFound::default() })
 }
 
-/// Words with the days of a figure beside the line that begins so, if there is one.
+/// Attaches daily values to the line with this prefix, if there is one.
 fn with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> LookFound {
     let line = lines.iter().position(|line| line.starts_with(begins));
     let curves = line.map(|line| LookCurve { line, days }).into_iter().collect();

@@ -1,4 +1,4 @@
-//! What arrives at the screen: input, and news of the threads behind it.
+//! Messages to the console: input, and responses of the worker threads.
 
 use std::sync::Arc;
 
@@ -15,155 +15,155 @@ use novamind_session::{Change, PlaybackPosition, TimeLeft, UnsentTexts, Week};
 use novamind_study::{DueQuestion, NextStep};
 use novamind_tools::{Answer, Refusal, ToolId};
 
-/// Something that arrives.
+/// A message to the console.
 pub enum Message {
-    /// A key, a click, pasted text, another window size.
+    /// Input: a key, a click, pasted text or a window size.
     Input(Event),
-    /// From the threads behind the screen.
+    /// A response of a worker thread.
     News(News),
-    /// The answer to a question of a page, or how far the work for it has come.
+    /// An answer to a question of a page, or its progress.
     Arrived(Delivery),
-    /// A signal asks the program to end, to stop for a while, or to go on.
+    /// A signal to end, suspend or resume the program.
     Signal(i32),
-    /// Time has passed, as the application has asked.
+    /// The requested time has passed.
     Time,
 }
 
-/// A moment of a replay that was reached.
+/// A position of the playback that was reached.
 pub struct Arrival {
-    /// The company of that moment; none where nothing has changed.
+    /// The company at the position; `None` if it is unchanged.
     pub company: Option<Arc<Company>>,
-    /// Where it is.
+    /// The position.
     pub place: PlaybackPosition,
-    /// What the person should know.
+    /// A problem to report to the user.
     pub problem: Option<String>,
 }
 
-/// What can be done with a run that does not open.
+/// An alternative for a run that does not open.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Instead {
-    /// Somebody else plays it: it can be watched.
+    /// It is open elsewhere: it can be followed, by id.
     Watch(String),
-    /// It is damaged: its good beginning can be opened as a branch.
+    /// It is damaged: its undamaged prefix can be recovered as a branch, by id.
     Rescue(String),
-    /// A participant has to agree to a text before this run begins.
+    /// The user must first consent to a text.
     Agree(Box<novamind_session::NewRun>),
 }
 
-/// What a simulated day came to.
+/// Figures of a simulated day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DayTold {
-    /// Cash at its end, dollars.
+    /// Cash at the end of the day, in dollars.
     pub cash: f64,
-    /// Active subscriptions of individuals at its end.
+    /// Active individual subscriptions at the end of the day.
     pub subscribers: u32,
 }
 
-/// An answer, or how far the work for one has come, on its way to the page that asked.
+/// An answer or progress on its way to the page that asked.
 pub struct Delivery {
     pub(super) put: Box<dyn FnOnce() + Send>,
-    /// It is the answer: nothing follows it.
+    /// Whether it is the answer.
     pub is_answer: bool,
 }
 
 impl Delivery {
-    /// Gives it to the page, if that still waits for it.
+    /// Delivers it to the page, if the page still waits.
     pub fn deliver(self) {
         (self.put)();
     }
 }
 
-/// Days of a debug run that were simulated.
+/// The result of simulating days of a debug run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DaysRan {
-    /// Why they stopped, in words.
+    /// Lines that describe why the simulation stopped.
     pub lines: Vec<String>,
-    /// The run is over.
+    /// Whether the run has ended.
     pub is_over: bool,
 }
 
-/// What a thread behind the screen reports.
+/// A response of a worker thread.
 pub enum News {
-    /// The runs of the folder; if a run was given up or deleted, after a sentence, or what went wrong.
+    /// The runs of the folder, after ending or deleting one with the outcome in words.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
-    /// A class was read, to be shown in some way.
+    /// A class was read for display.
     Class(Box<Result<(CollectedClass, Shown), String>>),
-    /// The runs are those of a student from now on, because a hand-out of theirs was opened.
+    /// A handout was opened: the runs are now those of the student with this label.
     HandedOut(String),
-    /// A run is open.
+    /// A run was opened.
     Opened(Arc<Company>),
-    /// A run is played again.
+    /// A playback was opened.
     Replays(Arc<Company>, Box<PlaybackPosition>),
-    /// The run was changed by a look at its hidden state.
+    /// An inspection has changed the run.
     Changed(Arc<Company>),
-    /// The replay has gone where it was sent, or tried to.
+    /// Seeking has ended.
     SeekResult(Box<Arrival>),
-    /// The replay has gone on by itself: it plays, or somebody else has played.
+    /// The playback has advanced: it is playing, or the followed run has grown.
     WentOn(Box<Arrival>),
-    /// Minutes that are left to a time limit have changed.
+    /// The minutes left to time limits have changed.
     TimeLeft(Vec<TimeLeft>),
     /// A time limit is near or reached.
     Limit(Limit),
-    /// A time limit had stopped the clock of the run that was opened, and nobody has started it.
+    /// The run was opened with a clock that a time limit had stopped.
     Held,
-    /// Texts that were typed when the program was stopped in the run that was opened.
+    /// Drafts from before the program stopped, of the opened run.
     Unsent(Box<UnsentTexts>),
-    /// A run could not be opened or created; with what can be done instead.
+    /// A run could not be opened or created; with an alternative.
     NotOpened(String, Option<Instead>),
     /// A tool was called.
     Called(ToolId, Result<Box<Answer>, Refusal>, Arc<Company>),
     /// A setting was undone or redone.
     Restored(&'static str, Result<Vec<Change>, Refusal>, Arc<Company>),
-    /// A day was simulated, or simulated again; with what it came to, where that is news.
+    /// A day was simulated; with its figures, unless it was simulated again.
     Day(u32, Option<DayTold>),
-    /// A week has passed, or was refused.
+    /// A week has passed or was rejected.
     Advanced(Result<Box<Week>, Refusal>, Arc<Company>),
-    /// The database cannot be written: what it tells is older than the company. It is tried again.
+    /// The database cannot be written and is older than the company. Writing is retried.
     DatabaseBehind(String),
-    /// The database holds everything again.
+    /// The database is up to date again.
     DatabaseWhole,
-    /// Days of a debug run were simulated up to a breakpoint.
+    /// Days of a debug run were simulated.
     Ran(Result<DaysRan, Refusal>, Arc<Company>),
-    /// The question of a lesson was answered, or a hint was taken: what was refused, if something was.
+    /// A guess was recorded or a hint was shown in a lesson, or it was rejected.
     InLesson(Option<Refusal>, Arc<Company>),
-    /// What came of a part of a lesson.
+    /// The debrief of a part of a lesson.
     Debriefed(Arc<Result<Debrief, Refusal>>),
-    /// The notes were kept.
+    /// The notes were saved.
     MemoKept(Result<(), Refusal>, Arc<Company>),
-    /// A query was saved: a sentence and all queries, or what went wrong.
+    /// A query was saved: a text and the new library.
     QuerySaved(Result<(String, Library), String>),
-    /// The story of the run.
+    /// The run report.
     Told(Arc<Story>),
-    /// The report of the run: names of files and what they hold.
+    /// The files of the run report: names and contents.
     Reported(Vec<(&'static str, String)>),
-    /// Files were written: a sentence, or what went wrong.
+    /// Files were written: a text.
     Written(Result<String, String>),
-    /// The run was saved and closed; what went wrong, if something did.
+    /// The run was closed, with the error if saving failed.
     Closed(Option<String>),
-    /// Of a participant's way through a study.
+    /// A response in a study.
     Visit(VisitNews),
-    /// A thread behind the screen has failed for a reason that should not exist.
+    /// A worker thread has panicked.
     Crashed(String),
-    /// The run's file is no longer the one it was: why, and what to do.
+    /// The record can no longer be written: the reason, and what to do.
     RecordLost(String),
 }
 
-/// What is reported of a participant's way through a study.
+/// A response in a study.
 pub enum VisitNews {
-    /// Participants can come.
+    /// The study is ready for participants.
     Ready,
-    /// The label was refused, and why.
+    /// The label was rejected, with the reason.
     LabelRefused(String),
-    /// What comes next for the participant.
+    /// The next step of the participant.
     Next(NextStep),
-    /// The participant does not agree.
+    /// The participant declined.
     Declined,
-    /// What is due has changed; it comes before the news of what has changed it.
+    /// The due questions have changed. Sent before the response to the cause.
     Due(Vec<DueQuestion>),
-    /// Answers were recorded; what is due now.
+    /// Answers were recorded; with the questions that are due now.
     Answered(Vec<DueQuestion>),
-    /// Whether the code was the experimenter's; none: the study has no code.
+    /// Whether the experimenter's code was right; `None` if the study has no code.
     Code(Option<bool>),
-    /// Something cannot be read or written; what is safe.
+    /// Reading or writing failed; the text says what is safe.
     Failed(String),
 }

@@ -1,4 +1,4 @@
-//! The session's thread with a recorded run: opening it, going somewhere in it, going on by itself.
+//! Playback on the session thread: opening a recorded run, seeking, and playing.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -16,7 +16,6 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Goal, Playback, SeekResult};
 
-/// Lines of somebody else are looked for this often.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
 
 impl SessionThread {
@@ -27,7 +26,7 @@ impl SessionThread {
         }
     }
 
-    /// How long to wait for work before going on; none while there is nothing to go on with.
+    /// Returns the time until the next scheduled task, or `None` if none is scheduled.
     pub(super) fn patience(&mut self) -> Option<Duration> {
         let follows = self.playback().is_some_and(|playback| playback.follows());
         let look = follows.then(|| self.looked + BETWEEN_LOOKS);
@@ -35,7 +34,7 @@ impl SessionThread {
         next.map(|moment| moment.saturating_duration_since(Instant::now()))
     }
 
-    /// Goes on with what is due: a week of the replay, what somebody else has played since, a database to be mended.
+    /// Runs due tasks: the next week of the playback, polling of a followed run, repair of the database.
     pub(super) fn go_on(&mut self) {
         self.mend();
         self.look_at_limits();
@@ -59,10 +58,10 @@ impl SessionThread {
         let arrival = match playback.look_for_more() {
             Ok(false) => return,
             Ok(true) if at_end => self.arrive(Goal::Last, &AtomicBool::new(false)),
-            // Whoever looks back stays there, and sees that the record has grown.
+            // The position stays, and the record grows.
             Ok(true) => Some(Arrival { company: None, place: playback.place(), problem: None }),
             Err(problem) => {
-                let problem = Some(format!("{problem}. No longer watching it"));
+                let problem = Some(format!("{problem}. No longer following the run"));
                 Some(Arrival { company: None, place: playback.place(), problem })
             }
         };
@@ -71,7 +70,7 @@ impl SessionThread {
         }
     }
 
-    /// Opens a recorded run; whatever was open is closed then, and stays if that fails.
+    /// Opens a recorded run and closes the current one, which stays open if that fails.
     pub(super) fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) {
         let id = match &recorded {
             Recorded::Run(id) => id.clone(),
@@ -91,7 +90,7 @@ impl SessionThread {
                 return self.say(News::NotOpened(problem.to_string(), instead));
             }
         };
-        // Everything confirmed is on the disk already; what is left are rows that can be made again.
+        // All confirmed actions are on disk; only derived rows can be missing.
         let _ = self.put_down(LeavingCause::Quit);
         self.queries.connect(playback.session());
         let company = Arc::new(company_of(&playback, None));
@@ -111,7 +110,7 @@ impl SessionThread {
         Ok(playback)
     }
 
-    /// Tells a day that was reached, not too often.
+    /// Reports a day, with a minimum interval.
     fn tell(&self, told: &mut Instant, day: u32) -> ControlFlow<()> {
         if told.elapsed() >= BETWEEN_DAYS {
             *told = Instant::now();
@@ -120,7 +119,6 @@ impl SessionThread {
         ControlFlow::Continue(())
     }
 
-    /// Goes somewhere, unless it is stopped.
     pub(super) fn go(&mut self, goal: Goal, stop: &AtomicBool) {
         self.due = None;
         if let Some(arrival) = self.arrive(goal, stop) {
@@ -135,7 +133,7 @@ impl SessionThread {
             true => ControlFlow::Break(()),
             false => self.tell(&mut told, day),
         });
-        // What went wrong on the way has led to a new session, too.
+        // Errors during seeking have created a new session, too.
         let anew = !matches!(went, Ok(SeekResult::There | SeekResult::Stopped));
         if anew {
             self.queries.connect(playback.session());
@@ -153,7 +151,6 @@ impl SessionThread {
         Some(Arrival { company: Some(company), place, problem })
     }
 
-    /// Opens a branch that begins at this moment.
     pub(super) fn take_over(&mut self, mode: Mode) {
         let Some(playback) = self.playback() else { return };
         let branch = playback.take_over(mode);
@@ -161,8 +158,7 @@ impl SessionThread {
         match branch {
             Ok(session) => {
                 let (own, day) = (session.manifest().id.clone(), session.day());
-                let remark =
-                    format!("this is run {own} now, yours from day {day}; run {parent} is unchanged");
+                let remark = format!("now playing run {own} from day {day}; run {parent} is unchanged");
                 self.take(Ok(session), "", Some(remark));
             }
             Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
@@ -170,7 +166,7 @@ impl SessionThread {
     }
 }
 
-/// What a moment of a replay shows. Notes that were written later are not there yet.
+/// Returns the company at a position. Notes that were written later are excluded.
 fn company_of(playback: &Playback, before: Option<&Company>) -> Company {
     let memo = playback.memo().unwrap_or_default();
     let may_look_inside = playback.may_look_inside();

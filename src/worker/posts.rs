@@ -1,4 +1,4 @@
-//! What is written in public, as the company keeps it: only what is new is read from the run.
+//! Posts of the social feed. Only new posts are read from the run.
 
 use std::sync::Arc;
 
@@ -6,24 +6,24 @@ use novamind_session::Session;
 use novamind_session::identifiers::Group;
 use novamind_tools::{GetSocialPosts, PostLimit, SocialPost};
 
-/// Who writes.
+/// The kind of author.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PostKind {
-    /// Customers of their own accord.
+    /// Customers, unprompted.
     Customers,
-    /// Rivals and the economy, in the news.
+    /// News of competitors and the economy.
     Press,
-    /// Answers to our posts.
+    /// Comments on our posts.
     Comments,
     /// The company.
     Own,
 }
 
 impl PostKind {
-    /// All kinds in the order they are chosen.
+    /// All kinds, in display order.
     pub const ALL: [PostKind; 4] = [PostKind::Customers, PostKind::Press, PostKind::Comments, PostKind::Own];
 
-    /// Name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             PostKind::Customers => "customers",
@@ -37,9 +37,9 @@ impl PostKind {
 /// A post.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
-    /// Who writes.
+    /// Kind of author.
     pub kind: PostKind,
-    /// Number among the posts of others, or among ours.
+    /// Number, among the posts of others or among ours.
     pub number: u32,
     /// Day.
     pub day: u32,
@@ -47,31 +47,31 @@ pub struct Post {
     pub author: String,
     /// Text.
     pub text: String,
-    /// Our post that a comment answers, or the post that ours answers.
+    /// Our post that a comment replies to, or the post that ours replies to.
     pub answers: Option<u32>,
-    /// Views of a post of ours; 0 until it was read.
+    /// Views of our post; 0 until it was viewed.
     pub views: u32,
-    /// Comments on a post of ours.
+    /// Number of comments on our post.
     pub comments: u32,
 }
 
 impl Post {
-    /// Week that holds its day.
+    /// Returns the week of its day.
     pub fn week(&self) -> u32 {
         self.day.div_ceil(7).max(1)
     }
 
-    /// Reactions to a post of ours, as far as they are published.
+    /// Describes the reactions to our post.
     pub fn reactions(&self) -> String {
         let noun = |count: u32, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
         format!("{}, {}", noun(self.views, "view"), noun(self.comments, "comment"))
     }
 
-    /// The line above its text.
+    /// Returns the line above its text.
     pub fn head(&self) -> String {
         match (self.kind, self.answers) {
             (PostKind::Own, Some(post)) => {
-                format!("our post {}, answers #{post} · {}", self.number, self.reactions())
+                format!("our post {}, reply to #{post} · {}", self.number, self.reactions())
             }
             (PostKind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
             (PostKind::Comments, Some(own)) => {
@@ -82,13 +82,13 @@ impl Post {
     }
 }
 
-/// Posts of others, the newest first. Readings of one run share what did not change.
+/// Posts of others, the newest first. Successive readings share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
-/// Posts asked for at first when earlier ones are known: more than a week brings as a rule.
+/// Initial limit for new posts: usually more than a week brings.
 const NEWEST: usize = 64;
 
-/// Posts of others; of those that are known only the newer ones are asked for.
+/// Reads the posts of others; if some are known, only newer ones are requested.
 pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
     let mut limit = if last.is_some() { PostLimit::Newest(NEWEST) } else { PostLimit::All };
@@ -97,7 +97,7 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
             session.company().look_up(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
         let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();
-        // Nothing known among them: more of what is new may stand before them.
+        // If all of them are new, there may be more new ones before them.
         if let PostLimit::Newest(most) = limit
             && !told.is_empty()
             && fresh.len() == told.len()
@@ -115,10 +115,10 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
 
 fn post_of(told: &SocialPost) -> Post {
     let group = told.group_id.map_or("–", Group::id);
-    // The press writes as the first group and has no profile; customers of groups that were found have none either.
+    // Press posts carry the first group and no persona; customers of discovered groups have no persona either.
     let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
     let (kind, author) = match (told.reply_to_agent_post_id, told.persona_name.as_deref()) {
-        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("somebody"))),
+        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),
         (None, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
         (None, None) if is_press => (PostKind::Press, "press".to_owned()),
         (None, None) => (PostKind::Customers, group.to_owned()),

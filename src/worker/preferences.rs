@@ -1,4 +1,4 @@
-//! How the console looks because somebody chose it by key: kept in `console.toml` of the configuration folder.
+//! Appearance chosen by key, saved as `console.toml` in the configuration folder.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,26 +8,26 @@ use novamind_tui::glyphs::Glyphs;
 
 const FILE: &str = "console.toml";
 
-/// What was chosen.
+/// The saved preferences.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Name of the set of colours.
+    /// Name of the theme.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theme: Option<String>,
-    /// What frames are drawn with.
+    /// Characters that charts are drawn with.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker: Option<Glyphs>,
 }
 
 impl Preferences {
-    /// What was chosen before. A file that cannot be read is as good as none: it is written anew with the next choice.
+    /// Loads the saved preferences. An unreadable file is ignored, and replaced when preferences are saved.
     pub fn of(configuration: &Configuration) -> Preferences {
         let file = configuration.file(FILE).ok().flatten();
         file.and_then(|source| toml::from_str(&source.text).ok()).unwrap_or_default()
     }
 
-    /// Keeps what this chooses; the rest stays as it was chosen before.
+    /// Saves the preferences that are set, and keeps the others.
     ///
     /// # Errors
     /// The folder cannot be written.

@@ -1,4 +1,4 @@
-//! The threads that ask the database, each over a connection of its own.
+//! The threads that query the database, each with its own connection.
 
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,23 +17,23 @@ use novamind_tools::Refusal;
 /// A query of the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
-    /// The statement.
+    /// The SQL statement.
     pub sql: String,
-    /// What is asked.
+    /// The tables that it can read.
     pub of: QueriedTables,
 }
 
-/// What a query of the user asks.
+/// The tables that a query of the user can read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueriedTables {
-    /// The visible tables; with where the query came from.
+    /// The public tables; with the source of the query.
     Visible(QuerySource),
-    /// The tables of the x-ray, too.
+    /// The public and the hidden tables.
     Hidden,
 }
 
 impl Question for Query {
-    /// Rows, and how long they took.
+    /// The rows, and the duration of the query.
     type Answer = (Rows, Duration);
     type Progress = ();
 
@@ -68,17 +68,16 @@ impl Question for Reading {
 }
 
 impl SessionThread {
-    /// Passes a question on once everything confirmed is in the database.
+    /// Forwards a question once the database contains all confirmed actions.
     fn ask_database(&mut self, question: DatabaseQuestion) {
         self.with_run(|run| {
-            // A database that cannot be written answers with what it has; the screen says that it is behind.
+            // A failed database answers with what it has; the screen warns about it.
             let _ = run.session.wait_for_database();
             run.queries.ask(question);
         });
     }
 }
 
-/// A question for the database, with the way back to the page that asked.
 enum DatabaseQuestion {
     Query(String, QuerySource, Reply<Query>),
     Reading(Reading, Reply<Reading>),
@@ -100,18 +99,16 @@ impl DatabaseQuestion {
     }
 }
 
-/// The way to the threads that ask: the user's queries and readings of screens do not wait for each other.
+/// Senders to the query threads. The user's queries and the readings of screens do not wait for each other.
 #[derive(Clone)]
 pub(super) struct QueryThreads {
     user: Sender<QueryJob>,
     screens: Sender<QueryJob>,
-    /// Stops the user's queries.
     interrupt: Arc<Mutex<Option<Interrupt>>>,
 }
 
 type Connection = (Box<QueryConnection>, Limits);
 
-/// Answers a question over a connection.
 type AskDatabase = fn(&Connection, &DatabaseQuestion) -> Result<Rows, Refusal>;
 
 enum QueryJob {
@@ -121,13 +118,13 @@ enum QueryJob {
 }
 
 impl QueryThreads {
-    /// Starts the threads; what is recorded goes into the channel of jobs.
+    /// Starts the threads. Queries to record are sent as jobs.
     pub(super) fn start(jobs: &Sender<Job>) -> QueryThreads {
         let start = || start_thread(jobs.clone(), ask);
         QueryThreads { user: start(), screens: start(), interrupt: Arc::default() }
     }
 
-    /// Gives each thread a connection to a run's database.
+    /// Gives each thread a connection to the database of a run.
     pub(super) fn connect(&self, session: &Session) {
         let limits = session.company().query_limits();
         let database = session.database();
@@ -144,7 +141,7 @@ impl QueryThreads {
         *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
     }
 
-    /// Ends the connections, so that the database can be closed.
+    /// Closes the connections, so that the database can be closed.
     pub(super) fn disconnect(&self) {
         self.hold(None);
         for thread in [&self.user, &self.screens] {
@@ -152,24 +149,21 @@ impl QueryThreads {
         }
     }
 
-    /// The ticket of the user's next query.
     pub(super) fn ticket(&self) -> Option<Ticket> {
         let interrupt = self.interrupt.lock().unwrap_or_else(PoisonError::into_inner);
         interrupt.as_ref().map(Interrupt::ticket)
     }
 
-    /// Stops the user's query.
     pub(super) fn stop(&self) {
         self.interrupt.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(Interrupt::stop);
     }
 
-    /// Asks on the thread that it is for.
     fn ask(&self, question: DatabaseQuestion) {
         let thread = match question {
             DatabaseQuestion::Query(..) => &self.user,
             DatabaseQuestion::Reading(..) => &self.screens,
         };
-        // The threads end with the program.
+        // The threads are gone when the program ends.
         let _ = thread.send(QueryJob::Ask(question));
     }
 }
@@ -200,7 +194,7 @@ fn answer(
         None => Err(Refusal::new("sql_error", "no run is open")),
         Some(Ok(rows)) => rows,
         Some(Err(defect)) => {
-            // What guards the connection may be half done: it is never used again.
+            // The guard of the connection may be inconsistent, so the connection is dropped.
             *connection = None;
             let _ = jobs.send(Job::Reconnect);
             Err(defect)
@@ -231,7 +225,7 @@ mod tests {
     use crate::message::Message;
     use crate::test_kit::played;
 
-    /// Panics on one statement.
+    /// Panics for one statement.
     fn ask_or_panic(connection: &Connection, question: &DatabaseQuestion) -> Result<Rows, Refusal> {
         assert_ne!(question.sql(), "SELECT 'defect'", "a defect");
         ask(connection, question)
@@ -261,7 +255,7 @@ mod tests {
         assert!(answer("SELECT 1").is_ok());
         let refused = answer("SELECT 'defect'").expect_err("a panic");
         assert_eq!(refused.code, "internal_error");
-        // The connection that met the panic is never used again.
+        // The connection is dropped after the panic.
         assert_eq!(answer("SELECT 1").expect_err("no connection").code, "sql_error");
         let noted = |job| matches!(job, Job::NoteQuery(..));
         assert!(noted(asked.recv().expect("a job")));

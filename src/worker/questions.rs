@@ -1,4 +1,4 @@
-//! Questions of pages that the session's thread answers in a few lines, or passes on to a thread of their own.
+//! Questions of pages that the session thread answers directly or passes to a background thread.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Refusal, ToolId};
 
-/// What a call would do.
+/// Asks for the preview of a tool call.
 #[derive(Debug, Clone)]
 pub struct CallCheck {
     /// Tool.
@@ -33,7 +33,7 @@ impl Question for CallCheck {
     }
 }
 
-/// The curve of a group, from what the player may know.
+/// Asks for the participation curve of a group, estimated or true as permitted.
 #[derive(Debug, Clone)]
 pub struct CurveQuestion(pub Group);
 
@@ -48,7 +48,7 @@ impl Question for CurveQuestion {
     }
 }
 
-/// Hidden true values of a day, for the screens that show them beside figures and estimates.
+/// Asks for the true values of a day.
 #[derive(Debug, Clone)]
 pub struct HiddenValuesQuestion {
     /// The day.
@@ -67,8 +67,7 @@ impl Question for HiddenValuesQuestion {
     }
 }
 
-/// The tree of branches of the run that is open. It is empty where other runs are not to be seen: in sessions of a
-/// study, and if the record is not among the runs that can be opened.
+/// Asks for the runs related to the open one. Empty in sessions of a study and for records outside the runs folder.
 #[derive(Debug, Clone)]
 pub struct RelatedRunsQuestion;
 
@@ -88,7 +87,7 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// How the strong policies, which this plays, end in the world of the run that is open.
+/// Asks for the results of the strong policies, which the function simulates with the scenario and seed of the open run.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponents);
 
@@ -98,7 +97,7 @@ impl Question for OpponentsQuestion {
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
         let Some(open) = &mut thread.open else { return };
-        let missing = || Refusal::new("not_possible", "a run in memory has no record to play against");
+        let missing = || Refusal::new("not_possible", "not possible: a run in memory has no record");
         let folder = open.session().folder().map(Path::to_owned).ok_or_else(missing);
         let configuration = thread.configuration.clone();
         reply.answer_on_thread(move |reply| {
@@ -108,7 +107,7 @@ impl Question for OpponentsQuestion {
 }
 
 impl SessionThread {
-    /// At the moment that is shown. A look at the truth is a line of the run, which is not the one of a replay.
+    /// Uses the displayed day. Inspecting true values is recorded in the run, not in its playback.
     fn curve_of(&mut self, group: Group) -> Result<CurveExplorer, Refusal> {
         let none_open = || Refusal::new("not_possible", "no run is open");
         let (is_allowed, day) = match self.open.as_ref().ok_or_else(none_open)? {

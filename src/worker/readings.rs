@@ -1,9 +1,9 @@
-//! What screens ask the database for. Every reading is one guarded query over the visible tables, the same a
-//! person could ask; its words are in `assets/readings`, or in `assets/queries` where the library asks the same.
+//! Queries of the screens. Each reading is a guarded query over the public tables, as a user could run it. The SQL is
+//! in `assets/readings`, or in `assets/queries` if the query library has it too.
 
 macro_rules! readings {
     ($($variant:ident $file:literal $doc:literal)*) => {
-        /// A question of a screen.
+        /// A query of a screen.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Reading { $(#[doc = $doc] $variant,)* }
 
@@ -11,7 +11,7 @@ macro_rules! readings {
             /// All readings.
             pub const ALL: &'static [Reading] = &[$(Reading::$variant,)*];
 
-            /// The statement.
+            /// Returns the SQL statement.
             pub fn sql(self) -> &'static str {
                 match self { $(Reading::$variant => include_str!(concat!("../../assets/", $file, ".sql")),)* }
             }
@@ -20,24 +20,24 @@ macro_rules! readings {
 }
 
 readings! {
-    Subscribers "readings/subscribers" "Who is there: group, plan, customers, seats, dollars a month, there for 30 days."
+    Subscribers "readings/subscribers" "Active subscriptions: group, plan, customers, seats, dollars per month, active for 30 days."
     Usage "readings/usage" "Usage of the last day: group, plan, users, seats, units."
-    Arrivals "readings/arrivals" "Leads of the last weeks: week, group, source, leads, those who signed."
-    Departures "readings/departures" "Who left in the last weeks: week, group, cancelled, of those there 30 days ago."
+    Arrivals "readings/arrivals" "Leads of the last weeks: week, group, source, leads, conversions."
+    Departures "readings/departures" "Cancellations of the last weeks: week, group, cancelled, cancelled of those active 30 days ago."
     LeadsByChannel "readings/leads_by_channel" "Leads of the last four weeks: channel, group, leads, spend."
     Service "readings/service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
-    OpenIssues "readings/open_issues" "Open issues: group, and a count for each of four ages."
-    EnterpriseTurns "readings/enterprise_turns" "Turns of negotiations, the newest first: thread, company, kind, turn, sender, words, offer, day, seats, end."
-    LastLetters "readings/last_letters" "The newest letter of each company that named a price or a plan in the last eight days: thread, words, and the plan it has where it named no price."
-    Companies "readings/companies" "The companies of these negotiations: profile and subscription."
+    OpenIssues "readings/open_issues" "Open issues: group, and counts for four age ranges."
+    EnterpriseTurns "readings/enterprise_turns" "Turns of negotiations, the newest first: thread, enterprise, kind, turn, sender, text, offer, day, seats, end."
+    LastLetters "readings/last_letters" "The newest message of each enterprise that named a price or a plan in the last eight days: thread, text, and its current plan if it named no price."
+    Companies "readings/companies" "The enterprises of these negotiations: profile and subscription."
     Research "readings/research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
-    OwnPosts "readings/own_posts" "Our posts, the newest first: number, day, text, post it answers, views, numbers of comments."
-    Knowledge "readings/knowledge" "What is known of all groups: group, level, found on, studied on."
-    Attempts "readings/attempts" "Attempts at market research, the newest first: day, cost, found, group."
+    OwnPosts "readings/own_posts" "Our posts, the newest first: number, day, text, post it replies to, views, numbers of comments."
+    Knowledge "readings/knowledge" "Knowledge of all groups: group, study level, day discovered, day studied."
+    Attempts "readings/attempts" "Market research attempts, the newest first: day, cost, success, group."
     WeekNotices "readings/week_notices" "Notices of the last week, the newest first: day, type, message."
-    Cohorts "readings/cohorts" "Subscribers by group, week of signing and week of leaving (0 if none): group, week, week, customers."
+    Cohorts "readings/cohorts" "Subscribers by group, signup week and cancellation week (0 if none): group, week, week, customers."
     Economy "readings/economy" "The published index: day measured, value, trend, change, phase, description."
-    FirstOffers "queries/first-offers" "Outcome by first offer and week, as the library asks it: group, plan, price band, week, threads and what became of them."
+    FirstOffers "queries/first-offers" "Outcome by first offer and week, also a query of the library: group, plan, price range, week, threads and their outcomes."
 }
 
 #[cfg(test)]

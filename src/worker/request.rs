@@ -1,4 +1,4 @@
-//! What the screen asks of the run and of the folder of runs: work for the thread that owns the session.
+//! Requests of the console to the session thread.
 
 use std::path::PathBuf;
 
@@ -12,41 +12,41 @@ use novamind_session::{Access, Forecasts, Goal, NewRun};
 use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 
-/// Work that a person asked for.
+/// A request of the user.
 #[derive(Debug, Clone)]
 pub enum Request {
     /// List the runs of the folder.
     ListRuns,
-    /// Give up a run of the folder.
+    /// End a run of the folder.
     EndRun(String),
     /// Delete a run of the folder.
     DeleteRun(String),
-    /// Read a class that was collected, from its folder, to be shown in some way.
+    /// Read a collected class from its folder for display.
     ReadClass(PathBuf, Shown),
-    /// Begin, or go on with, what a hand-out of a class holds.
+    /// Start or resume the lesson of a handout.
     OpenHandout(PathBuf),
-    /// Start a run in the folder.
+    /// Create a run in the folder.
     Create(Box<NewRun>),
-    /// Open a run of the folder by its id, to go on with it or to look at it.
+    /// Open a run of the folder by its id, for play or read-only.
     Open(String, Access),
-    /// Open the good beginning of a damaged run of the folder as a branch.
+    /// Recover the undamaged prefix of a damaged run as a branch and open it.
     Rescue(String),
-    /// Play a recorded run again.
+    /// Replay a recorded run.
     Replay {
-        /// Which.
+        /// The record.
         recorded: Recorded,
-        /// Where it begins.
+        /// The initial position.
         goal: Goal,
-        /// New lines are awaited: somebody else is playing it.
+        /// Whether to follow new lines that another program writes.
         follow: bool,
     },
-    /// Go on from this moment of the replay in a run of one's own.
+    /// Create a branch from the current position of the playback and continue in it.
     TakeOver(Mode),
-    /// Go on in a branch that keeps the decisions of the run from a week on, some of them edited.
+    /// Create a branch that keeps the decisions of the run with some edits, and continue in it.
     AdoptBranch {
-        /// The week.
+        /// The first week that the branch changes.
         week: u32,
-        /// What is decided otherwise.
+        /// The edited decisions.
         edits: Vec<DecisionEdit>,
     },
     /// Call a tool.
@@ -56,121 +56,121 @@ pub enum Request {
         /// Arguments.
         arguments: Value,
     },
-    /// Take back the last setting.
+    /// Undo the last setting.
     Undo,
-    /// Set again what the last undo took back.
+    /// Redo the last undone setting.
     Redo,
-    /// Let the week pass.
+    /// Run the week.
     Advance {
-        /// Why.
+        /// The rationale.
         rationale: String,
         /// Forecasts of cash.
         forecasts: Forecasts,
     },
-    /// Simulate days of a debug run, up to a breakpoint.
+    /// Simulate a number of days of a debug run, up to a breakpoint.
     RunDays(u32),
-    /// Keep the notes.
+    /// Save the notes.
     SetMemo(String),
-    /// Tell the story of the run for the final page.
+    /// Build the run report for the final page.
     TellStory,
-    /// Put the report of the run into words.
+    /// Render the files of the run report.
     WriteReport,
-    /// Do something in the lesson of the run.
+    /// A request to the lesson of the run.
     Lesson(LessonRequest),
-    /// Lead a participant through a study.
+    /// A request in a study.
     Visit(VisitRequest),
 }
 
-/// What a person asks of a lesson. Steps and parts are counted from 0.
+/// A request to a lesson. Steps and parts are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LessonRequest {
-    /// The answer to the question of the step.
+    /// Answer the question of the step.
     Guess(f64),
-    /// The next hint.
+    /// Show the next hint.
     Hint,
-    /// A step again from its beginning.
+    /// Retry a step from its start.
     TryAgain(usize),
-    /// Another part.
+    /// Start another part.
     BeginPart(usize),
-    /// What came of a part that is over.
+    /// Compute the debrief of a finished part.
     Debrief,
 }
 
-/// What a participant's way through a study asks for.
+/// A request in a study.
 #[derive(Debug, Clone)]
 pub enum VisitRequest {
-    /// Participants of this study come.
+    /// Start receiving participants of this study.
     Receive(Box<Study>),
-    /// A participant has given a label.
+    /// The participant entered a label.
     Begin {
         /// The label.
         label: String,
-        /// How many labels were refused before.
+        /// Number of labels rejected before.
         refused: u32,
     },
-    /// They agree to the text of the study.
+    /// The participant consents.
     Agree(ConsentGiven),
-    /// They do not.
+    /// The participant declines.
     Decline,
-    /// They pass over the practice.
+    /// The participant skips the practice.
     PassPractice,
-    /// They play what comes next.
+    /// The participant opens the next run.
     Play,
-    /// They ask what comes next.
+    /// The participant asks for the next step.
     GoOn,
-    /// A question is shown to them.
+    /// A question was shown to the participant.
     Ask(Box<DueQuestion>),
-    /// They send the answers of a page.
+    /// The participant submits the answers of a page.
     Answer(Vec<GivenAnswer>),
-    /// They withdraw, and have confirmed it.
+    /// The participant withdraws, after confirmation.
     Withdraw,
-    /// Somebody gives the experimenter's code.
+    /// Check the experimenter's code.
     TryCode(String),
 }
 
-/// The answer to a question, and how it came to be.
+/// The answer to a question, with how it was entered.
 #[derive(Debug, Clone)]
 pub struct GivenAnswer {
     /// The question.
     pub due: DueQuestion,
-    /// The answer; null where it was passed over.
+    /// The answer; null if it was skipped.
     pub value: Value,
     /// Milliseconds on the screen.
     pub for_ms: u64,
-    /// How often it was changed before it was sent.
+    /// Number of changes before it was submitted.
     pub changes: u32,
 }
 
-/// A run that was recorded.
+/// A recorded run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Recorded {
-    /// One of the folder of runs, by its id.
+    /// A run of the folder, by its id.
     Run(String),
-    /// A folder of a run or a trajectory file anywhere.
+    /// Any run folder or trajectory file.
     File(PathBuf),
 }
 
-/// What the screen is busy with while a script runs.
-pub const SCRIPT_RUNS: &str = "the script runs";
+/// Label while a script runs.
+pub const SCRIPT_RUNS: &str = "running the script";
 
 impl Request {
-    /// Whether it would change the run.
+    /// Returns whether it changes the run.
     pub fn changes_run(&self) -> bool {
         self.waits_for_week() || self.lets_time_pass() || matches!(self, Request::SetMemo(_))
     }
 
-    /// Whether days are simulated by it.
+    /// Returns whether it simulates days.
     pub fn lets_time_pass(&self) -> bool {
         matches!(self, Request::Advance { .. } | Request::RunDays(_))
     }
 
-    /// Whether it is refused while a week runs: it was meant for the company as it was before.
+    /// Returns whether it is rejected while a week runs, because it was meant for the state before the week.
     pub fn waits_for_week(&self) -> bool {
         let of_lesson = matches!(self, Request::Lesson(asked) if *asked != LessonRequest::Debrief);
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
-    /// Whether participants of a study cannot ask for it: it reaches beyond their own run.
+    /// Returns whether participants of a study must not send it, because it reaches beyond their own run.
     pub fn is_kept_from_participants(&self) -> bool {
         match self {
             Request::ListRuns
@@ -197,20 +197,20 @@ impl Request {
         }
     }
 
-    /// What the screen is busy with until it is answered; none where the person goes on meanwhile.
+    /// Returns the label shown until it is answered, or `None` if the user can continue meanwhile.
     pub fn busy_with(&self) -> Option<&'static str> {
         Some(match self {
             Request::Create(_) => "starting the run",
             Request::ReadClass(..) => "reading the class",
-            Request::OpenHandout(_) => "opening the hand-out",
+            Request::OpenHandout(_) => "opening the handout",
             Request::Open(..) => "opening the run",
             Request::Rescue(_) => "opening the intact part of the run",
             Request::Replay { .. } => "opening the record",
             Request::TakeOver(_) => "starting a run from here",
-            Request::AdoptBranch { .. } => "playing the branch",
-            Request::Lesson(LessonRequest::TryAgain(_)) => "going back to the beginning of the step",
+            Request::AdoptBranch { .. } => "simulating the branch",
+            Request::Lesson(LessonRequest::TryAgain(_)) => "returning to the start of the step",
             Request::Lesson(LessonRequest::BeginPart(_)) => "starting the next part",
-            Request::Advance { .. } => "the week runs",
+            Request::Advance { .. } => "running the week",
             Request::RunDays(_) => "simulating",
             Request::Call { tool, .. } if tool.runs_code() => SCRIPT_RUNS,
             Request::Visit(VisitRequest::Play) => "opening the run",

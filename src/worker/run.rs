@@ -1,4 +1,4 @@
-//! The session's thread with the run that is open: calls, weeks, notes, story and report.
+//! The open run on the session thread: calls, weeks, notes and reports.
 
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,19 +18,16 @@ use novamind_report::{Story, as_html, as_markdown};
 use novamind_session::{DayReport, Forecasts, RunDatabase, Session};
 use novamind_tools::ToolId;
 
-/// The run that is open, and where news of it go.
+/// The open run, with where its messages are sent.
 pub(super) struct OpenRun<'a> {
     pub(super) session: &'a mut Session,
-    /// The company as it was shown last.
     pub(super) shown: &'a mut Option<Arc<Company>>,
     pub(super) news: &'a Sender<Message>,
     pub(super) queries: &'a QueryThreads,
-    /// Stops the script that runs.
     pub(super) stop: &'a Mutex<Option<Interrupt>>,
 }
 
 impl OpenRun<'_> {
-    /// The company as it is now.
     pub(super) fn company(&mut self) -> Arc<Company> {
         let company = Arc::new(Company::in_lesson(self.session, self.shown.as_deref()));
         *self.shown = Some(company.clone());
@@ -93,7 +90,7 @@ impl OpenRun<'_> {
     }
 }
 
-/// Tells the days that are simulated, not too often.
+/// Returns a function that reports simulated days, with a minimum interval.
 pub(super) fn tell_days(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
     let (news, mut told) = (news.clone(), Instant::now());
     move |report| {

@@ -6,13 +6,13 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// A run in memory on its first day.
+/// Returns a new run in memory.
 pub fn session() -> Session {
     let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
     Session::create(new, &Configuration::shipped()).expect("a run in memory")
 }
 
-/// A run that was played for some weeks by a sensible beginner.
+/// Returns a run in memory that was played for some weeks with sensible settings.
 pub fn played(weeks: usize) -> Session {
     let new = NewRun { seed: Some(7), days: Some(200), storage: Storage::Memory, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
@@ -42,7 +42,7 @@ fn open_shop(session: &mut Session) {
     }
 }
 
-/// A run in which companies ask for offers.
+/// Returns a run in memory in which enterprises wait for offers.
 pub fn courted() -> Session {
     let new =
         NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };
@@ -65,5 +65,5 @@ pub fn courted() -> Session {
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
-    panic!("nobody came in twenty weeks");
+    panic!("no enterprise asked for an offer in twenty weeks");
 }

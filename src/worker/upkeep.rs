@@ -1,5 +1,4 @@
-//! What the session's thread does from time to time: it looks at time limits while the rules have some, and tries to write a
-//! database that could not be written until there is room.
+//! Periodic tasks of the session thread: checking time limits, and repairing a database that could not be written.
 
 use std::time::{Duration, Instant};
 
@@ -9,11 +8,10 @@ use novamind_session::TimeLeft;
 
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
-/// Time between two tries: each may simulate weeks again.
+/// Time between two attempts: each may simulate weeks again.
 const BETWEEN_TRIES: Duration = Duration::from_secs(3);
 
 impl SessionThread {
-    /// Looks at the limits when it is time.
     pub(super) fn look_at_limits(&mut self) {
         let now = Instant::now();
         if self.limits.is_none_or(|due| due > now) {
@@ -31,10 +29,10 @@ impl SessionThread {
         reached.into_iter().for_each(|limit| self.say(News::Limit(limit)));
     }
 
-    /// Notices that the database falls behind, once.
+    /// Reports once that the database has fallen behind.
     pub(super) fn look_after_database(&mut self) {
         let Some(Open::Played(session)) = &self.open else { return };
-        // Whoever waits for the writer here would keep the person waiting; what it wrote last is known.
+        // Does not wait for the writer, which would delay the user: the last known failure is enough.
         if self.mending.is_none()
             && let Some(problem) = session.database().failure()
         {
@@ -43,7 +41,6 @@ impl SessionThread {
         }
     }
 
-    /// Tries to bring the database up to date when it is time.
     pub(super) fn mend(&mut self) {
         if self.mending.is_none_or(|due| due > Instant::now()) {
             return;

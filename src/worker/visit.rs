@@ -1,4 +1,4 @@
-//! The session's thread with a participant of a study: what comes next for them, their runs, their answers.
+//! Studies on the session thread: the steps, runs and answers of a participant.
 
 use super::{Open, SessionThread};
 use crate::message::{News, VisitNews};
@@ -7,28 +7,25 @@ use novamind_record::consent::Agreed;
 use novamind_record::error::RunError;
 use novamind_study::{DueQuestion, NextStep, Study, Visit, record_refused_code};
 
-/// A study that is being visited.
 pub(super) struct Desk {
     pub(super) study: Study,
-    /// The participant who has come.
     pub(super) visit: Option<Visit>,
-    /// How the participant has agreed, before a run records it.
+    /// The participant's consent, until a run records it.
     pub(super) agreed: Option<Agreed>,
-    /// What is due, as it was told last.
+    /// The due questions as last reported.
     pub(super) due: Vec<DueQuestion>,
 }
 
 impl Desk {
-    /// Before anybody has come.
     pub(super) fn of(study: Study) -> Desk {
         Desk { study, visit: None, agreed: None, due: Vec::new() }
     }
 
-    /// What comes next for the participant; none before one has come.
+    /// Returns the next step of the participant, or `None` before one has come.
     pub(super) fn next(&self) -> Result<Option<NextStep>, RunError> {
         let Some(visit) = &self.visit else { return Ok(None) };
         let step = match visit.next()? {
-            // Agreement stands in the first run.
+            // The first run will record the consent.
             NextStep::Consent(_) if self.agreed.is_some() => visit.after_consent()?,
             step => step,
         };
@@ -40,7 +37,6 @@ impl Desk {
 }
 
 impl SessionThread {
-    /// Does what a participant's way asks for.
     pub(super) fn lead(&mut self, request: VisitRequest) {
         match request {
             VisitRequest::Receive(study) => {
@@ -112,7 +108,6 @@ impl SessionThread {
         self.say(News::Visit(news));
     }
 
-    /// Opens the participant's run, or begins it.
     fn play_next(&mut self) {
         let Some(desk) = &self.desk else { return };
         let Some(visit) = &desk.visit else { return };
@@ -140,7 +135,6 @@ impl SessionThread {
         self.say(News::Visit(VisitNews::Answered(due)));
     }
 
-    /// Tells what is due, if that has changed.
     pub(super) fn tell_due(&mut self) {
         let (Some(desk), Some(Open::Played(session))) = (&mut self.desk, &self.open) else { return };
         let due = desk.study.due(session);
@@ -150,7 +144,7 @@ impl SessionThread {
         }
     }
 
-    /// Erases what the participant did; no run of theirs is open.
+    /// Erases the participant's data; none of their runs is open.
     fn withdraw(&mut self) {
         self.queries.disconnect();
         let erased = self.desk.as_ref().and_then(|desk| desk.visit.as_ref()).map(Visit::withdraw);

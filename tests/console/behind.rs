@@ -1,4 +1,4 @@
-//! A database that cannot be written: the screen says so as long as it lasts, and asks again when it is over.
+//! A database that cannot be written: a banner is shown until it is repaired, then the data is requested again.
 
 use novamind::worker::message::{Message, News};
 
@@ -16,7 +16,7 @@ fn older_figures_are_marked_until_the_database_is_whole_again() {
     assert!(!before.contains(BANNER) && !before.contains("stale"), "{before}");
     let problem = "database or disk is full".to_owned();
     console.app.update(Message::News(News::DatabaseBehind(problem.clone())));
-    // It stands on every screen, and outlives keys and messages; what the database tells is marked.
+    // The banner stays on every screen; outdated panes are marked.
     for (key, marked) in [("3", true), ("2", false), ("4", true), ("9", true)] {
         console.press(key);
         let screen = console.screen();

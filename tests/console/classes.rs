@@ -1,4 +1,4 @@
-//! Classes in the start menu: a hand-out is opened by its path, and what came back of a class is a screen.
+//! Classes in the start menu: opening a handout by its path, and viewing a collected class.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ fn class(folder: &Path, students: u32) -> Class {
     Class::create(folder, &lesson, students).expect("a class")
 }
 
-/// Plays a hand-out to its end at a price.
+/// Plays a handout to its end at a price.
 fn play(handout: &Path, runs: &Path, price: f64) {
     let handout = Handout::read(handout).expect("a hand-out");
     let run = handout.place(runs).expect("a run");
@@ -47,7 +47,6 @@ fn choose(console: &mut Console, entry: &str) {
     panic!("the menu has no {entry}:\n{}", console.screen());
 }
 
-/// Types a text and accepts it.
 fn enter(console: &mut Console, text: &str) {
     console.press(&format!("'{text}' enter"));
 }
@@ -73,20 +72,20 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     let own = |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let first = own(&console);
     assert!(first.starts_with(runs.join("participants/S01")), "{}", first.display());
-    // The menu shows the student's runs, and the same file goes on.
+    // The menu lists the student's runs, and the same file resumes.
     console.press("esc ; q");
     console.shows("1 on this machine");
     choose(&mut console, "Hand-out");
     enter(&mut console, &path);
     assert_eq!(own(&console), first);
-    // Another student sits down at the same machine.
+    // Another student uses the same computer.
     console.press("esc ; q");
     choose(&mut console, "Hand-out");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(own(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
     let left = console.left.clone().expect("it has left");
-    assert!(left.1.expect("a farewell").contains("`novamind --as S02 --run latest` continues"));
+    assert!(left.1.expect("a farewell").contains("Resume it with `novamind --as S02 --run latest`"));
 }
 
 #[test]
@@ -97,7 +96,7 @@ fn the_hand_out_of_somebody_else_is_refused_where_the_runs_are_one_persons() {
     let mut console = Console::start(&runs, SMALL);
     choose(&mut console, "Hand-out");
     enter(&mut console, &folder.join("S01.nm").display().to_string());
-    console.shows("this is the hand-out of S01, not of S02");
+    console.shows("this is the handout of S01, but this folder has the runs of S02");
     assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());
 }
 
@@ -128,7 +127,7 @@ fn a_class_is_a_screen_of_the_start_menu() {
                 console.screen()
             })
             .collect();
-        assert_eq!(letters[0], letters[1], "a theme changes letters");
+        assert_eq!(letters[0], letters[1], "a theme changes the text");
         pictures += &format!("{keys} {}×{}\n{}\n", size.0, size.1, letters[0]);
     }
     assert!(pictures.contains("6 of 7"), "{pictures}");

@@ -1,4 +1,4 @@
-//! Companies that policies have led, on the disk.
+//! Run folders of companies that policies have played.
 
 use std::collections::HashMap;
 use std::fs;
@@ -8,16 +8,16 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 use novamind::lab::{Collector, Policy, RunSpec, play};
 use novamind::record::folder::configuration::Configuration;
 
-/// Files of a folder of runs: path below it and bytes.
+/// Files of a runs folder: relative path and contents.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
 /// A policy, a seed and a day.
 type Key = (String, u64, u32);
 
-/// Companies that tests of this process have asked for.
+/// Companies that tests of this process have requested.
 static LED: LazyLock<Mutex<HashMap<Key, Arc<OnceLock<Files>>>>> = LazyLock::new(Mutex::default);
 
-/// Lets a policy of `tests/data/policies` lead a company until a day. Tests that ask for the same company share it.
+/// Lets a policy of `tests/data/policies` play a company until a day. Tests that request the same company share it.
 pub fn led(policy: &str, seed: u64, until: u32, runs: &Path) {
     let shared =
         Arc::clone(LED.lock().expect("companies").entry((policy.to_owned(), seed, until)).or_default());

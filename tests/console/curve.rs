@@ -1,4 +1,4 @@
-//! The curve explorer: its pictures, what is dragged, and that only a look inside is recorded as one.
+//! The curve explorer: its pictures and dragging; only true values are recorded as inspections.
 
 use std::path::Path;
 
@@ -60,7 +60,7 @@ fn dragging_sets_nothing_and_leads_to_the_form() {
     console.shows("14");
     drop(console);
     let lines = recorded(&folder_of(runs.path()));
-    assert_eq!(looks(&lines), [""; 0], "estimates are no look inside");
+    assert_eq!(looks(&lines), [""; 0], "estimates are not an inspection");
     let calls = lines.lines.iter().filter(|line| matches!(&line.record, Record::Call(_)));
     let days: Vec<u32> = calls.map(|line| line.day).collect();
     assert!(!days.is_empty() && days.iter().all(|day| *day == 0), "{days:?}");

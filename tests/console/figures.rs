@@ -1,5 +1,6 @@
-//! One definition per figure: whatever stands under a name on a screen, in a plain answer, in a report or on the
-//! dashboard is what the database tells of it. A figure that is shown anew under one of these names is compared too.
+//! One definition per figure: everything shown under a name on a screen, in plain mode, in a report or on the
+//! dashboard equals the value in the database. New places that show a figure under one of these names are compared
+//! too.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -9,24 +10,24 @@ use std::process::{Command, Stdio};
 use super::company::led;
 use super::harness::Console;
 
-/// A young company, one with enterprise deals, one in trouble: policy, seed, last days of weeks.
+/// A young company, one with enterprise deals, and one in trouble: policy, seed, last days of weeks.
 const COMPANIES: [(&str, u64, [u32; 2]); 3] =
     [("opening.toml", 7, [7, 28]), ("companies.toml", 11, [35, 84]), ("crisis.toml", 5, [28, 70])];
 
-/// Windows whose screens are read.
+/// Window sizes in which the screens are read.
 const SIZES: [(u16, u16); 2] = [(80, 24), (200, 57)];
 
-/// What is asked in plain mode, once as text and once as JSON.
+/// Plain-mode commands, run once as text and once as JSON.
 const ASKED: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport week\nreport run\n";
 
-/// A figure: the names it is shown under, `#` where the number stands if it is not the end, and what the database tells
-/// of it; `{from}` and `{to}` are the days of the week. A figure without a statement is compared with itself alone.
+/// A figure: the names under which it is shown, with `#` for the number if it is not at the end, and its query;
+/// `{from}` and `{to}` are the days of the week. A figure without a query is only compared with itself.
 struct Figure(&'static [&'static str], &'static str);
 
-/// By which share sums of the same amounts in another order may differ.
+/// Relative error of sums of the same amounts in a different order.
 const SUMS: f64 = 1e-12;
 
-/// Figures whose sign depends on whether they stand among costs or for themselves.
+/// Figures whose sign depends on whether they are listed among costs.
 const COSTS: [&str; 6] =
     ["running costs", "compute", "advertising", "operations", "development", "lead costs"];
 
@@ -144,20 +145,20 @@ const FIGURES: [Figure; 29] = [
     ),
 ];
 
-/// The name of what stands behind cash: an arrow, or a parenthesis.
+/// The name of the change next to cash: an arrow, or a parenthesis.
 const CASH_MOVED: &str = "what cash did";
 
 /// Names that tables of the product screen use for something else: its service table has minutes of single days.
 const OF_OTHER_TABLES: [(&str, &str); 1] = [("screen 4", "outage, minutes")];
 
-/// A number as it is written, and by how much its rounding may have moved it.
+/// A formatted number, and its rounding error.
 #[derive(Debug, Clone, Copy)]
 struct Written {
     value: f64,
     rounding: f64,
 }
 
-/// Reads a number at the beginning of a text: sign, dollars, digits, k, M, B or %. Returns what follows it.
+/// Parses a number at the start of a text: sign, dollars, digits, k, M, B or %. Returns the rest of the text.
 fn number(text: &str) -> Option<(Written, &str)> {
     let mut rest = text;
     let mut sign = 1.0;
@@ -185,11 +186,11 @@ fn number(text: &str) -> Option<(Written, &str)> {
     Some((Written { value: sign * scale * value, rounding }, after))
 }
 
-/// The number that a name has here: behind it, or where its `#` stands.
+/// Returns the number of a name: after it, or at its `#`.
 fn value_of(name: &str, cell: &str) -> Option<Written> {
     let (before, after) = name.split_once('#').unwrap_or((name, ""));
     let (before, low) = (before.trim_end(), cell.to_lowercase());
-    // Bytes of both are compared, so a letter that changes its length in small letters is left out.
+    // Byte positions must match, so text whose lower case has another length is skipped.
     if low.len() != cell.len() {
         return None;
     }
@@ -212,7 +213,7 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
         if let Some((new, after)) = left.strip_prefix(" → ").and_then(number) {
             (written, left) = (new, after);
         }
-        // What is a day is a rate, not the figure; another name may say more of the same number.
+        // A value per day is a rate, not the figure; a longer name may use the same number.
         let rate = [" $/day", " units/day"].iter().any(|unit| left.starts_with(unit));
         let change = after.is_empty() && left.starts_with(", of it");
         let ends = left.chars().next().is_none_or(|next| " ,;.|)│".contains(next));
@@ -223,7 +224,7 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
     None
 }
 
-/// The change that stands behind cash, `▼ $9.86k` or `(-$9,857 over the last week)`.
+/// Parses the change next to cash, `▼ $9.86k` or `(-$9,857 over the last week)`.
 fn cash_moved(cell: &str) -> Option<Written> {
     let cash = cell.trim().strip_prefix("cash").or_else(|| cell.trim().strip_prefix("Cash"))?;
     let cash = cash.strip_prefix(" at week's end").unwrap_or(cash);
@@ -234,17 +235,17 @@ fn cash_moved(cell: &str) -> Option<Written> {
     Some(if fell.is_some() { Written { value: -written.value, ..written } } else { written })
 }
 
-/// Parts of a line that stand for themselves; what the top line says of cash is one of them.
+/// Splits a line into independent parts. The cash in the header is one of them.
 fn cells(part: &str) -> impl Iterator<Item = &str> {
     let at = part.find("   cash ").unwrap_or(0);
     [&part[..at], &part[at..]].into_iter().flat_map(|part| part.split(" | "))
 }
 
-/// Everything that a text shows: figure, number, and the line it stands in.
+/// Returns every figure that a text shows: its index, the number and the line.
 fn shown(text: &str) -> Vec<(usize, Written, String)> {
     let mut found = Vec::new();
     for line in text.lines() {
-        // Behind it stand the changes of a figure's parts, not the parts.
+        // The changes after the semicolon belong to parts of the figure.
         let line = line.split(';').next().unwrap_or_default();
         for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
             for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
@@ -259,7 +260,7 @@ fn shown(text: &str) -> Vec<(usize, Written, String)> {
     found
 }
 
-/// What plain mode says.
+/// Runs plain mode and returns its output.
 fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_novamind"))
         .env("NOVAMIND_RUNS", runs)
@@ -275,7 +276,7 @@ fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The page of a run that is handed on, as text: a row of a table is a line.
+/// Returns the shared page of a run as text, one line per table row.
 fn page(runs: &Path) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_novamind"))
         .env("NOVAMIND_RUNS", runs)
@@ -285,7 +286,7 @@ fn page(runs: &Path) -> String {
     let html = String::from_utf8(output.stdout).expect("UTF-8");
     let (mut text, mut rest) = (String::new(), html.as_str());
     while let Some((before, after)) = rest.split_once('<') {
-        // What is drawn is no text.
+        // Drawings contain no text.
         let drawn = ["svg", "style"].into_iter().find(|drawn| after.starts_with(drawn));
         let end = drawn.and_then(|drawn| after.find(&format!("</{drawn}>"))).map_or(0, |at| at + 1);
         let tag = after[end..].split_once('>').map_or("", |(tag, _)| tag);
@@ -296,7 +297,7 @@ fn page(runs: &Path) -> String {
     text
 }
 
-/// What the database tells of every figure; none where no statement does.
+/// Returns the value of every figure in the database, `None` for figures without a query.
 fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
     let in_week = novamind::session::entries_of_weeks(day.div_ceil(7), day.div_ceil(7));
     let statement = |sql: &str| {
@@ -317,7 +318,7 @@ fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
     FIGURES.iter().map(next).collect()
 }
 
-/// Everything that is shown of a company: where, and the text.
+/// Returns everything that shows figures of a company: the place, and the text.
 fn surfaces(runs: &Path) -> Vec<(String, String)> {
     let mut all = vec![("plain".to_owned(), plain(runs, &[], ASKED))];
     let json = plain(runs, &["--json"], "status\n");

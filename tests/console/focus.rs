@@ -1,4 +1,4 @@
-//! Where the focus is: how it is seen, which keys it has, and what it keeps.
+//! The focus: how it is displayed, its keys, and what it keeps.
 
 use novamind::tui::glyphs::Glyphs;
 use novamind::tui::theme::Theme;
@@ -15,8 +15,8 @@ fn the_focus_is_seen_without_colour() {
             console.press(screen);
             let letters = console.screen();
             let corners = letters.matches('┏').count();
-            assert_eq!(corners, 1, "{theme}, screen {screen}: one pane has the focus\n{letters}");
-            assert!(letters.contains('┌'), "{theme}, screen {screen}: another has not\n{letters}");
+            assert_eq!(corners, 1, "{theme}, screen {screen}: exactly one pane has the focus\n{letters}");
+            assert!(letters.contains('┌'), "{theme}, screen {screen}: another pane does not\n{letters}");
         }
     }
     console.app.glyphs = Glyphs::Ascii;
@@ -50,7 +50,7 @@ fn a_zoomed_form_keeps_the_screen_when_it_is_sent() {
     console.shows("set_prices · pricing");
     console.shows("✓ ");
     assert!(!console.screen().contains("set_model_tiers"), "the list is not shown");
-    // Keys are those of the form still, and the next value is typed into it.
+    // The form still has the keys, and the next value is typed into it.
     console.press("up enter '15' ctrl-s");
     console.shows("set_prices · pricing");
     console.press("z esc");
@@ -61,14 +61,14 @@ fn a_zoomed_form_keeps_the_screen_when_it_is_sent() {
 fn the_way_is_shown_and_esc_goes_back_along_it() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (80, 24));
-    // From a group of the list to its development, and back.
+    // From a group in the list to the form of its development spending, and back.
     console.press("3 down enter");
     console.shows("Customers › S2 › Go to");
     console.press("tab");
     console.shows("Customers › Fit of S2");
     console.press("shift-tab down enter");
     console.shows("› S2 › set_targeted_dev_spend");
-    // What is typed is left first, and a filter is cleared first.
+    // Typing ends first, and a filter is cleared first.
     console.press("enter '5' esc");
     console.shows("› S2 › set_targeted_dev_spend");
     console.press("esc");
@@ -76,12 +76,12 @@ fn the_way_is_shown_and_esc_goes_back_along_it() {
     console.press("esc");
     console.shows("Leads per $1,000");
     assert!(!console.screen().contains("Customers ›"), "the list is reached");
-    // From a need to the form, which is sent; then esc leads to where one came from.
+    // From an action item to the form, which is sent; then esc returns.
     console.press("1 enter");
     console.shows("Overview › set_prices");
     console.press("enter '14' enter ctrl-s esc");
     console.shows("Needs you");
-    // A figure's rows, and from them to their query.
+    // The source rows of a figure, and their query.
     console.week();
     console.press("esc 2 f");
     console.shows("Cash › ");
@@ -91,7 +91,7 @@ fn the_way_is_shown_and_esc_goes_back_along_it() {
     console.shows("Cash › Result");
     console.press("esc");
     console.shows("Books of week 1");
-    // Whoever chooses a screen by its key has left the path.
+    // Choosing a screen by its key clears the breadcrumbs.
     console.press("3 enter enter 8");
     assert!(!console.screen().contains("Customers ›"));
     for size in [(60, 16), (120, 40), (200, 60)] {

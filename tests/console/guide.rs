@@ -1,4 +1,4 @@
-//! Stories of somebody who is new here.
+//! Stories of a new user.
 
 use novamind::record::folder::runs::list_runs;
 use novamind::record::trajectory::record::Ended;
@@ -23,7 +23,7 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     assert!(!console.screen().contains("Tour ·"), "it is closed");
     console.press("1 : 'tour' enter");
     console.shows("Tour · 4 of 18 · A model");
-    // It is left with the program, and goes on from the menu where it was left.
+    // The tour resumes from the menu where it was left.
     console.press("q");
     drop(console);
     let mut console = Console::start(runs.path(), (80, 24));
@@ -43,8 +43,8 @@ fn the_tour_goes_on_by_doing_and_is_resumed_where_it_stopped() {
     console.press("f3 f3 f3 f3 f3");
     console.shows("Tour · 17 of 18 · Who buys");
     console.press("f3 f3");
-    assert!(!console.screen().contains("Tour ·"), "it is over");
-    console.shows("the tour is over; the company is yours until day 84");
+    assert!(!console.screen().contains("Tour ·"), "it is complete");
+    console.shows("tour completed; you can play on until day 84");
     assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
 }
 
@@ -53,7 +53,7 @@ fn a_run_that_is_no_practice_has_no_tour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.press(": 'tour' enter");
-    console.shows("the tour has a run of its own");
+    console.shows("the tour has its own run");
 }
 
 #[test]
@@ -67,14 +67,14 @@ fn a_baseline_run_explains_but_has_no_tour() {
     console.press(": 'glossary' enter");
     console.shows("Glossary");
     console.press("/ 'word' _ 'of' _ 'mouth' enter enter");
-    console.shows("leads to");
+    console.shows("see also");
     console.shows("Network");
     console.press("enter");
     console.shows("Referral");
     console.press("backspace");
     console.shows("Network");
     console.press("esc esc esc f2");
-    console.shows("leads to");
+    console.shows("see also");
 }
 
 #[test]
@@ -95,10 +95,10 @@ fn runs_are_compared_given_up_and_deleted_from_the_menu() {
     console.press("esc x");
     console.shows("without a score");
     console.press("y");
-    console.shows("is given up");
+    console.shows("has been ended");
     let list = list_runs(runs.path()).expect("a list");
     assert_eq!(list.iter().filter(|run| run.ended == Some(Ended::Abandoned)).count(), 1);
     console.press("D esc D y");
-    console.shows("is deleted");
+    console.shows("has been deleted");
     assert_eq!(list_runs(runs.path()).expect("a list").len(), 1);
 }

@@ -1,4 +1,4 @@
-//! The console without a terminal, for tests: what does not work fails at once, with the whole screen.
+//! The console without a terminal, for tests: every failure reports the whole screen.
 
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
@@ -12,7 +12,7 @@ use novamind::record::folder::configuration::Configuration;
 use novamind::tui::glyphs::Glyphs;
 use ratatui::buffer::Buffer;
 
-/// A console that is played by a test.
+/// A console that a test controls.
 pub struct Console {
     headless: Option<Headless>,
 }
@@ -32,17 +32,17 @@ impl DerefMut for Console {
 }
 
 impl Console {
-    /// A console in its start menu.
+    /// Returns a console in its start menu.
     pub fn start(runs: &Path, size: (u16, u16)) -> Console {
         Console::start_with(Configuration::shipped(), runs, size)
     }
 
-    /// A console of a person with a configuration.
+    /// Returns a console in its start menu, with a configuration.
     pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
         Console::of(Console::settings(configuration, runs), size)
     }
 
-    /// What a console is started with.
+    /// Returns the settings of test consoles.
     pub fn settings(configuration: Configuration, runs: &Path) -> Settings {
         Settings {
             theme: themes::find("dark", &configuration).expect("a theme"),
@@ -56,45 +56,45 @@ impl Console {
         }
     }
 
-    /// A console in its start menu, started with settings.
+    /// Returns a console in its start menu, with settings.
     pub fn of(settings: Settings, size: (u16, u16)) -> Console {
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.settle().expect("the menu");
         console
     }
 
-    /// A console in a new run.
+    /// Returns a console in a new run.
     pub fn in_new_run(runs: &Path, size: (u16, u16)) -> Console {
         let mut console = Console::start(runs, size);
         console.press("n enter");
         console
     }
 
-    /// A console in the newest run of a folder.
+    /// Returns a console in the latest run of a folder.
     pub fn in_latest_run(runs: &Path, size: (u16, u16)) -> Console {
         let mut console = Console::start(runs, size);
         console.open("latest").expect("the run opens");
         console
     }
 
-    /// Presses keys, written as the key file writes them; a word in quotes is typed letter by letter.
+    /// Presses keys in the notation of the key file; a word in quotes is typed letter by letter.
     pub fn press(&mut self, keys: &str) {
         let pressed = self.deref_mut().press(keys);
         pressed.unwrap_or_else(|problem| panic!("{keys}: {problem}"));
     }
 
-    /// Presses one key and waits for what follows.
+    /// Presses one key and waits for its consequences.
     pub fn key(&mut self, key: &str) {
         let pressed = self.deref_mut().key(key);
         pressed.unwrap_or_else(|problem| panic!("{key}: {problem}"));
     }
 
-    /// Lets an event happen and waits for what follows.
+    /// Handles an event and waits for its consequences.
     pub fn send(&mut self, event: Event) {
         self.deref_mut().send(event).expect("an answer");
     }
 
-    /// Draws a frame; returns its cells.
+    /// Draws a frame and returns its cells.
     pub fn draw(&mut self) -> Buffer {
         let buffer = self.deref_mut().draw();
         if let Some(cursor) = self.cursor {
@@ -103,7 +103,7 @@ impl Console {
         buffer
     }
 
-    /// The screen as text.
+    /// Returns the screen as text.
     pub fn screen(&mut self) -> String {
         let buffer = self.draw();
         let width = buffer.area.width;
@@ -111,19 +111,19 @@ impl Console {
         (0..buffer.area.height).map(|y| row(y) + "\n").collect()
     }
 
-    /// Fails with the whole screen if it does not show some text.
+    /// Asserts that the screen contains a text.
     pub fn shows(&mut self, text: &str) {
         let screen = self.screen();
         assert!(screen.contains(text), "{text:?} is not on the screen:\n{screen}");
     }
 
-    /// Fails with the whole screen if it shows some text.
+    /// Asserts that the screen does not contain a text.
     pub fn hides(&mut self, text: &str) {
         let screen = self.screen();
         assert!(!screen.contains(text), "{text:?} is on the screen:\n{screen}");
     }
 
-    /// Lets a week pass with the naive forecasts.
+    /// Runs a week with the naive forecasts.
     pub fn week(&mut self) {
         self.press("n enter 'test' enter f enter");
     }

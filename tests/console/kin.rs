@@ -1,4 +1,4 @@
-//! The tree of branches of a run in the Journal: what stands there, how a branch is opened, and where there is none.
+//! Related runs in the Journal: the displayed tree, opening a branch, and cases without a tree.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -12,7 +12,8 @@ use super::looks::{SIZES, cut_with_room};
 use super::replay::{played, replayed};
 use crate::support::company::{call, weeks};
 
-/// A run of four weeks, a branch that left in week 3 and was decided otherwise, and a branch of that one; their ids.
+/// Creates a run of four weeks, a branch from week 3 with other decisions, and a branch of that one. Returns their
+/// ids.
 fn family(runs: &Path) -> [String; 3] {
     let id = |session: &Session| session.manifest().id.clone();
     let root = played(runs, Mode::Sandbox, 4);
@@ -29,7 +30,7 @@ fn console_in(runs: &Path, id: &str, size: (u16, u16)) -> Console {
     console
 }
 
-/// The screen with names instead of the ids, which differ from run to run.
+/// Returns the screen with fixed names in place of the ids.
 fn named(console: &mut Console, ids: &[String; 3]) -> String {
     let names = ["run-root", "run-left", "run-late"];
     ids.iter().zip(names).fold(console.screen(), |text, (id, name)| text.replace(id, name))
@@ -72,18 +73,18 @@ fn enter_opens_a_branch_and_asks_before_text_is_left() {
     let ids = family(runs.path());
     let mut console = console_in(runs.path(), &ids[1], (120, 40));
     console.press("0 shift-tab enter");
-    console.shows(&format!("run {} is the one that is open", ids[1]));
-    // The tree begins with the root; nothing was typed, so nothing is asked.
+    console.shows(&format!("run {} is already open", ids[1]));
+    // The root is listed first; there are no drafts, so no confirmation is needed.
     console.press("up enter");
     let here = |console: &Console| console.app.run().map(|run| run.company.seen.run.clone());
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("0 e 'mine' esc shift-tab shift-tab down down enter");
-    console.shows("It is kept with this run");
+    console.shows("It is saved with the run");
     console.press("esc");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("enter y");
     assert_eq!(here(&console).as_deref(), Some(ids[2].as_str()));
-    // What was typed is offered where it was typed.
+    // The draft is offered where it was typed.
     console.press("0 shift-tab up up enter");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.shows("mine");

@@ -1,4 +1,4 @@
-//! A lesson on the screen: the task, a guess, hints, weeks at one key, another try, the debrief.
+//! Lessons: the task, a guess, hints, immediate weeks, retries and the debrief.
 
 use std::path::Path;
 
@@ -9,11 +9,11 @@ use novamind::session::{Access, Session};
 use super::harness::Console;
 use super::looks;
 
-/// A window with the task beside the screen, and one in which it is a page.
+/// A window with the task next to the screen, and one in which it is a page.
 const WIDE: (u16, u16) = (120, 40);
 const SMALL: (u16, u16) = (80, 24);
 
-/// A person who has a lesson of two weeks.
+/// Returns a configuration with a lesson of two weeks.
 fn configuration(folder: &Path) -> Configuration {
     let lessons = folder.join("lessons");
     std::fs::create_dir_all(&lessons).expect("a folder");
@@ -24,14 +24,14 @@ fn configuration(folder: &Path) -> Configuration {
     Configuration { folder: Some(folder.to_owned()), voice: None }
 }
 
-/// A person who has a lesson of that plan.
+/// Returns a configuration with a lesson of this definition.
 fn configuration_with(folder: &Path, plan: &str) -> Configuration {
     let configuration = configuration(folder);
     std::fs::write(folder.join("lessons/two-weeks.toml"), plan).expect("a plan");
     configuration
 }
 
-/// The lesson of two weeks, with something of it replaced.
+/// Returns the definition of the two-week lesson, with replacements.
 fn two_weeks(changes: &[(&str, &str)]) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
     let plan = std::fs::read_to_string(path).expect("a plan");
@@ -41,7 +41,7 @@ fn two_weeks(changes: &[(&str, &str)]) -> String {
     })
 }
 
-/// A console in the lesson, which the start menu began.
+/// Opens the lesson from the start menu.
 fn in_lesson(folder: &Path, size: (u16, u16)) -> Console {
     in_lesson_of(configuration(&folder.join("own")), folder, size)
 }
@@ -55,7 +55,7 @@ fn in_lesson_of(configuration: Configuration, folder: &Path, size: (u16, u16)) -
     console
 }
 
-/// The page of lessons of the start menu.
+/// Opens the lessons page of the start menu.
 fn open_lessons(console: &mut Console) {
     for _ in 0..9 {
         if console.screen().contains("› Lessons") {
@@ -83,8 +83,8 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     console.press("; l h");
     console.shows("Hint 1: Look at the leads.");
     console.press("esc n");
-    // One key was the week; what it came to stands beside the screen, with the pitfall and the next task.
-    console.shows("Step 1 is over: Open the shop");
+    // One key ran the week; its outcome is shown next to the screen, with the pitfall and the next task.
+    console.shows("Step 1 is complete: Open the shop");
     console.shows("reached: One subscriber");
     console.shows("! Day 7: Somebody bought.");
     console.shows("Step 2 of 2: Go on");
@@ -103,9 +103,9 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     for file in ["debrief.md", "debrief.html"] {
         assert!(run.join(file).is_file(), "{file}");
     }
-    // Another try of the last step asks first, and is a run of its own.
+    // A retry of the last step asks for confirmation and creates a run.
     console.press("a");
-    console.shows("begins again");
+    console.shows("starts again");
     console.press("y");
     console.shows("Step 2 of 2: Go on, try 2");
     assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
@@ -124,7 +124,7 @@ fn in_a_small_window_the_task_is_a_page() {
     console.press("enter '0.4' enter");
     console.shows("You guessed 40%");
     console.press("n");
-    console.shows("Step 1 is over: Open the shop");
+    console.shows("Step 1 is complete: Open the shop");
     console.press("esc n 2 enter n");
     console.shows("Debrief");
     console.press("esc n");
@@ -147,14 +147,14 @@ fn what_is_not_in_the_lesson_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut console = in_lesson(folder.path(), WIDE);
     console.press("3");
-    console.shows("Customers is not in this lesson; it has Overview, Cash");
+    console.shows("Customers is closed in this lesson; open screens: Overview, Cash");
     console.press("8");
     console.shows("locked");
     console.press(": 'set_daily_spend'");
     console.shows("not in this lesson");
     console.press("enter");
     console.shows("Not in this lesson.");
-    // What was typed into it cannot be sent, so no week waits for it.
+    // A closed tool cannot be sent, so its draft does not delay the week.
     console.press("n '0.25' enter enter '900' enter");
     console.shows("0 → 900");
     console.press("esc n");
@@ -179,7 +179,7 @@ fn a_guess_and_hints_outlive_the_program() {
     assert!(find_run(&runs, "latest").is_ok());
 }
 
-/// Takes a picture of what is shown, in windows of all sizes.
+/// Takes pictures of the screen in windows of all sizes.
 fn picture(console: &mut Console, place: &str) {
     let mut complaints = Vec::new();
     insta::assert_snapshot!(format!("lesson-{place}"), looks::picture(console, &mut complaints));
@@ -205,9 +205,9 @@ fn a_part_leads_to_the_next_one() {
     let mut console = Console::start(folder.path(), WIDE);
     open_lessons(&mut console);
     console.press("enter n '0.4' enter n");
-    console.shows("This part is over: p next part");
+    console.shows("This part has ended: p next part");
     console.shows("You guessed 40%.");
-    // What the good play does would give the next part away.
+    // Showing the good play would reveal the next part.
     console.press("d");
     console.shows("Debrief");
     assert!(!console.screen().contains("The good play:"));
@@ -225,7 +225,7 @@ fn a_price_that_was_typed_and_not_sent_is_asked_about() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut console = in_lesson(folder.path(), WIDE);
     console.press("n '0.4' enter : 'set_prices' enter e '30' enter n");
-    console.shows("The form of set_prices holds values that were not sent");
+    console.shows("The form of set_prices has unsent values");
     console.press("esc");
     assert_eq!(console.app.run().expect("a run").company.seen.day, 0);
     console.press("n y");
@@ -241,10 +241,10 @@ fn a_step_without_a_question_asks_before_its_first_week() {
     let own = configuration_with(&folder.path().join("own"), &plan);
     let mut console = in_lesson_of(own, folder.path(), WIDE);
     console.press("n '0.4' enter n n");
-    console.shows("Step 2 begins: Go on, 2 weeks. Run its first week?");
-    // The key that was pressed once too often does nothing, and says so.
+    console.shows("Step 2 starts: Go on, 2 weeks. Run its first week?");
+    // The accidental key only cancels, and says so.
     console.press("n");
-    console.shows("Step 2: not done; y would have done it");
+    console.shows("Step 2: cancelled; y confirms");
     let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
     assert_eq!(day(&console), 7);
     console.press("n y");
@@ -287,21 +287,21 @@ fn rules_that_were_sent_answer_again_with_the_week() {
     console.press("n '0.4' enter 6 R ctrl-n 'offer_rest:_C_19'");
     console.shows("ctrl-n empty the line");
     console.press("ctrl-s n");
-    console.shows("send by rules: not done");
+    console.shows("send by rules: cancelled");
     console.press("ctrl-s y");
     assert_eq!(waiting(&console), 0);
     console.press("n");
-    assert_eq!(day(&console), 35, "nobody waits: the week runs at once");
+    assert_eq!(day(&console), 35, "no enterprise waits: the week runs at once");
     assert!(waiting(&console) > 0, "more letters");
     console.press("n");
-    console.shows("The rules that you sent last answer");
+    console.shows("Answer with the rules that you sent last");
     console.press("y");
     assert_eq!(day(&console), 42);
     let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let record = std::fs::read_to_string(run.join("trajectory.jsonl")).expect("a record");
     let sent = record.lines().filter(|line| line.contains("\"tool\":\"send_enterprise_deal\"")).count();
-    assert_eq!(sent, 2, "once by the person, once with the week");
-    // The week alone is another answer.
+    assert_eq!(sent, 2, "once by the player, once with the week");
+    // Running the week without answers is the third choice.
     let before = waiting(&console);
     assert!(before > 0, "letters");
     console.press("n w");
@@ -325,7 +325,7 @@ fn runs_of_no_lesson_say_so() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), WIDE);
     console.press("; h");
-    console.shows("this run belongs to no lesson");
+    console.shows("this run is not part of a lesson");
     console.press("; l");
-    console.shows("this run belongs to no lesson");
+    console.shows("this run is not part of a lesson");
 }

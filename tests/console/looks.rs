@@ -1,12 +1,12 @@
-//! What can be checked of looks without eyes: words that are cut although there is room, halves that stay empty.
+//! Automatic checks of the layout: truncated words next to free space, and empty halves.
 
 use super::harness::Console;
 
-/// Sizes of windows: the smallest that is drawn, the smallest that is promised, a usual one, a large one.
+/// Window sizes: the minimum, the smallest supported, a usual one, a large one.
 pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
-/// The screen in the usual window. What is cut although there is room, in windows of all these sizes, joins the complaints. The
-/// size of the console stays.
+/// Returns the screen in the usual window. Adds words truncated next to free space, in windows of all these sizes, to
+/// `complaints`. The size of the console does not change.
 pub fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
     let own = console.size;
     let mut usual = String::new();
@@ -22,10 +22,10 @@ pub fn picture(console: &mut Console, complaints: &mut Vec<String>) -> String {
     usual
 }
 
-/// Blanks behind a cut word that are room, not the gap between two columns.
+/// Spaces after a truncated word that count as free space rather than a column gap.
 const GAP: usize = 4;
 
-/// Lines of a screen in which something is cut although there is room behind it, up to the next border.
+/// Returns the lines with a word truncated next to free space, up to the next border.
 pub fn cut_with_room(screen: &str) -> Vec<String> {
     let wasteful = |line: &&str| {
         line.match_indices('…').any(|(at, sign)| {
@@ -38,7 +38,7 @@ pub fn cut_with_room(screen: &str) -> Vec<String> {
     screen.lines().filter(wasteful).map(str::to_owned).collect()
 }
 
-/// Share of cells with ink in the emptier of two halves, side by side and one above the other; borders are no ink.
+/// Returns the share of non-empty cells in the emptiest half, horizontally or vertically, without borders.
 pub fn emptiest_half(screen: &str, width: usize) -> f64 {
     let rows: Vec<Vec<char>> = screen
         .lines()

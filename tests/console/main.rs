@@ -1,4 +1,4 @@
-//! The console as a person meets it: stories, pictures, sizes, random keys.
+//! Tests of the console from the user's view: stories, pictures, sizes, random input.
 
 mod behind;
 mod classes;

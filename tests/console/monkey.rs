@@ -1,5 +1,5 @@
-//! Random keys, clicks, pastes and sizes: nothing panics, the cursor stays inside, drafts stay, and the run replays to the
-//! same state.
+//! Random keys, clicks, pastes and sizes: nothing panics, the cursor stays inside, drafts stay, and the run replays
+//! to the same state.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use novamind::session::verify;
 use super::harness::Console;
 use crate::support::dice::Dice;
 
-/// Keys that are pressed; those that lead somewhere stand more than once.
+/// Keys to press; frequent ones open something.
 const KEYS: &str = "\
     1 2 3 4 5 6 7 8 9 0 n c u w d f i z tab tab tab shift-tab enter enter enter esc esc esc up down down left \
     right right pageup pagedown home end / : ? ; g g s e E y Y = x a r b p v o t m . , + - ctrl-s f5 f2 ctrl-r \
     ctrl-o ctrl-n ctrl-l ctrl-f ctrl-u ctrl-w ctrl-d ctrl-p space backspace delete j k h l G [ ] é 7 M";
 
-/// What is pasted.
+/// Texts to paste.
 const PASTES: [&str; 6] = [
     "12",
     "SELECT count(*) FROM customers",
@@ -26,7 +26,7 @@ const PASTES: [&str; 6] = [
     "",
 ];
 
-/// Steps in the ordinary test, over all its runs.
+/// Steps of the regular test, over all its runs.
 const STEPS: usize = 1_600;
 
 #[test]
@@ -46,7 +46,7 @@ fn soak_random_input_breaks_nothing() {
     }
 }
 
-/// One run that is played at random.
+/// Plays one run at random.
 fn play(dice: &mut Dice, steps: usize) {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = opened(runs.path(), dice);
@@ -70,7 +70,7 @@ fn play(dice: &mut Dice, steps: usize) {
     }
 }
 
-/// A shop that opens, in a window of some size.
+/// Opens a run with prices, in a window of some size.
 fn opened(runs: &Path, dice: &mut Dice) -> Console {
     let mut console = Console::in_new_run(runs, (120, 40));
     console.press("8 enter enter '12' down '25' down '55' enter ctrl-s 1");
@@ -78,7 +78,7 @@ fn opened(runs: &Path, dice: &mut Dice) -> Console {
     console
 }
 
-/// A person who has left opens the run again.
+/// Closes the console and opens the run again.
 fn come_back(console: Console, runs: &Path) -> Console {
     let size = console.size;
     drop(console);
@@ -125,48 +125,47 @@ fn a_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
         MouseEventKind::ScrollDown,
         MouseEventKind::Moved,
     ];
-    // Some terminals report places outside of what the program thinks it has.
+    // Some terminals report positions outside of the window.
     let column = dice.roll(usize::from(width) + 2) as u16;
     let row = dice.roll(usize::from(height) + 2) as u16;
     Event::Mouse(MouseEvent { kind: *dice.pick(&kinds), column, row, modifiers: KeyModifiers::NONE })
 }
 
-/// Places in which text is written: keys that lead there and into the text, and those that lead back.
+/// Places of drafts: keys that lead there and into the text, and keys that return.
 const DRAFTS: [(&str, &str); 5] = [
     ("9 esc i ctrl-n", "9 esc"),
     ("5 esc esc p ctrl-u", "5 esc esc p"),
     ("0 esc esc tab tab e", "0"),
     ("n enter ctrl-u", "n enter"),
-    // A filter that is still typed would make another tool the first.
+    // A filter that is still typed would select a different tool.
     ("8 esc esc esc home enter enter", "8 esc esc home enter"),
 ];
 
-/// Keys that walk through the console and change no text.
+/// Keys that navigate and change no text.
 const WALKS: [&str; 16] =
     ["1", "2", "3", "4", "7", "9", "0", "tab", "up", "down", "?", ":", "c", "w", "d", "["];
 
-/// Writes a draft somewhere, walks away in random ways, and finds the draft again.
+/// Writes a draft, navigates at random, and checks that the draft is still there.
 fn drafts_stay(console: &mut Console, dice: &mut Dice) {
-    // In a replay nothing is written.
+    // A replay is read-only.
     if console.app.run().is_none_or(|run| !run.company.is_running() || run.viewer.is_some()) {
         return;
     }
     let size = std::mem::replace(&mut console.size, (120, 40));
     let (there, again) = *dice.pick(&DRAFTS);
-    // Explanations lead to rows, and those to cells: many dialogs may lie on each other.
-    // A filter that was being typed on a screen is still typed when one comes back.
+    // Many dialogs may be open, and a filter that was being typed on a screen stays open.
     console.press(&format!("{}1 esc esc", "esc ".repeat(30)));
     console.press(there);
     let number = 1_000 + dice.roll(8_999);
     let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };
-    // A word of its own, so that it is not broken between lines.
+    // A single word is not wrapped.
     console.press(&if there.starts_with('8') { format!("'{draft}'") } else { format!("_ '{draft}'") });
     if there.starts_with('8') {
-        // A number that was not taken is given up by esc, as the line at the bottom says.
+        // Esc discards a rejected number, as the footer says.
         console.press("enter");
     }
     let written = console.screen();
-    assert!(holds(&written, &draft), "{there}: {draft} was not taken:\n{written}");
+    assert!(holds(&written, &draft), "{there}: {draft} was not accepted:\n{written}");
     console.press("esc esc esc 1");
     let mut walked = Vec::new();
     for _ in 0..6 {
@@ -183,7 +182,7 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
     console.size = size;
 }
 
-/// Whether a screen shows a draft; numbers may be grouped.
+/// Returns whether the screen contains the draft; numbers may be grouped.
 fn holds(screen: &str, draft: &str) -> bool {
     screen.contains(draft) || screen.replace(',', "").contains(draft)
 }

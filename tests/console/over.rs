@@ -1,4 +1,4 @@
-//! A run that is over: it offers what can still be done, and no next week.
+//! A finished run: it offers the remaining actions, and no next week.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
@@ -38,7 +38,7 @@ fn nothing_offers_a_next_week() {
     console.press("1");
     console.shows("n final page");
     console.press("w");
-    console.shows("the run is over: n final page · ; b what if · ; r write the report");
+    console.shows("the run has ended: n final page · ; b what if · ; r write the report");
     console.press("n");
     console.shows("You end with");
 }
@@ -49,9 +49,9 @@ fn a_what_if_of_the_final_page_begins_twelve_weeks_before_the_end() {
     let mut console = over(runs.path(), Mode::Baseline, (120, 40));
     console.shows("b what if");
     console.press("b");
-    console.shows("What if, from week 2 on");
+    console.shows("What if, from week 2 ");
     console.press("esc ; b");
-    console.shows("What if, from week 2 on");
+    console.shows("What if, from week 2 ");
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_defect_in_background_work_is_reported_in_its_dialog() {
     let mut console = Console::of(settings, (120, 40));
     console.open(&id).expect("it opens");
     console.press("o");
-    console.shows("the program has a defect (seat 3 is missing); nothing was changed");
+    console.shows("internal error (seat 3 is missing); nothing was changed");
     console.press("esc");
     console.shows("You end with");
 }
@@ -82,7 +82,7 @@ fn opponents_play_its_world_and_rank_it() {
             console.shows(part);
         }
     }
-    // The page closes to the final page, and can be asked again.
+    // The page closes to the final page, and can be opened again.
     console.press("esc");
     console.shows("You end with");
     console.hides("enterprise-led");

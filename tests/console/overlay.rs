@@ -1,4 +1,4 @@
-//! True values on the screens Customers and Market: what stands there, what each showing leaves behind, and where there is none.
+//! True values on the Customers and Market screens: their display, their record, and cases without permission.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use super::replay::replayed;
 use crate::support::company::{begin_run, open_shop, weeks};
 use crate::support::record::{folder_of, looks, recorded};
 
-/// What stands where true values are shown.
+/// Texts that appear with true values.
 const MARKS: [&str; 5] = ["true sat.", "true rep.", "x-ray, day", "x-ray: truly", "true values of"];
 
 fn run(runs: &Path, mode: Mode, count: usize) -> Session {
@@ -39,7 +39,7 @@ fn true_values_stand_beside_figures_and_estimates() {
     insta::assert_snapshot!("overlay-market", market);
     insta::assert_snapshot!("overlay-news", news);
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    // Hidden again, nothing of it stays, and showing the same day once more is no second look.
+    // Hiding removes everything, and showing the same day again records no second inspection.
     console.press("; o");
     for keys in ["3", "7"] {
         console.press(keys);
@@ -51,7 +51,7 @@ fn true_values_stand_beside_figures_and_estimates() {
     drop(console);
     let folder = folder_of(runs.path());
     assert_eq!(looks(&recorded(&folder)), ["values  56"]);
-    // What stands there is what the world holds.
+    // The displayed values are those of the simulator.
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S1").expect("a group");
     let own = session.inspect().hidden_values(None).expect("values").groups[group];

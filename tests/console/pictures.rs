@@ -1,6 +1,6 @@
-//! Every screen as a picture, with realistic companies behind it: the first week, a crisis in week 30, a large company in
-//! week 45. The pictures in `snapshots/` are those of a usual window; small and large windows are checked for cut words and empty
-//! halves. `cargo insta review` shows what a change does to them.
+//! Pictures of every screen with realistic companies: the first week, a crisis in week 30, a large company in week
+//! 45. The pictures in `snapshots/` are those of a usual window; small and large windows are checked for truncated
+//! words and empty halves. `cargo insta review` shows the effect of a change.
 
 use novamind::record::mode::Mode;
 use novamind::session::Goal;
@@ -12,13 +12,13 @@ use super::harness::Console;
 use super::looks::{cut_with_room, emptiest_half};
 use super::replay::{played, replayed};
 
-/// Sizes of windows: the smallest that is promised, a usual one, a large one.
+/// Window sizes: the smallest supported, a usual one, a large one.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
-/// Themes of the pictures. The letters are the same in all of them.
+/// Themes of the pictures. The text is the same in all of them.
 const THEMES: [&str; 2] = ["dark", "light"];
 
-/// Names of the pictures, the keys that lead to them, and those that lead back.
+/// Names of the pictures, the keys that lead there, and the keys that return.
 const PLACES: [(&str, &str, &str); 15] = [
     ("overview", "1", ""),
     ("cash", "2", ""),
@@ -37,7 +37,7 @@ const PLACES: [(&str, &str, &str); 15] = [
     ("next-week", "1 n enter 'because' enter f", "esc esc"),
 ];
 
-/// Every place of a run, as letters.
+/// Takes pictures of every place of a run.
 fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let runs = tempfile::tempdir().expect("a folder");
     led(policy, seed, until, runs.path());
@@ -54,15 +54,15 @@ fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
     assert!(complaints.is_empty(), "{name}:\n{}", complaints.join("\n"));
 }
 
-/// Least share of cells with ink in every half of a large window.
+/// Minimum share of non-empty cells in every half of a large window.
 const LEAST_INK: f64 = 0.04;
 
-/// What is wrong with a picture, as far as that can be told without eyes. Only a company with much to show fills halves.
+/// Returns layout problems of a picture. Only a company with much data fills both halves.
 fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
     let cut = cut_with_room(letters);
     let mut found: Vec<String> = cut
         .into_iter()
-        .map(|line| format!("{place} at {size:?}: cut although there is room: {line}"))
+        .map(|line| format!("{place} at {size:?}: truncated next to free space: {line}"))
         .collect();
     let ink = emptiest_half(letters, size.0.into());
     if rich && size.0 >= 120 && ink < LEAST_INK {
@@ -81,7 +81,7 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
             let buffer = console.draw();
             let own = letters_of(&buffer);
             if let Some(before) = &letters {
-                assert_eq!(*before, own, "the theme {theme} changes letters");
+                assert_eq!(*before, own, "the theme {theme} changes the text");
             } else {
                 found.extend(complaints(place, size, rich, &own));
                 if size == SIZES[1] {

@@ -1,4 +1,4 @@
-//! What the record tells of a person at the console, compared with what a script did.
+//! Recorded user activity at the console, compared with the actions of a script.
 
 use std::path::Path;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use novamind::session::{NewRun, Session, Storage, verify};
 
 use super::harness::Console;
 
-/// The lines of the only run of a folder.
+/// Returns the record of the only run of a folder.
 fn lines(runs: &Path) -> Vec<Record> {
     let folder = find_run(runs, "latest").expect("a run");
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
@@ -46,7 +46,7 @@ fn pass(console: &mut Console, seconds: u64) {
     console.pass(Duration::from_secs(seconds)).expect("time passes");
 }
 
-/// In words: kind and what counts, one line each.
+/// Describes each event in a line: its kind and the relevant values.
 fn told(runs: &Path) -> Vec<String> {
     let one = |record: Record| match record {
         Record::Activity(Activity::View(view)) => {
@@ -179,7 +179,7 @@ fn nothing_of_the_run_is_seen_while_the_clock_stands() {
             assert!(!screen.contains(word), "{word} is seen:\n{screen}");
         }
     }
-    // Keys do nothing, and time does not count.
+    // Keys have no effect, and time does not count.
     console.press("3 n enter");
     pass(&mut console, 100);
     console.press("; p esc");
@@ -188,7 +188,7 @@ fn nothing_of_the_run_is_seen_while_the_clock_stands() {
     let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
     assert_eq!(told[..5], expected, "{told:#?}");
     assert!(told.iter().filter(|line| *line == "clock Stopped").count() == 2, "{told:#?}");
-    // It stood when the program was left: it is started with the next opening.
+    // A clock that was stopped when the program ended starts when the run is opened again.
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.shows("NovaMind");
     drop(console);
@@ -241,16 +241,16 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
     let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
     let all = ["because of S1", "77", "SELECT 4"];
     let kept = || std::fs::read_to_string(&file).unwrap_or_default();
-    // They are written behind the screen.
+    // The session thread writes them.
     while !all.iter().all(|text| kept().contains(text)) {
         std::thread::yield_now();
     }
-    // A hangup.
+    // A hangup signal.
     console.app.update(novamind::worker::message::Message::Signal(1));
     console.settle().expect("it leaves");
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    console.shows("Not sent when");
+    console.shows("Unsent when");
     console.shows("because of S1");
     console.press("y");
     console.press("n enter");
@@ -268,7 +268,7 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
     console.press("d");
     console.settle().expect("it is dropped");
     drop(console);
-    assert!(!file.exists(), "what was dropped is gone");
+    assert!(!file.exists(), "discarded drafts are deleted");
 }
 
 #[test]
@@ -307,7 +307,7 @@ fn attention_changes_no_state() {
     };
     let (attentive, hasty) = (play(true), play(false));
     assert_eq!((attentive.0, &attentive.1), (hasty.0, &hasty.1));
-    assert!(attentive.2 > hasty.2 + 10, "what was looked at is told");
+    assert!(attentive.2 > hasty.2 + 10, "viewed objects are recorded");
 }
 
 #[test]
@@ -316,7 +316,7 @@ fn posts_that_were_looked_at_stay_read_when_the_run_is_opened_again() {
     super::company::led("crisis.toml", 5, 28, runs.path());
     let badge = |console: &mut Console| console.screen().contains("5 Social ●");
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    assert!(badge(&mut console), "nobody has seen the posts of the week:\n{}", console.screen());
+    assert!(badge(&mut console), "the posts of the week are new:\n{}", console.screen());
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     assert!(badge(&mut console), "the overview shows no posts");
@@ -324,8 +324,8 @@ fn posts_that_were_looked_at_stay_read_when_the_run_is_opened_again() {
     assert!(!badge(&mut console));
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    assert!(!badge(&mut console), "they were read in an earlier sitting:\n{}", console.screen());
+    assert!(!badge(&mut console), "they were read in an earlier session:\n{}", console.screen());
     console.week();
     console.press("esc 1");
-    assert!(badge(&mut console), "those of the new week were not:\n{}", console.screen());
+    assert!(badge(&mut console), "posts of the new week are new:\n{}", console.screen());
 }

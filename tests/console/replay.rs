@@ -1,4 +1,4 @@
-//! A recorded run is looked at again: forward, back, by seeking, by itself; taken over, watched, rescued.
+//! Playback of a recorded run: forward, back, seeking, playing, taking over, following and recovering.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use super::harness::Console;
 use crate::support::company::begin_run;
 use crate::support::dice::Dice;
 
-/// A person plays some weeks of a short run; who has it open may go on.
+/// Plays some weeks of a short run and returns its session.
 pub fn played(runs: &Path, mode: Mode, weeks: u32) -> Session {
     let mut session = begin_run(runs, mode, 84);
     let mut call = |tool: &str, args: serde_json::Value| {
@@ -29,7 +29,7 @@ pub fn played(runs: &Path, mode: Mode, weeks: u32) -> Session {
     session
 }
 
-/// What the person does in a week.
+/// The player's actions of a week.
 fn decide(session: &mut Session, week: u32) {
     if week % 3 == 2 {
         session.query("SELECT plan, count(*) FROM subscriptions GROUP BY 1").expect("an answer");
@@ -40,16 +40,16 @@ fn decide(session: &mut Session, week: u32) {
     session.call("set_prices", &json!({"A": 12 + week}), Via::Form).expect("a price");
     session.call("set_daily_spend", &json!({"development": 100 * week}), Via::Form).expect("spending");
     let forecasts = session.company().naive_forecasts();
-    let why = format!("If week {week} keeps its leads, a dearer plan A pays for development.");
+    let why = format!("If week {week} keeps its leads, a higher price of plan A pays for development.");
     session.advance(&why, &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 
-/// A run that is left behind; its folder.
+/// Plays a run and closes it. Returns its folder.
 fn left(runs: &Path, mode: Mode, weeks: u32) -> PathBuf {
     played(runs, mode, weeks).folder().expect("a folder").to_owned()
 }
 
-/// A console in the replay of the newest run.
+/// Opens the latest run in a replay.
 pub fn replayed(runs: &Path, size: (u16, u16), goal: Goal) -> Console {
     let mut console = Console::start(runs, size);
     console.replay(Recorded::Run("latest".to_owned()), goal, false).expect("it opens");
@@ -91,7 +91,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     console.shows("Decided before week 3");
     console.shows("“If week 2 keeps its leads");
     console.shows("later $98");
-    console.shows("refused: ");
+    console.shows("rejected: ");
     console.press("<");
     assert_eq!(day(&console), 7);
     // Single actions: the third sets a price.
@@ -114,7 +114,7 @@ fn one_steps_forward_and_back_by_weeks_and_by_actions_and_seeks() {
     console.shows("end of the record");
     console.press("{");
     assert_eq!(day(&console), 0);
-    // The screens are those of the moment.
+    // The screens show the current position.
     console.press("# '2' enter 9 esc i ctrl-n 'SELECT_max(day)_FROM_ledger' f5");
     console.shows("14");
     console.press("esc 0");
@@ -138,7 +138,7 @@ fn in_a_replay_nothing_can_be_done() {
     {
         console.press("esc esc");
         console.press(keys);
-        console.shows("this is a replay; take over with T");
+        console.shows("this is a replay; press T to take over");
     }
     console.press("esc esc :");
     console.press("'undo'");
@@ -175,7 +175,7 @@ fn it_plays_by_itself_until_the_end_and_pauses_at_a_key() {
     console.settle().expect("the end");
     console.shows("end of the record");
     console.press("S");
-    console.shows("5 weeks a second");
+    console.shows("5 weeks per second");
 }
 
 #[test]
@@ -191,14 +191,14 @@ fn the_final_page_offers_a_replay_a_what_if_and_another_run_from_the_last_decisi
     console.press("} n");
     console.shows("Day 84. You end with");
     console.press("b");
-    console.shows("What if, from week 1 on");
+    console.shows("What if, from week 1 ");
     console.press("esc <");
     assert_eq!(day(&console), 77);
     console.press(") ) ) T");
     console.shows("on day 77 before week 12");
     console.press("down enter");
     console.shows("DEBUG");
-    console.shows("yours from day 77");
+    console.shows("from day 77");
     assert_eq!(day(&console), 77);
     console.week();
     console.shows("Day 84. You end with");
@@ -235,14 +235,14 @@ fn a_run_in_use_is_watched_while_it_goes_on() {
     decide(&mut owner, 2);
     let until = |console: &mut Console, wanted: u32| {
         while day(console) < wanted {
-            let message = console.receive().expect("what was played");
+            let message = console.receive().expect("new lines");
             console.app.update(message);
             console.hand_over();
         }
         console.settle().expect("all of it");
     };
     until(&mut console, 21);
-    // Who looks back stays there.
+    // The position stays while the record grows.
     console.press("<");
     assert_eq!(day(&console), 14);
     decide(&mut owner, 3);
@@ -250,7 +250,7 @@ fn a_run_in_use_is_watched_while_it_goes_on() {
         console.app.run().and_then(|run| run.viewer.as_ref()).map_or(0, |viewer| viewer.place.weeks)
     };
     while lines(&console) < 4 {
-        let message = console.receive().expect("what was played");
+        let message = console.receive().expect("new lines");
         console.app.update(message);
         console.hand_over();
     }
@@ -281,7 +281,7 @@ fn the_good_beginning_of_a_damaged_run_is_opened_as_a_branch() {
     assert_eq!(std::fs::read_to_string(&path).expect("a trajectory"), damaged);
 }
 
-/// Keys that are pressed at random: those of a replay, and those that walk through the console.
+/// Random keys: those of a replay, and navigation.
 const KEYS: [&str; 52] = [
     "<", ">", ">", ">", "(", ")", ")", "{", "}", "#", "space", "space", "F", "S", "D", "D", "E", "J", "K",
     "T", "1", "2", "3", "4", "5", "6", "7", "8", "9", "0", "tab", "enter", "enter", "esc", "esc", "esc",

@@ -1,11 +1,11 @@
-//! What colours say: words stand in the role of what they mean, in every theme.
+//! Colors: texts have the style of their role in every theme.
 
 use novamind::tui::theme::{Role, Theme};
 
 use super::company::led;
 use super::harness::Console;
 
-/// Asserts that the first place of some words on the screen has a role.
+/// Asserts that the first occurrence of a text on the screen has the style of a role.
 #[track_caller]
 fn assert_role(console: &mut Console, words: &str, role: Role) {
     let buffer = console.draw();

@@ -6,7 +6,7 @@ use novamind::tui::glyphs::Glyphs;
 
 use super::harness::Console;
 
-/// Keys that lead to every place of the console, each followed by what closes it.
+/// Keys that lead to every place of the console, each with the keys that close it.
 const PLACES: [(&str, &str); 40] = [
     ("1", ""),
     ("1 z", "z"),
@@ -50,20 +50,20 @@ const PLACES: [(&str, &str); 40] = [
     ("1 g", "esc"),
 ];
 
-/// Widths and heights at which layouts change, and their neighbours.
+/// Widths and heights at which layouts change, and their neighbors.
 const WIDTHS: [u16; 30] = [
     0, 1, 2, 59, 60, 61, 69, 70, 79, 80, 81, 89, 90, 99, 100, 101, 103, 104, 109, 110, 111, 119, 120, 121,
     139, 140, 159, 160, 200, 400,
 ];
 const HEIGHTS: [u16; 20] = [0, 1, 2, 15, 16, 17, 19, 20, 23, 24, 25, 29, 30, 31, 39, 40, 41, 59, 60, 120];
 
-/// A console in a run with some weeks behind it and something everywhere.
+/// Returns a console in a run of some weeks, with data on every screen.
 fn console(runs: &std::path::Path) -> Console {
     super::company::led("companies.toml", 3, 35, runs);
     Console::in_latest_run(runs, (120, 40))
 }
 
-/// Every width with some of the heights and the other way round.
+/// Returns every width with some of the heights, and the reverse.
 fn boundaries() -> impl Iterator<Item = (u16, u16)> {
     let all = WIDTHS.into_iter().enumerate().flat_map(|(across, width)| {
         HEIGHTS.into_iter().enumerate().map(move |(down, height)| (across + down, (width, height)))
@@ -71,10 +71,10 @@ fn boundaries() -> impl Iterator<Item = (u16, u16)> {
     all.filter(|(at, _)| at % 9 == 0).map(|(_, size)| size)
 }
 
-/// Windows in which nothing has to be cut: whatever is a word there is a word everywhere.
+/// Windows without truncation: their words are complete.
 const ROOMY: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
 
-/// Words of screens, and those that end where their pane does and so may be the first half of one.
+/// Complete words, and words at the edge of a pane, which may be truncated.
 #[derive(Default)]
 struct Words {
     whole: BTreeSet<String>,
@@ -82,7 +82,7 @@ struct Words {
 }
 
 impl Words {
-    /// Reads a screen; `roomy` says that nothing is cut on it.
+    /// Reads a screen; with `roomy`, nothing on it is truncated.
     fn read(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
         for line in screen.lines() {
             let mut begin = 0;
@@ -106,21 +106,21 @@ impl Words {
         }
     }
 
-    /// Words that stand at an edge and nowhere whole.
+    /// Returns the words at an edge that are complete nowhere.
     fn cut(&self) -> Vec<&String> {
         self.at_edges.iter().filter(|(word, _)| !self.whole.contains(*word)).map(|(_, line)| line).collect()
     }
 }
 
-/// Draws every place in windows of some sizes; what was there before is there again when the window has its size back,
-/// and no word is cut in two.
+/// Draws every place in windows of some sizes. Asserts that restoring the size restores the picture, and that no word
+/// is truncated.
 fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
     let mut words = Words::default();
     for (open, close) in PLACES {
         console.size = (120, 40);
         console.press(open);
         let before = console.screen();
-        // A dialog covers words of the screen below it; they are not cut.
+        // A dialog hides words of the screen below; they are not truncated.
         let alone = !close.contains("esc");
         for size in ROOMY {
             console.size = size;
@@ -141,7 +141,7 @@ fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
         console.press(close);
     }
     let cut = words.cut();
-    assert!(cut.is_empty(), "{} words are cut, for instance\n{cut:#?}", cut.len());
+    assert!(cut.is_empty(), "{} words are truncated, for example\n{cut:#?}", cut.len());
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn nothing_breaks_where_layouts_change_and_growing_brings_the_screen_back() {
     sweep(&mut console, &mut || boundaries().collect());
 }
 
-/// Screens whose panes take the focus by tab, and sizes in which each pane is drawn, as it is and alone.
+/// Screens whose panes take the focus with tab; each pane is drawn as it is and zoomed.
 const SCREENS: [&str; 8] = ["1", "2", "3", "4", "5", "6", "7", "0"];
 const SIZES_OF_PANES: [(u16, u16); 7] =
     [(0, 0), (3, 200), (60, 16), (69, 30), (110, 37), (200, 57), (300, 17)];
@@ -168,7 +168,7 @@ fn every_pane_is_drawn_with_and_without_data() {
                 console.press("z");
                 let alone = console.screen();
                 let is_alone = alone.matches('┏').count() == 1 && !alone.contains("┌ ");
-                assert!(is_alone, "the pane in the focus has the whole screen:\n{alone}");
+                assert!(is_alone, "the focused pane fills the screen:\n{alone}");
                 draw_in(&mut console, &SIZES_OF_PANES);
                 console.press("z tab");
             }
@@ -176,7 +176,7 @@ fn every_pane_is_drawn_with_and_without_data() {
     }
 }
 
-/// Draws the screen in windows of some sizes. The size of the console stays.
+/// Draws the screen in windows of some sizes. The size of the console does not change.
 fn draw_in(console: &mut Console, sizes: &[(u16, u16)]) {
     let own = console.size;
     for size in sizes {
@@ -193,7 +193,7 @@ fn soak_nothing_breaks_at_any_size() {
     let mut console = console(runs.path());
     sweep(&mut console, &mut || {
         let all = (0..=200).flat_map(|width| (0..=60).map(move |height| (width, height)));
-        // Every width and every height, and half of their pairs.
+        // Half of all pairs of a width and a height.
         all.filter(|(width, height)| (width + height) % 2 == 0).collect()
     });
 }
@@ -252,7 +252,7 @@ fn the_smallest_window_names_the_screen_that_is_shown() {
 fn a_message_stands_apart_from_the_keys_before_it() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console(runs.path());
-    let message = "charts drawn with blocks";
+    let message = "charts use blocks";
     console.press("; d");
     let mut beside = 0;
     for width in 60..140 {
@@ -263,5 +263,5 @@ fn a_message_stands_apart_from_the_keys_before_it() {
         assert!(before.is_empty() || before.ends_with("  "), "{line}");
         beside += u32::from(!before.trim().is_empty());
     }
-    assert!(beside > 40, "keys and message share the line: {beside}");
+    assert!(beside > 40, "the keys and the message share the line: {beside}");
 }

@@ -1,4 +1,4 @@
-//! Whole stories.
+//! Complete stories of users.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::list_runs;
@@ -6,7 +6,7 @@ use novamind::session::verify;
 
 use super::harness::Console;
 
-/// The forms that open a shop.
+/// Sets initial prices, tiers, quotas and budgets in the forms.
 fn open_shop(console: &mut Console) {
     console.press("8 enter enter '12' down '25' down '55' enter ctrl-s");
     console.press("down enter enter '1' down '2' down '4' enter ctrl-s");
@@ -98,7 +98,7 @@ fn a_week_is_not_filed_without_a_reason_and_four_forecasts() {
     console.press("'why_not' enter enter");
     console.shows("1 week: enter a number");
     console.press("'5' tab '4' tab '9' enter ctrl-s");
-    console.shows("the point lies outside low to high");
+    console.shows("the point is not between low and high");
     console.press("esc q");
     console.shows("unsent");
     console.press("esc n enter");
@@ -187,7 +187,7 @@ fn a_run_whose_file_is_deleted_stops_and_says_where_everything_is() {
         .expect("a folder")
         .map(|entry| entry.expect("an entry").path())
         .find(|path| path.file_name().is_some_and(|name| name.to_string_lossy().contains("-unsaved-")));
-    let aside = aside.expect("what was confirmed");
+    let aside = aside.expect("confirmed actions");
     assert!(words.contains(&aside.display().to_string()), "{words}");
     assert!(std::fs::read(aside).expect("a copy").starts_with(&confirmed));
 }
@@ -208,7 +208,7 @@ fn a_post_is_published_from_the_feed_after_one_question() {
     console.press("p 'Again' ctrl-s");
     console.shows("already posted");
     console.press("esc q");
-    console.shows("It is kept with this run");
+    console.shows("It is saved with the run");
     console.press("esc 1 5");
     console.shows("Again");
 }
@@ -220,7 +220,7 @@ fn quitting_keeps_drafts_of_forms_and_posts() {
     console.press("8 enter enter '14' enter");
     console.shows("draft, kept until sent or reset");
     console.press("esc 5 p 'Unsent' esc q");
-    console.shows("It is kept with this run");
+    console.shows("It is saved with the run");
     console.press("y");
     assert!(matches!(console.left, Some((0, _))), "the program ends: {:?}", console.left);
     drop(console);

@@ -1,5 +1,5 @@
-//! Everyday tasks, key by key, in a usual and in a large window: every key does something, none is refused, and no task
-//! takes more keys than are written beside it.
+//! Everyday tasks, key by key, in a usual and in a large window: every key has an effect, none is rejected, and no
+//! task needs more keys than stated.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use tempfile::TempDir;
 use super::company::led;
 use super::harness::Console;
 
-/// Windows in which the tasks are done.
+/// Window sizes of the tasks.
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 
-/// Keys of the tour by step: what its texts say to press, and a statement and a sentence to type.
+/// Keys of each step of the tour: those that its texts name, and a statement and a sentence to type.
 const TOUR: [(&str, &str); 18] = [
     ("The idea", "3"),
     ("What they want", "down enter"),
@@ -28,7 +28,7 @@ const TOUR: [(&str, &str); 18] = [
     ("Forecasts", "f enter"),
     ("Report", "esc"),
     ("Who signed", "3"),
-    ("Mend it", "1 enter ctrl-s"),
+    ("Fix it", "1 enter ctrl-s"),
     ("Development", "3 down enter enter '1100' enter ctrl-s"),
     ("The second week", "n f enter"),
     ("Any figure", "esc 2 f o"),
@@ -36,7 +36,7 @@ const TOUR: [(&str, &str); 18] = [
     ("Who stays", "esc n f enter"),
 ];
 
-/// Keys that a task may take, letters that are typed included.
+/// Maximum numbers of keys of the tasks, including typed letters.
 const CHANGE_ONE_QUOTA: usize = 14;
 const RAISE_A_PRICE: usize = 7;
 const BUY_CAPACITY: usize = 3;
@@ -48,7 +48,7 @@ const UNDO_TWICE_AND_REDO: usize = 3;
 const COMPARE_TWO_RUNS: usize = 5;
 const LEAVE_AND_GO_ON: usize = 2;
 
-/// Presses keys one by one as `Console::press` does; each must change the picture and none may be refused.
+/// Presses keys one by one; each must change the picture, and none may be rejected.
 fn do_it(console: &mut Console, keys: &str, most: usize) {
     let mut pressed = 0;
     for word in keys.split(' ') {
@@ -66,21 +66,21 @@ fn do_it(console: &mut Console, keys: &str, most: usize) {
             }
             let after = console.draw();
             let screen = console.screen();
-            assert!(after != buffer || console.cursor != cursor, "{key} of {keys} does nothing:\n{screen}");
+            assert!(after != buffer || console.cursor != cursor, "{key} of {keys} has no effect:\n{screen}");
             let footer = screen.trim_end().lines().last().unwrap_or_default();
-            assert!(!footer.contains(" ! "), "{key} of {keys} is refused:\n{screen}");
+            assert!(!footer.contains(" ! "), "{key} of {keys} is rejected:\n{screen}");
         }
     }
     assert!(pressed <= most, "{keys}: {pressed} keys, {most} are enough");
 }
 
-/// A setting that is in force.
+/// Returns a current setting.
 fn in_force(console: &Console, tool: &str, argument: &str) -> Value {
     let company = &console.app.run().expect("a run").company;
     company.settings[&tool.parse().expect("a tool")].get(argument).cloned().unwrap_or(Value::Null)
 }
 
-/// A shop that has opened, in a console that is started anew.
+/// Starts a run with prices and quotas, and opens it in a new console.
 fn shop(runs: &Path, size: (u16, u16)) -> Console {
     let mut console = Console::in_new_run(runs, size);
     console.press("8 enter enter '12' tab '25' tab '55' enter ctrl-s");
@@ -89,7 +89,7 @@ fn shop(runs: &Path, size: (u16, u16)) -> Console {
     Console::in_latest_run(runs, size)
 }
 
-/// A company that a policy has led, in a window.
+/// Opens a company that a policy has played.
 fn company(policy: &str, seed: u64, until: u32, size: (u16, u16)) -> (TempDir, Console) {
     let runs = tempfile::tempdir().expect("a folder");
     led(policy, seed, until, runs.path());
@@ -107,11 +107,11 @@ fn the_tour_is_played_as_its_texts_say() {
             console.shows(&format!("Tour · {} of {} · {title}", number + 1, TOUR.len()));
             do_it(&mut console, keys, 40);
         }
-        console.shows("the tour is over");
+        console.shows("tour completed");
         let company = &console.app.run().expect("a run").company;
         assert_eq!((company.seen.scenario.as_str(), company.seen.day), ("practice", 28));
         let signed = |week: usize| company.weeks[week].new_individual_subscribers;
-        assert!(0 < signed(0) && signed(0) < signed(1), "what was mended is seen in the second week");
+        assert!(0 < signed(0) && signed(0) < signed(1), "the fix has an effect in the second week");
     }
 }
 

@@ -13,7 +13,7 @@ use novamind::worker::request::{Recorded, Request};
 
 use super::harness::Console;
 
-/// A study of two weeks with every kind of question, and a machine of its own.
+/// A study of two weeks with every kind of question, and its folder.
 struct Lab(tempfile::TempDir);
 
 const PROTOCOL: &str = r#"
@@ -133,7 +133,7 @@ impl Lab {
     }
 }
 
-/// What a run holds of questions: day, what happened, occasion, question, answer and changes.
+/// Lists the question events of a run: day, event, occasion, question, answer and changes.
 fn questions_of(run: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
     let after = lines_afterwards(run, &trajectory).expect("it reads");
@@ -150,7 +150,7 @@ fn questions_of(run: &Path) -> Vec<String> {
     trajectory.lines.iter().chain(&after.lines).filter_map(told).collect()
 }
 
-/// Lets a week pass; its report stays open.
+/// Runs a week; its report stays open.
 fn week(console: &mut Console) {
     console.press("n enter 'test' enter f enter");
 }
@@ -166,14 +166,14 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
     console.press("'P01' enter");
     console.shows("· Paragraph 1 of what is recorded.");
     console.press("y");
-    console.shows("scroll to its end first");
+    console.shows("scroll to the end of the text first");
     console.press("pagedown pagedown y");
-    console.shows("The session begins now.");
+    console.shows("The session starts now.");
     console.press("enter");
-    // Two questions before anything else can be done.
+    // Two questions come before anything else.
     console.shows("question 1 of 2");
     console.press("8 : n enter");
-    console.shows("an answer is needed");
+    console.shows("an answer is required");
     console.press("3 right shift-tab enter '17' enter");
     console.shows("a number from 18 to 99");
     console.press("ctrl-u '42' shift-tab 6 enter enter");
@@ -186,12 +186,12 @@ fn a_participant_is_led_from_the_label_to_the_thanks_and_may_leave_between() {
     console.shows("Choose the second option.");
     console.press("2 enter space down down space enter");
     console.press("q");
-    console.shows("You can go on later");
+    console.shows("To continue later");
     console.press("enter 'P01' enter");
-    console.shows("goes on where you left it");
+    console.shows("continues where you left it");
     console.press("enter");
     week(&mut console);
-    // The run is over: its page leads to the last question, and nowhere else.
+    // The final page of the run leads to the last question, and nowhere else.
     let end = console.screen();
     assert!(!end.contains("published") && !end.contains("replay"), "{end}");
     console.press("esc v enter");
@@ -237,12 +237,12 @@ fn who_declines_leaves_no_run_and_who_withdraws_leaves_a_note() {
     console.press("enter 'P01' enter end y enter 4 enter enter");
     console.shows("runway");
     assert_eq!(lab.own_runs("P01").len(), 1);
-    // The second question is left by esc, the first by n.
+    // The second confirmation is cancelled by esc, the first one by n.
     for step in ["n", "y 'no' enter esc"] {
         console.press(": 'withdraw' enter");
-        console.shows("for good");
+        console.shows("permanently erases");
         console.press(step);
-        console.shows("goes on where you left it");
+        console.shows("continues where you left it");
         console.press("enter");
     }
     console.press(": 'withdraw' enter y 'withdraw' enter");
@@ -266,26 +266,26 @@ fn practice_comes_first_and_can_be_passed_over_where_the_protocol_says_so() {
     );
     let mut console = lab.visit((100, 30));
     console.press("'P01' enter end y");
-    console.shows("The practice comes first");
+    console.shows("First comes a practice company");
     console.press("enter");
     console.shows("PRACTICE");
     console.shows("Tour · 1");
     console.press("f4 n enter 'test' enter f enter");
-    console.shows("The practice is over");
+    console.shows("The practice has ended");
     console.shows("It does not count. The session comes next.");
     let screen = console.screen();
     for measure in ["$", "lanning", "best channel", "forecast"] {
         assert!(!screen.contains(measure), "{measure}\n{screen}");
     }
     console.press("enter");
-    console.shows("The session begins now.");
+    console.shows("The session starts now.");
     console.press("enter");
     console.shows("SESSION");
     assert_eq!(lab.own_runs("P01").len(), 2);
     drop(console);
     let mut other = lab.visit((100, 30));
     other.press("'P02' enter end y s");
-    other.shows("The session begins now.");
+    other.shows("The session starts now.");
     assert!(lab.events().contains(&("P02".to_owned(), VisitEvent::PassedPractice)));
 }
 
@@ -313,23 +313,23 @@ fn nothing_but_the_own_session_can_be_reached_until_the_code_is_given() {
         Request::TakeOver(Mode::Sandbox),
         Request::Replay { recorded: Recorded::Run("latest".to_owned()), goal: Goal::First, follow: false },
     ] {
-        console.request(request.clone()).expect("nothing to wait for");
+        console.request(request.clone()).expect("no response is awaited");
         assert!(console.screen().contains("only your own session"), "{request:?}");
     }
     console.press("; q");
-    console.shows("You can go on later");
+    console.shows("To continue later");
     console.press("enter ctrl-e 'guess' enter");
     console.shows("not the experimenter's code");
     assert!(!console.screen().contains("guess"));
     console.press("ctrl-u 'open' _ 'sesame' enter");
     console.shows("New run");
-    // The experimenter finds the participants' runs, and replays them.
+    // The experimenter can list and replay the runs of participants.
     let runs = std::fs::read_dir(lab.runs().join("participants/P01")).expect("a folder").flatten();
     let run = runs.map(|entry| entry.file_name().to_string_lossy().into_owned()).next().expect("a run");
     console.shows(&run);
     assert!(!console.screen().contains("No such file"), "{}", console.screen());
     console.request(Request::Open(run.clone(), Access::Write)).expect("nothing to wait for");
-    console.shows("only its participant goes on with this run");
+    console.shows("only its participant can continue this run");
     let recorded = Recorded::Run(run);
     console.request(Request::Replay { recorded, goal: Goal::First, follow: false }).expect("it opens");
     assert!(!console.screen().contains("New run"), "{}", console.screen());
@@ -411,12 +411,12 @@ fn pages_of_questions_say_which_key_goes_on_and_which_leaves() {
         console.press(&format!("'P0{}' enter end y", if size.0 == 60 { 1 } else { 2 }));
         console.shows("; p stops the clock");
         console.press("enter");
-        console.shows("enter goes on · q leaves");
+        console.shows("enter continues · q leaves");
         assert!(!console.screen().contains("a new company"), "{}", console.screen());
         console.press("4 enter 'x'");
         console.shows("! type a number from 18 to 99 (years)");
         console.shows("enter sends the answers · ctrl-c leaves");
-        console.shows("shift-tab question before");
+        console.shows("shift-tab previous question");
         console.press("'42' enter");
         for _ in 0..2 {
             week(&mut console);
@@ -427,7 +427,7 @@ fn pages_of_questions_say_which_key_goes_on_and_which_leaves() {
         }
         console.shows("tab sends the answers · enter new line · ctrl-c leaves");
         let screen = console.screen();
-        assert!(!screen.contains("enter go on") && !screen.contains("min left"), "{screen}");
+        assert!(!screen.contains("enter continue") && !screen.contains("min left"), "{screen}");
         console.press("'done' tab");
         console.shows("Thank you");
     }
@@ -464,14 +464,14 @@ fn naive_forecasts_are_offered_where_they_fill_in_and_say_what_they_are() {
         console.press(&format!("'{label}' enter end y enter 4 enter enter n"));
         assert!(!console.screen().contains("fill"), "{}", console.screen());
         console.press("f");
-        console.shows("forecasts can be filled in at step 3");
+        console.shows("you can fill in forecasts in step 3");
         console.press("enter");
-        console.shows("Required, and kept with the run.");
+        console.shows("Required, and saved with the run.");
         console.press("'test' enter");
-        console.shows("f fills empty cells: the last four weeks go on");
+        console.shows("f fills empty cells: the last four weeks continue");
         console.press("f");
         let screen = console.screen();
-        assert!(screen.contains("naive, recorded as such") && !screen.contains("back-tests"), "{screen}");
+        assert!(screen.contains("marked as projection") && !screen.contains("back-tests"), "{screen}");
         console.press("esc ; q");
     }
 }

@@ -1,4 +1,4 @@
-//! `; w` on figures of screens and of the week report, and where nothing can be asked.
+//! `; w` on figures of screens and of the weekly report, and cases in which it is not available.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use novamind::record::mode::Mode;
 use super::harness::Console;
 use crate::support::company::{begin_run, call, open_shop, week, weeks};
 
-/// A console in a run of ten weeks, of which the last had dearer plans.
+/// Opens a run of ten weeks; the last week has higher prices.
 fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
     let mut session = begin_run(runs, mode, 84);
     open_shop(&mut session);
@@ -18,7 +18,7 @@ fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
     Console::in_latest_run(runs, size)
 }
 
-/// Asks why, waits, and closes the answer again.
+/// Opens the causes, waits for the answer, and closes them.
 fn asks_why(console: &mut Console, heading: &str) {
     console.press("; w");
     console.shows(heading);
@@ -49,7 +49,7 @@ fn figures_of_screens_are_explained_where_they_stand() {
         asks_why(&mut console, heading);
     }
     console.press("esc esc g m ; w");
-    console.shows("explains a week's cash");
+    console.shows("explains weekly cash");
 }
 
 #[test]
@@ -59,17 +59,17 @@ fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
     console.press("w");
     console.shows("; w why");
     asks_why(&mut console, "cash change, week 10: ");
-    console.shows("What comes next");
+    console.shows("Action needed");
     console.press("down");
     let name = selected(&mut console);
     console.press("; w");
     console.shows(&format!("{}, week 10: ", name.split(',').next().expect("a name")));
-    // What nobody decided has the rows of the figure; they close to the report.
+    // A cause without a decision opens the source rows, which close to the report.
     console.press("end enter");
     console.shows("SELECT");
     console.press("esc");
-    console.shows("What comes next");
-    // The price leads to its form, and the report is gone.
+    console.shows("Action needed");
+    // The price opens its form, and the report is closed.
     for _ in 0..20 {
         if ["new subscribers", "conversion"].contains(&selected(&mut console).as_str()) {
             break;
@@ -85,10 +85,10 @@ fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
     }
     console.press("enter");
     console.shows("set_prices");
-    assert!(!console.screen().contains("What comes next"));
+    assert!(!console.screen().contains("Action needed"));
 }
 
-/// The line that is marked in the report.
+/// Returns the marked line of the report.
 fn selected(console: &mut Console) -> String {
     let screen = console.screen();
     let marked =

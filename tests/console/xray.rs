@@ -1,4 +1,4 @@
-//! The X-ray screen: its pictures, the words of plain mode, breakpoints, and where it shows nothing.
+//! The X-ray screen: pictures, plain-mode commands, breakpoints, and missing permission.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn run(runs: &Path, mode: Mode, count: usize) -> Session {
     session
 }
 
-/// A console in a debug run of some weeks, on the X-ray screen.
+/// Opens a debug run of some weeks on the X-ray screen.
 fn looking(runs: &Path, count: usize, size: (u16, u16)) -> Console {
     drop(run(runs, Mode::Debug, count));
     let mut console = Console::in_latest_run(runs, size);
@@ -61,7 +61,7 @@ fn every_view_in_windows_of_four_sizes() {
 fn the_screen_says_what_plain_mode_says_and_each_look_is_a_line() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = looking(runs.path(), 4, (200, 60));
-    // The group is typed, the day is walked to.
+    // The group is typed, the day is chosen with keys.
     console.press("e 's2' enter left left ,");
     console.shows("day 19 of 28");
     let screen = console.screen();
@@ -86,10 +86,10 @@ fn a_customer_who_left_is_shown_as_plain_mode_shows_it_with_its_day_in_the_title
     let sql =
         "SELECT customer_id, end_day FROM subscriptions WHERE status = 'cancelled' ORDER BY 2, 1 LIMIT 1";
     let left = numbers(&mut session, sql);
-    let [customer, day] = left[0][..] else { panic!("somebody left") };
+    let [customer, day] = left[0][..] else { panic!("a subscriber cancelled") };
     drop(session);
     let mut console = Console::in_latest_run(runs.path(), (200, 60));
-    // A day that was walked to elsewhere is not that of the customer.
+    // A day that was chosen for a group does not apply to the customer.
     console.press("g x e 's2' _ '20' enter");
     console.shows("day 20 of 56");
     console.press("esc end up up");
@@ -193,10 +193,10 @@ fn a_run_that_is_over_is_looked_into_in_its_replay_and_each_look_is_recorded() {
         console.shows("leads of S1 on day 14");
         console.press("right");
         console.shows("day 14 of 14");
-        // Nothing is run in a replay.
+        // A replay simulates nothing.
         console.press("; k r '7' enter");
         console.shows("this is a replay");
-        // Whoever leaves the replay can open the run: it is held no longer than that.
+        // After leaving the replay, the run can be opened: its lock is released.
         console.press("esc Q");
         let folder = folder_of(runs.path());
         let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
@@ -242,7 +242,7 @@ fn the_replay_of_an_unfinished_run_of_another_mode_shows_nothing() {
     console.shows("The x-ray works in debug runs and in runs that are over.");
 }
 
-/// Types words on the X-ray screen, and sends them.
+/// Types a command on the X-ray screen and sends it.
 fn ask(console: &mut Console, words: &str) {
     console.press("a");
     console.send(Event::Paste(words.to_owned()));
@@ -290,14 +290,14 @@ fn a_parameter_is_set_after_a_question_and_in_debug_runs_alone() {
     let mut console = looking(runs.path(), 2, (120, 40));
     let before = console.app.run().map(|run| run.company.seen.day);
     ask(&mut console, "set group.S1.c_max_mean 300");
-    console.shows("the run is never ranked");
+    console.shows("the run will not be ranked");
     console.press("esc");
     ask(&mut console, "set group.S1.c_max_mean");
     assert!(!console.screen().contains("= 300"), "{}", console.screen());
     ask(&mut console, "set group.S1.c_max_mean 300 from 20");
     console.press("y");
     console.shows("from day 20 on");
-    // Another view and back asks nothing again.
+    // Changing the view and returning sends no new question.
     console.press("esc up down");
     console.shows("from day 20 on");
     assert_eq!(console.app.run().map(|run| run.company.seen.day), before);
@@ -349,7 +349,7 @@ fn the_replay_of_a_run_that_is_over_asks_the_hidden_tables_of_the_run() {
     session.end().expect("it ends");
     drop(session);
     let mut console = replayed(runs.path(), (120, 40), Goal::Week(1));
-    // A look before it opens the run without its database.
+    // An inspection before it opens the run without its database.
     console.press("g x 9 'SELECT' _ 'max(day)+100' _ 'FROM' _ 'hidden.drift' f5");
     console.shows("121");
     drop(console);

@@ -333,9 +333,9 @@ impl<'a> Player<'a> {
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
         self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
         self.note("draft", "rationale", "left", Some(0));
-        self.shows("The time for this week was over: it was filed with the naive projection.");
-        self.shows("a week ago the naive projection filed at the limit said");
-        self.shows("What you had typed for it was not filed; the record keeps it as a draft.");
+        self.shows("The time for this week ran out: it was submitted with the projection.");
+        self.shows("a week ago the projection submitted at the limit forecast");
+        self.shows("Your draft was not submitted; the record keeps it as a draft.");
         self.passes("time limit", "form");
     }
 

@@ -1,30 +1,30 @@
-//! Work that the person may have to wait for.
+//! Work that the user may have to wait for.
 
 use std::time::Instant;
 
 use super::DaysRun;
 use novamind_worker::request::SCRIPT_RUNS;
 
-/// Work that the person may have to wait for.
+/// Work that the user may have to wait for.
 #[derive(Debug, Clone)]
 pub struct Busy {
-    /// What it is.
+    /// Label of the work.
     pub what: &'static str,
-    /// How far a week, or a way through a record, has come.
+    /// Progress in days, for simulations and seeking.
     pub days: Option<DaysRun>,
-    /// When it began.
+    /// When it started.
     pub since: Instant,
-    /// The script that keeps it busy is to end. Asked again until it does: it may only just be starting.
+    /// The script is being stopped. The stop is repeated until it ends, because the script may only just be starting.
     pub stops_script: bool,
 }
 
 impl Busy {
-    /// From now on, with something.
+    /// Returns the state of work that starts now.
     pub fn with(what: &'static str) -> Busy {
         Busy { what, days: None, since: Instant::now(), stops_script: false }
     }
 
-    /// Whether a script runs, which can be stopped.
+    /// Returns whether a script is running. Scripts can be stopped.
     pub fn is_script(&self) -> bool {
         self.what == SCRIPT_RUNS
     }

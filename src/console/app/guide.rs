@@ -14,7 +14,7 @@ use novamind_session::Access;
 use novamind_worker::request::Request;
 
 impl App {
-    /// Explains the figure that is selected, or the screen if none is.
+    /// Explains the selected figure, or the screen if no figure is selected.
     pub(super) fn explain(&mut self) {
         let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
         let Stage::Run(run) = &mut self.stage else { return };
@@ -26,7 +26,6 @@ impl App {
         self.lay(Layer::Dialog(Box::new(dialog)));
     }
 
-    /// Explains a subject over what is open.
     pub(super) fn explain_subject(&mut self, subject: Subject) {
         let Stage::Run(run) = &mut self.stage else { return };
         let explain = Explain::subject(subject, run.company.numbers.clone());
@@ -39,10 +38,8 @@ impl App {
         self.lay(Layer::Dialog(Box::new(glossary)));
     }
 
-    /// Opens the run for practice with the tour in it, or a new one.
     pub(super) fn start_tour(&mut self) {
         self.tour_planned = true;
-        // Whoever has left it goes on where it was left.
         let begun = match &self.stage {
             Stage::Menu(menu) => menu.practice().map(str::to_owned),
             Stage::Run(_) | Stage::Visit(_) => None,
@@ -53,7 +50,7 @@ impl App {
         })]);
     }
 
-    /// Shows the tour in the run, from the first step that is not done.
+    /// Shows the tour, starting with the first step that is not done.
     pub(super) fn show_tour(&mut self) {
         let of_practice = self.visit.as_ref().is_some_and(VisitState::has_tour);
         if self.leads_participant() && !of_practice {
@@ -63,9 +60,9 @@ impl App {
         if run.company.is_baseline() && !of_practice {
             return self.complain("baseline runs have no tour; Tour in the start menu opens a practice run");
         }
-        // What its steps say holds in the practice run alone.
+        // The steps are written for the practice run.
         if run.company.seen.scenario != tour::scenario() {
-            return self.complain("the tour has a run of its own: Tour in the start menu opens it");
+            return self.complain("the tour has its own run; open it with Tour in the start menu");
         }
         run.tour.get_or_insert_default();
     }
@@ -96,7 +93,6 @@ impl App {
         }
     }
 
-    /// Goes on over the steps of the tour that are done.
     pub(super) fn settle_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
@@ -114,7 +110,7 @@ impl App {
         if !tour.settle(&facts) {
             run.tour = None;
             let last = run.company.seen.last_day;
-            self.say(format!("the tour is over; the company is yours until day {last}"));
+            self.say(format!("tour completed; you can play on until day {last}"));
         }
     }
 }

@@ -21,7 +21,6 @@ use novamind_worker::Job;
 use novamind_worker::preferences::Preferences;
 use novamind_worker::request::Request;
 
-/// What stops a script that runs.
 const STOPS_SCRIPT: [Action; 3] = [Action::Close, Action::LeaveEditor, Action::Discard];
 
 impl App {
@@ -55,7 +54,7 @@ impl App {
             return self.typed(&key);
         }
         let action = if typing && chord.is_text() {
-            // What the text wants comes before what the places around it would do with the key.
+            // The bindings of the text field take precedence over those of the surrounding scopes.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
             let own = self.keys.action(&texts, chord);
             let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
@@ -74,13 +73,13 @@ impl App {
         }
     }
 
-    /// Whether a digit begins a number where the focus is; a replay has no cells to fill.
+    /// Returns whether a digit starts a number in the focused place. Playback has no editable cells.
     fn takes_numbers(&self) -> bool {
         let run = self.run().filter(|run| self.layers.is_empty() && run.viewer.is_none());
         run.is_some_and(|run| run.screens.get(run.here).takes_numbers())
     }
 
-    /// A chord after others that began something.
+    /// Handles a chord that continues a key sequence.
     fn go_on(&mut self, chord: Chord) {
         self.pending.push(chord);
         match self.keys.meaning(&self.scopes(), &self.pending) {
@@ -92,13 +91,13 @@ impl App {
             Meaning::Nothing => {
                 let pressed = written(&std::mem::take(&mut self.pending));
                 if !chord.is_escape() {
-                    self.complain(format!("{pressed} does nothing here"));
+                    self.complain(format!("{pressed} is not bound here"));
                 }
             }
         }
     }
 
-    /// What a chord means before the dialog on top gives it a meaning of its own.
+    /// Returns the action that takes precedence over the bindings of the top dialog.
     fn before_dialogs(&self, chord: Chord) -> Option<Action> {
         let global = self.keys.action(&[Scope::Global], chord)?;
         let goes_before = match self.layers.last()? {
@@ -108,7 +107,7 @@ impl App {
         goes_before.then_some(global)
     }
 
-    /// What a chord means even over a dialog: leaving and drawing again must always be possible.
+    /// Returns an action that is available even over a dialog: quitting and redrawing must always be possible.
     fn anywhere(&self, chord: Chord) -> Option<Action> {
         let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
@@ -194,7 +193,6 @@ impl App {
         self.follow(clicked.unwrap_or_default());
     }
 
-    /// Does an action where the focus is.
     pub(super) fn act(&mut self, action: Action) {
         let global = action.entry().scope == Scope::Global;
         self.edit = Edit::Filled;
@@ -203,7 +201,7 @@ impl App {
             Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_step(),
             Action::TourClose => return self.close_tour(),
-            // Over questions, too: nobody has to answer them first.
+            // Available over questions too: participants can withdraw without answering them.
             Action::Withdraw if matches!(self.stage, Stage::Run(_)) => return self.withdraw(),
             _ => {}
         }
@@ -316,7 +314,7 @@ impl App {
             Action::NextTheme => self.next_theme(),
             Action::NextMarker => {
                 self.glyphs = self.glyphs.next();
-                self.say(format!("charts drawn with {}", self.glyphs.words()));
+                self.say(format!("charts use {}", self.glyphs.words()));
                 self.remember(Preferences { marker: Some(self.glyphs), ..Preferences::default() });
             }
             Action::Mouse => self.hand_over_mouse(),
@@ -350,11 +348,10 @@ impl App {
         run.zoomed = !run.zoomed;
     }
 
-    /// The figure that is selected on the screen.
     fn selected_figure(&mut self) -> Option<Figure> {
         let found = self.with_screen(|screen, look| screen.figure(look)).flatten();
         if found.is_none() {
-            self.complain("no figure is selected here: tab changes the pane, arrows the row");
+            self.complain("no figure selected; choose a pane with tab and a row with the arrows");
         }
         found
     }
@@ -371,7 +368,6 @@ impl App {
         }
     }
 
-    /// The breakpoints on the X-ray screen.
     fn show_breakpoints(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             run.forget_trail();
@@ -386,7 +382,7 @@ impl App {
         if let Some(theme) = self.themes.get(next) {
             self.theme = theme.clone();
             let name = self.theme.name.clone();
-            self.say(format!("theme {name}, from now on"));
+            self.say(format!("theme: {name}"));
             self.remember(Preferences { theme: Some(name), ..Preferences::default() });
         }
     }
@@ -399,21 +395,21 @@ impl App {
         self.mouse = !self.mouse;
         self.orders.push(Order::Mouse(self.mouse));
         self.say(if self.mouse {
-            "mouse on: click to select; shift and drag marks text"
+            "mouse on: click to select; shift-drag selects text"
         } else {
-            "mouse off: the terminal marks text"
+            "mouse off: the terminal selects text"
         });
     }
 
     fn file(&mut self) {
         if self.owes_answers() {
-            // They come as soon as nothing lies over the run.
+            // Questions of the study open as soon as no dialog covers the run.
             return;
         }
         let Stage::Run(run) = &mut self.stage else { return };
         match &self.busy {
             Some(busy) if busy.is_script() => {
-                return self.complain("a script is running; no week runs until it ends");
+                return self.complain("a script is running; run the week when it has ended");
             }
             Some(_) => return self.complain("a week is running; its report opens when it is done"),
             None => {}
@@ -433,7 +429,7 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         match run.company.week.is_some() {
             true => self.open(Report::new(None)),
-            false => self.complain("no week has run yet: n runs one"),
+            false => self.complain("no week has run yet; run one with n"),
         }
     }
 
@@ -453,10 +449,10 @@ impl App {
         let mut lines: Vec<String> =
             seen.changes.iter().map(line).chain(seen.purchases.iter().cloned()).collect();
         if lines.is_empty() {
-            lines.push("Nothing has changed since last week.".to_owned());
+            lines.push("No changes since last week.".to_owned());
         } else {
             lines.push(String::new());
-            lines.push("u undoes the last setting, U redoes it; purchases stay.".to_owned());
+            lines.push("u undoes the last setting, U redoes it. Purchases cannot be undone.".to_owned());
         }
         self.open(Reader::new("Changes of this week", lines.join("\n")));
     }

@@ -1,4 +1,4 @@
-//! Dialogs over the screen, the topmost last, each with the time since it was opened and what its steps took.
+//! Open dialogs, the topmost last. Each records how long it was open and the time spent on its steps.
 
 use std::time::Duration;
 
@@ -8,9 +8,9 @@ use novamind_record::trajectory::record::{DialogOutcome, DialogStep, DialogUse};
 
 /// A dialog over the screen.
 pub enum Layer {
-    /// The dialog before a week; its drafts outlive it.
+    /// The next-week dialog; its drafts outlive it.
     Filing,
-    /// Any other.
+    /// Any other dialog.
     Dialog(Box<dyn Dialog>),
 }
 
@@ -29,7 +29,7 @@ struct OpenLayer {
 }
 
 impl Layers {
-    /// Opens a dialog over the others.
+    /// Opens a dialog on top.
     pub fn push(&mut self, layer: Layer, now: Duration) {
         let what = match &layer {
             Layer::Filing => "next week".to_owned(),
@@ -38,7 +38,7 @@ impl Layers {
         self.open.push(OpenLayer { layer, what, since: now, steps: Vec::new() });
     }
 
-    /// Closes the topmost; what it was used for.
+    /// Closes the top dialog and returns how it was used.
     pub fn pop(&mut self, outcome: DialogOutcome, now: Duration) -> Option<DialogUse> {
         let OpenLayer { what, since, steps, .. } = self.open.pop()?;
         let ends = steps.iter().skip(1).map(|(_, entered)| *entered).chain([now]);
@@ -50,7 +50,7 @@ impl Layers {
         Some(DialogUse { what, outcome, for_ms: ms(now.saturating_sub(since)), steps })
     }
 
-    /// The topmost dialog is at a step now.
+    /// Records that the top dialog is at a step.
     pub fn enter_step(&mut self, step: &'static str, now: Duration) {
         if let Some(top) = self.open.last_mut()
             && top.steps.last().is_none_or(|(last, _)| *last != step)
@@ -59,32 +59,32 @@ impl Layers {
         }
     }
 
-    /// What the one below the topmost is.
+    /// Returns the recorded name of the dialog below the top one.
     pub fn below(&self) -> Option<&str> {
         self.open.iter().rev().nth(1).map(|below| below.what.as_str())
     }
 
-    /// The topmost.
+    /// Returns the top dialog.
     pub fn last(&self) -> Option<&Layer> {
         self.open.last().map(|open| &open.layer)
     }
 
-    /// The topmost, to change it.
+    /// Returns the top dialog mutably.
     pub fn last_mut(&mut self) -> Option<&mut Layer> {
         self.open.last_mut().map(|open| &mut open.layer)
     }
 
-    /// All of them, the topmost last.
+    /// Iterates over the dialogs, the topmost last.
     pub fn iter(&self) -> impl Iterator<Item = &Layer> {
         self.open.iter().map(|open| &open.layer)
     }
 
-    /// All of them, to change them.
+    /// Iterates over the dialogs mutably, the topmost last.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Layer> {
         self.open.iter_mut().map(|open| &mut open.layer)
     }
 
-    /// Whether the screen is free.
+    /// Returns whether no dialog is open.
     pub fn is_empty(&self) -> bool {
         self.open.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Leaving a run: what is open counts as left, the run is saved and closed, and then comes the menu or the shell.
+//! Leaving a run: open views are recorded as left, the run is saved and closed, then the menu or the shell follows.
 
 use super::{App, Busy, Order, Stage};
 use crate::context::ScreenId;
@@ -10,14 +10,12 @@ use novamind_session::Access;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
 
-/// What follows once the run is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Closing {
     /// The start menu, or the participant's next page.
     ToMenu,
-    /// The shell.
     ToShell,
-    /// The end of the program that a signal asks for.
+    /// Exit because of a signal, with its number.
     BySignal(i32),
 }
 
@@ -39,16 +37,14 @@ impl Closing {
     }
 }
 
-/// Said of unsent text before a run is left.
-const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog holds unsent text. It is kept with this run and \
+const KEEPS_TEXT: &str = "A form, the notes, a post or the next-week dialog has unsent text. It is saved with the run and \
                           offered when you open the run again.";
-/// The same once the run is over: nothing can be sent any more.
-const DROPS_TEXT: &str = "The notes hold unsaved text. The run is over: the text is not kept.";
-/// Said of unsent offers.
-const DROPS_OFFERS: &str = "Unsent offers in the inbox are not kept.";
+/// Nothing can be sent after the run has ended.
+const DROPS_TEXT: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
+const DROPS_OFFERS: &str = "Unsent offers in the inbox will be lost.";
 
 impl App {
-    /// What happens to unsent text when the run is left, with the question whether to leave. `None` if there is none.
+    /// Describes what happens to drafts and asks whether to leave the run. Returns `None` if there are no drafts.
     fn unsent_question(&self) -> Option<String> {
         let run = self.run().filter(|run| run.viewer.is_none())?;
         let holds = |screen: &ScreenId| run.screens.get(*screen).holds_unsent_text();
@@ -65,7 +61,6 @@ impl App {
         (!sentences.is_empty()).then(question)
     }
 
-    /// Leaves the program, after a question if there is unsent text.
     pub(super) fn quit(&mut self) {
         match self.unsent_question() {
             Some(question) => self.open(Confirm::new("Leave", question, vec![Effect::LeaveNow])),
@@ -73,11 +68,10 @@ impl App {
         }
     }
 
-    /// Opens another run of the folder in place of what is open.
     pub(super) fn open_other(&mut self, id: String) {
         let is_open = self.run().is_some_and(|run| run.viewer.is_none() && run.company.seen.run == id);
         if is_open {
-            return self.complain(format!("run {id} is the one that is open"));
+            return self.complain(format!("run {id} is already open"));
         }
         if self.busy.is_some() {
             return self.complain("days are running; try again when they are done");
@@ -89,13 +83,12 @@ impl App {
         }
     }
 
-    /// Saves, closes the run, and goes on to something.
     pub(super) fn leave(&mut self, closing: Closing) {
         if self.closing.is_some_and(|planned| planned != Closing::ToMenu) {
             return;
         }
         self.stop_on_the_way();
-        // A participant who leaves a run is still at the study.
+        // Leaving a run returns a participant to the study.
         let at_study = self.leads_participant() && matches!(self.stage, Stage::Run(_));
         let quits = closing == Closing::ToShell;
         let closing = if at_study && quits { Closing::ToMenu } else { closing };
@@ -111,7 +104,6 @@ impl App {
         }
     }
 
-    /// The run is closed.
     pub(super) fn closed(&mut self, problem: Option<String>) {
         self.busy = None;
         let was_replay = self.is_replay();
@@ -125,7 +117,7 @@ impl App {
                 match problem {
                     Some(problem) => self.complain(problem),
                     None if was_replay => self.say("replay closed; nothing changed"),
-                    None => self.say("the run is saved"),
+                    None => self.say("run saved"),
                 }
                 return;
             }
@@ -133,8 +125,8 @@ impl App {
         let farewell = self.run().filter(|run| run.viewer.is_none()).map(|run| {
             let company = &run.company.seen;
             let end = match company.ended {
-                Some(_) => "It is over.".to_owned(),
-                None => format!("`{}` continues.", self.again),
+                Some(_) => "It has ended.".to_owned(),
+                None => format!("Resume it with `{}`.", self.again),
             };
             format!("Run {} is saved at day {}. {end}", company.run, company.day)
         });

@@ -1,4 +1,4 @@
-//! A lesson on the screen: the task beside it or as a page, weeks that run at once, what is not open, the debrief.
+//! Lessons in the console: the task next to the screen or as a page, immediate weeks, closed screens, the debrief.
 
 use std::sync::Arc;
 
@@ -17,22 +17,20 @@ use novamind_tools::Refusal;
 use novamind_worker::company::Company;
 use novamind_worker::request::{LessonRequest, Request};
 
-/// The rationale of a week for which the lesson asks for none.
 const NO_RATIONALE: &str = "the lesson asks for none";
-/// Said where there is no lesson.
-const NO_LESSON: &str = "this run belongs to no lesson; the start menu lists lessons";
+const NO_LESSON: &str = "this run is not part of a lesson; the start menu lists lessons";
 
-/// What the person has of the lesson of a run.
+/// State of the lesson of a run.
 #[derive(Default)]
 pub struct LessonView {
-    /// The task is not shown beside the screen.
+    /// Whether the side pane with the task is hidden.
     pub hidden: bool,
-    /// What came of it, once it was found.
+    /// The debrief, after it was computed.
     pub debrief: Option<Arc<Result<Debrief, Refusal>>>,
 }
 
 impl Run {
-    /// The lesson, where its task stands beside the screen of a window of so many columns.
+    /// Returns the lesson if its task is shown next to the screen in a window of this width.
     pub fn lesson_beside(&self, columns: u16) -> Option<&LessonPage> {
         let fits = columns >= WIDE && !self.zoomed && !self.lesson.hidden && self.viewer.is_none();
         self.company.lesson.as_ref().filter(|_| fits)
@@ -44,7 +42,7 @@ impl App {
         self.run()?.company.lesson.as_ref()
     }
 
-    /// Shows the task beside the screen, or hides it; where there is no room, opens it as a page.
+    /// Shows or hides the task next to the screen; in a narrow window, opens it as a page.
     pub(super) fn toggle_lesson(&mut self) {
         if self.lesson_page().is_none() {
             return self.complain(NO_LESSON);
@@ -57,7 +55,6 @@ impl App {
         }
     }
 
-    /// Opens the whole task.
     pub(super) fn show_lesson(&mut self) {
         match self.lesson_page() {
             Some(_) => self.open(LessonDialog::default()),
@@ -65,7 +62,7 @@ impl App {
         }
     }
 
-    /// Opens the task of a lesson that was opened, where it does not stand beside the screen.
+    /// Opens the task of a new lesson in a narrow window, where it is not shown next to the screen.
     pub(super) fn open_lesson(&mut self) {
         let Some(page) = self.lesson_page() else { return };
         if page.is_over {
@@ -77,7 +74,7 @@ impl App {
         }
     }
 
-    /// What the key of the next week does in a lesson, if that is something of its own.
+    /// Handles the next-week key in a lesson. Returns false if the usual dialog should open.
     pub(super) fn files_in_lesson(&mut self) -> bool {
         let Some(run) = self.run() else { return false };
         let Some(page) = run.company.running_lesson() else { return false };
@@ -99,33 +96,33 @@ impl App {
         }
         let apply = self.keys.label(Action::Apply).unwrap_or_default();
         let text = format!(
-            "The form of {} holds values that were not sent; {apply} in it sends them. Run the week without them?",
+            "The form of {} has unsent values; {apply} in the form sends them. Run the week without them?",
             unsent.join(", ")
         );
         self.open(Confirm::new("Next week", text, vec![week]));
         true
     }
 
-    /// Runs a week of a lesson, after a question where one key too many would do harm: at the beginning of a step that asks
-    /// for no guess, and where the rules that were sent last have letters to answer.
+    /// Runs a week of a lesson. Asks first if an accidental key press could do harm: at the start of a step without a
+    /// guess, and if waiting messages match the rules that were sent last.
     fn ask_or_run(&mut self, week: Effect) {
         let Some(run) = self.run() else { return };
         let Some(page) = run.company.running_lesson() else { return };
         if page.step > 0 && page.weeks.0 == 0 && page.question.is_none() {
             let title = format!("Step {}", page.step + 1);
             let weeks = count(page.weeks.1, "week");
-            let text = format!("{title} begins: {}, {weeks}. Run its first week?", page.step_title);
+            let text = format!("{title} starts: {}, {weeks}. Run its first week?", page.step_title);
             return self.open(Confirm::new(title, text, vec![week]));
         }
         let waiting = run.company.seen.waiting.len() as u32;
         if run.here != ScreenId::Inbox && waiting > 0 && run.screens.inbox.has_sent_rules() {
             let who = match waiting {
-                1 => "A company waits".to_owned(),
-                many => format!("{} wait", count(many, "company")),
+                1 => "1 enterprise is waiting".to_owned(),
+                many => format!("{} are waiting", count(many, "enterprise")),
             };
             let key = self.keys.label(Action::NextWeek).unwrap_or_default();
             let text = format!(
-                "{who} for an answer. Go to Inbox, where {key} asks whether the rules that you sent last answer?"
+                "{who} for an answer. Go to Inbox, where {key} offers to answer with the rules that you sent last?"
             );
             let asked = Confirm::new("Next week", text, vec![Effect::Show(ScreenId::Inbox)]);
             return self.open(asked.or(Action::WeekUnanswered, vec![week]));
@@ -137,12 +134,12 @@ impl App {
         let Some((calls, text)) = answers else { return self.follow(vec![week]) };
         let both = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
         let both = both.chain([week.clone()]).collect();
-        let text = format!("The rules that you sent last answer, and the week runs:\n{text}");
+        let text = format!("Answer with the rules that you sent last, and run the week:\n{text}");
         let asked = Confirm::new("Answer and next week", text, both);
         self.open(asked.or(Action::WeekUnanswered, vec![week]));
     }
 
-    /// After a week of a lesson that runs at once: what is new of it. True if that takes the place of the report.
+    /// Shows what changed in a lesson week that runs at once. Returns whether that replaces the weekly report.
     pub(super) fn tells_week_of_lesson(&mut self, before: Option<&LessonPage>) -> bool {
         let Some(page) = self.lesson_page().cloned() else { return false };
         let pitfalls = before.map_or(0, |before| before.pitfalls.len());
@@ -155,25 +152,22 @@ impl App {
         page.runs_at_once || (is_news && !beside)
     }
 
-    /// Says how an answer or a hint was taken.
     pub(super) fn heard_in_lesson(&mut self, refused: Option<Refusal>, company: Arc<Company>) {
         self.changed(company);
         match refused {
             Some(refusal) => self.complain(refusal.to_string()),
             None if self.layers.is_empty() => {
                 let key = self.keys.label(Action::NextWeek).unwrap_or_default();
-                self.say(format!("your guess is recorded: {key} runs the week"));
+                self.say(format!("guess recorded; {key} runs the week"));
             }
             None => self.say("recorded"),
         }
     }
 
-    /// Asks once before a step is tried again, which may be one before it.
     pub(super) fn ask_to_try_again(&mut self, step: usize) {
         self.open(TryAgain::new(step));
     }
 
-    /// Opens what came of the lesson; it is found once.
     pub(super) fn show_debrief(&mut self) {
         let Some(run) = self.run() else { return };
         let found = run.lesson.debrief.clone();
@@ -183,7 +177,8 @@ impl App {
         self.open(DebriefPage::of(found));
     }
 
-    /// The end of a lesson: where another part follows, the page that leads there, else the debrief. True if it is one.
+    /// Handles the end of a lesson: opens the page that leads to the next part, or the debrief. Returns false if the
+    /// run has no lesson.
     pub(super) fn ends_lesson(&mut self) -> bool {
         let Some(page) = self.lesson_page() else { return false };
         match page.next_part {
@@ -193,10 +188,9 @@ impl App {
         true
     }
 
-    /// The debrief was found.
     pub(super) fn debriefed(&mut self, found: Arc<Result<Debrief, Refusal>>) {
         let Stage::Run(run) = &mut self.stage else { return };
-        // It may be that of a run which was left meanwhile.
+        // The debrief may belong to a run that was left in the meantime.
         if found.as_ref().as_ref().is_ok_and(|debrief| debrief.run != run.company.seen.run) {
             return;
         }
@@ -208,7 +202,7 @@ impl App {
         }
     }
 
-    /// Says so where a screen is not in the lesson that is played.
+    /// Shows why a screen is closed in this lesson. Returns whether it is.
     pub(super) fn is_kept_shut(&mut self, screen: ScreenId) -> bool {
         let why = self.run().and_then(|run| why_closed(screen, &run.company));
         why.map(|why| self.complain(why)).is_some()

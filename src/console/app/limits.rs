@@ -1,4 +1,4 @@
-//! Time limits: the person is warned, and what the study says happens when one is reached.
+//! Time limits: warns the user and does what the study requires when a limit is reached.
 
 use super::App;
 use crate::effect::Effect;
@@ -7,19 +7,17 @@ use novamind_record::trajectory::record::{DraftOutcome, Limit, LimitEvent, Limit
 use novamind_session::{TIME_LIMIT, TimeLeft};
 use novamind_worker::request::Request;
 
-/// What was told of time limits.
 #[derive(Default)]
 pub(super) struct LimitTold {
-    /// The limit that is near, or was reached, and whether it was reached: said above the screen until the week has run.
+    /// The limit to show above the screen until the week has run, and whether it was reached.
     notice: Option<(LimitScope, bool)>,
-    /// The time for the week is over: it is filed as soon as nothing is in the way.
+    /// The time for the week has ended: the week is submitted as soon as nothing blocks it.
     files: bool,
-    /// What became of a text that was being written when the week was filed.
+    /// What happened to a text that the user was writing when the week was submitted.
     text: Option<String>,
 }
 
 impl App {
-    /// A limit is near or reached.
     pub(super) fn reach_limit(&mut self, limit: &Limit) {
         match limit.event {
             LimitEvent::Warned => self.limit.notice = Some((limit.limit, false)),
@@ -32,36 +30,36 @@ impl App {
         }
     }
 
-    /// A limit that has stopped the clock holds when the run is opened again.
+    /// Stops the clock again if a limit had stopped it when the run was last open.
     pub(super) fn hold_limit(&mut self) {
         self.stop_clock(Some(TIME_LIMIT.to_owned()), true);
     }
 
-    /// What is said of a limit above the screen. It takes no keys: the person types on below it.
+    /// Returns the notice above the screen. It takes no keys, so the user can continue typing.
     pub fn limit_notice(&self) -> Option<String> {
         let (scope, reached) = self.limit.notice?;
         let run = self.run().filter(|run| run.company.is_running())?;
         let left = run.time_left.iter().find(|left| left.scope == scope)?;
         Some(match reached {
-            true => format!("{}: please come to an end", left.in_words()),
+            true => format!("{}: please finish", left.in_words()),
             false => in_full(left, &run.company.rules),
         })
     }
 
-    /// Files the week of which the time is over. Questions of the study are answered first.
+    /// Submits the week when its time has ended. Questions of the study are answered first.
     pub(super) fn settle_limit(&mut self) {
         if !self.limit.files || self.owes_answers() || self.cover.is_some() || self.closing.is_some() {
             return;
         }
         match &self.busy {
-            // A week that runs already was filed in time.
+            // A week that is already running was submitted in time.
             Some(busy) if busy.days.is_some() => self.limit.files = false,
             Some(_) => {}
             None => self.file_for_the_person(),
         }
     }
 
-    /// Files the week with the naive projection. What was typed for it was not sent.
+    /// Submits the week with the naive forecasts. Drafts are not sent.
     fn file_for_the_person(&mut self) {
         self.limit.files = false;
         let Some(run) = self.run().filter(|run| run.company.is_running()) else { return };
@@ -72,10 +70,10 @@ impl App {
         self.leave_filing(DraftOutcome::Left);
         let rationale = TIME_LIMIT.to_owned();
         self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
-        self.say("the time for this week is over: it is filed with the naive projection");
+        self.say("time for this week is up; it was submitted with the projection");
     }
 
-    /// The week has run: what was told of limits is over. What became of a text that was not filed.
+    /// Clears the notices of the week. Returns what happened to a draft that was not submitted.
     pub(super) fn end_limit_of_week(&mut self) -> Option<String> {
         std::mem::take(&mut self.limit).text
     }
@@ -85,13 +83,12 @@ fn in_full(left: &TimeLeft, rules: &SessionRules) -> String {
     format!("{}; {}", left.in_words(), left.what_follows(rules.limits.at_limit))
 }
 
-/// What the record keeps of a text that was not filed.
 fn kept_in_words(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
-        _ if !rules.records("draft") => "it is not kept",
-        DraftsKept::None => "it is not kept",
-        DraftsKept::Lengths => "the record keeps how long it was, not its words",
+        _ if !rules.records("draft") => "it is lost",
+        DraftsKept::None => "it is lost",
+        DraftsKept::Lengths => "the record keeps its length, not its text",
         DraftsKept::Text => "the record keeps it as a draft",
     };
-    format!("What you had typed for it was not filed; {kept}.")
+    format!("Your draft was not submitted; {kept}.")
 }

@@ -1,4 +1,4 @@
-//! What the threads behind the screen report.
+//! Responses of the worker.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -68,11 +68,10 @@ impl App {
             News::Closed(problem) => self.closed(problem),
             News::Crashed(words) => {
                 let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
-                    Some(folder) => format!(" Everything confirmed is safe in {}.", folder.display()),
+                    Some(folder) => format!(" All confirmed actions are saved in {}.", folder.display()),
                     None => String::new(),
                 });
-                let text =
-                    format!("an error of the program itself: {words}.{saved} `{}` continues.", self.again);
+                let text = format!("internal error: {words}.{saved} Resume with `{}`.", self.again);
                 self.orders.push(Order::Exit(1, Some(text)));
             }
             News::RecordLost(words) => self.orders.push(Order::Exit(3, Some(words))),
@@ -118,14 +117,13 @@ impl App {
         }
     }
 
-    /// News that a screen waits for.
     fn heard(&mut self, news: News) {
         if !matches!(self.stage, Stage::Run(_)) {
             return;
         }
         let screen = match &news {
             News::Called(tool, answer, company) => {
-                // A run that is left meanwhile goes on being saved.
+                // The saving label stays if the run was left in the meantime.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.changed(company.clone());
                 match answer {
@@ -146,7 +144,6 @@ impl App {
         };
         self.tell_screens(|screens, here, look| {
             let mut effects = screens.get_mut(screen).hear(&news, look);
-            // A call may come from a form or from the screen that is shown.
             if matches!(news, News::Called(..)) && here != screen {
                 effects.extend(screens.get_mut(here).hear(&news, look));
             }
@@ -154,21 +151,20 @@ impl App {
         });
     }
 
-    /// Lets screens take something in, and what they ask for follow.
+    /// Updates screens and follows the effects that they return.
     fn tell_screens(&mut self, tell: impl FnOnce(&mut Screens, ScreenId, &Look<'_>) -> Vec<Effect>) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = Look { company: &company, keys: &self.keys, page: self.page };
         let focus = run.screens.get(run.here).focus();
         let effects = tell(&mut run.screens, run.here, &look);
-        // What has the whole screen keeps it: the answer stands in it.
+        // A zoomed pane keeps the focus: it shows the answer.
         if run.zoomed && run.screens.get(run.here).focus() != focus {
             run.screens.get_mut(run.here).set_focus(focus);
         }
         self.follow(effects);
     }
 
-    /// Lets every page take the answer that it waits for, if it has arrived.
     pub(super) fn take_answers(&mut self) {
         if let Stage::Menu(menu) = &mut self.stage {
             menu.take_answers();
@@ -187,7 +183,7 @@ impl App {
         self.take_hidden_values();
     }
 
-    /// Takes what the database has answered; once a screen shows everything, the next week of a replay may follow.
+    /// Hands query results to the screens. When a screen is complete, playback may request its next week.
     fn take_readings(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let answers: Vec<_> = run.asked.values_mut().filter_map(Pending::try_take).collect();
@@ -210,7 +206,7 @@ impl App {
 
     fn opened(&mut self, company: Arc<Company>, viewer: Option<Viewer>) {
         self.busy = None;
-        // Whoever takes a replay over goes on where they look.
+        // After taking over a playback, the user stays on the current screen.
         let here = self.run().filter(|run| run.viewer.is_some()).map_or(ScreenId::Overview, |run| run.here);
         let here = self.opens_on.take().filter(|screen| screen.is_shown_in(&company)).unwrap_or(here);
         self.close_layers();
@@ -219,7 +215,7 @@ impl App {
         match company.remarks.last() {
             _ if viewer.is_some() => {
                 let help = self.keys.label(Action::Help).unwrap_or_default();
-                self.say(format!("replay: nothing is changed; {help} shows the keys"));
+                self.say(format!("replay, read-only; {help} shows the keys"));
             }
             Some(remark) => self.say(remark.clone()),
             None if company.lesson.is_some() => {
@@ -260,14 +256,14 @@ impl App {
         self.limit = super::limits::LimitTold::default();
         self.take_up();
         self.renew();
-        // The questions at the end come at once.
+        // In a study, the final questions come first.
         if over && !self.leads_participant() {
             self.show_end();
         }
         self.open_lesson();
     }
 
-    /// Shows the final page; what it tells of the books comes when they were read.
+    /// Shows the final page. Figures from the ledger follow when it was read.
     pub(super) fn show_end(&mut self) {
         if self.ends_lesson() {
             return;
@@ -293,7 +289,6 @@ impl App {
         }
     }
 
-    /// The run has changed.
     pub(super) fn changed(&mut self, company: Arc<Company>) {
         if let Stage::Run(run) = &mut self.stage {
             run.take_company(company);
@@ -302,7 +297,6 @@ impl App {
         self.renew();
     }
 
-    /// What the screens were told while the database was behind is asked again.
     fn database_whole(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             run.behind = None;
@@ -356,7 +350,7 @@ impl App {
         let unfiled = self.end_limit_of_week();
         let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
         let hides_result = self.run().is_some_and(|run| run.company.rules.hide_result(ended.is_some()));
-        self.say(if hides_result { "the run is over".to_owned() } else { text });
+        self.say(if hides_result { "the run has ended".to_owned() } else { text });
         match ended {
             Some(_) => self.show_end(),
             None if self.tells_week_of_lesson(before.as_ref()) => {}
@@ -369,7 +363,6 @@ impl App {
 }
 
 impl App {
-    /// Days of a debug run were simulated, up to a breakpoint perhaps.
     fn ran(&mut self, ran: Result<DaysRan, Refusal>, company: Arc<Company>) {
         self.busy = None;
         let now = self.stopwatch.now();
@@ -393,7 +386,6 @@ impl App {
 }
 
 impl App {
-    /// A class was read, or could not be.
     fn class_was_read(&mut self, read: Result<(CollectedClass, Shown), String>) {
         self.busy = None;
         let Stage::Menu(menu) = &mut self.stage else { return };
@@ -407,14 +399,12 @@ impl App {
     }
 }
 
-/// The command that goes on with the newest run of a student, made of the one that goes on with somebody's.
 fn as_student(again: &str, label: &str) -> String {
     let head = again.strip_suffix("--run latest").unwrap_or(again);
     let head = head.rsplit_once("--as ").map_or(head, |(before, _)| before);
     format!("{head}--as {label} --run latest")
 }
 
-/// Changes in a sentence: what was set, from what to what.
 fn in_words(changes: &[Change]) -> String {
     let one = |change: &Change| format!("{} {} → {}", change.setting, number(change.old), number(change.new));
     match changes {

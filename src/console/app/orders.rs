@@ -1,4 +1,4 @@
-//! From effects to orders.
+//! Converts effects into orders.
 
 use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
 use crate::context::ScreenId;
@@ -11,10 +11,10 @@ use novamind_worker::Job;
 use novamind_worker::company::Company;
 use novamind_worker::request::Request;
 
-/// Days of a week, of which starts of lessons are made.
+/// Days per week, in which lessons count the weeks before their start.
 const DAYS_PER_WEEK: u32 = 7;
 
-/// The days that a lesson plays before it begins.
+/// Returns the days that a lesson simulates before it starts.
 fn days_of_start(request: &Request) -> Option<DaysRun> {
     let Request::Create(new) = request else { return None };
     let entry = new.lesson.as_ref()?;
@@ -22,7 +22,7 @@ fn days_of_start(request: &Request) -> Option<DaysRun> {
     (weeks > 0).then(|| DaysRun::between(0, weeks * DAYS_PER_WEEK))
 }
 
-/// The last day that a request simulates, unless something stops it before.
+/// Returns the last day that a request simulates unless it stops earlier.
 fn last_day_of(request: &Request, company: &Company) -> u32 {
     match request {
         Request::RunDays(days) => company.seen.day.saturating_add(*days).min(company.seen.last_day),
@@ -31,7 +31,6 @@ fn last_day_of(request: &Request, company: &Company) -> u32 {
 }
 
 impl App {
-    /// Lets effects follow, in their order.
     pub(super) fn follow(&mut self, effects: Vec<Effect>) {
         for effect in effects {
             self.follow_one(effect);
@@ -63,12 +62,12 @@ impl App {
             Effect::OpenRun(id) => self.open_other(id),
             Effect::ConfirmWords(words) => {
                 let text = format!(
-                    "{words}: the change is recorded, and the run is never ranked. Set the parameter?"
+                    "{words}: the change is recorded, and the run will not be ranked. Set the parameter?"
                 );
                 self.lay(Layer::Dialog(Box::new(Confirm::new("set", text, vec![Effect::SendWords(words)]))));
             }
             Effect::SendWords(_) if self.busy.is_some() => {
-                self.complain("days are running; nothing was set: try again when they are done");
+                self.complain("days are running; nothing was set, try again when they are done");
             }
             Effect::SendWords(words) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -116,7 +115,7 @@ impl App {
                     let company = run.company.clone();
                     effects = run.screens.tools.prefill(tool, &arguments, &company);
                 });
-                // What the call would do is asked for by the screen that shows it.
+                // The screen that shows the call requests its preview.
                 self.follow(effects);
             }
             Effect::ShowThread(number) => self.lead_to(ScreenId::Inbox, |run| {
@@ -155,7 +154,7 @@ impl App {
         }
     }
 
-    /// Hands over work for the session's thread, unless it has to wait for a week.
+    /// Sends a request to the session thread, unless it is rejected while a week runs.
     pub(super) fn request(&mut self, request: Request) {
         if self.keeps_from_participant(&request) {
             return;
@@ -165,11 +164,10 @@ impl App {
             && let Some(busy) = &self.busy
         {
             let what = if busy.is_script() { "a script is running" } else { "a week is running" };
-            return self.complain(format!("{what}; nothing was sent: try again when it is done"));
+            return self.complain(format!("{what}; nothing was sent, try again when it is done"));
         }
         let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
         if leaves_run || matches!(request, Request::Replay { .. }) {
-            // What is played here is left for it.
             self.put_down();
         }
         if let Some(what) = request.busy_with() {
@@ -180,7 +178,7 @@ impl App {
                 };
             }
             if is_advance {
-                // Everything before the week belongs to the week before.
+                // The drafts and the view belong to the week that ends.
                 self.send_texts(&request);
                 self.close_view();
                 if let Stage::Run(run) = &mut self.stage {
@@ -203,16 +201,15 @@ impl App {
 
     fn save_query(&mut self, query: [String; 3]) {
         if self.leads_participant() {
-            // The next participant would find it.
+            // The query would be visible to the next participant.
             return self.complain_of_visit();
         }
         match self.configuration.folder {
             Some(_) => self.orders.push(Order::SaveQuery(self.configuration.clone(), query)),
-            None => self.complain("there is no configuration folder to save queries in"),
+            None => self.complain("cannot save the query: there is no configuration folder"),
         }
     }
 
-    /// Writes files into the folder of the run.
     pub(super) fn write(&mut self, files: Vec<(&str, Vec<u8>)>) {
         let folder = self.run().and_then(|run| run.company.folder.clone());
         match folder {
@@ -220,7 +217,7 @@ impl App {
                 let files = files.into_iter().map(|(name, contents)| (folder.join(name), contents));
                 self.orders.push(Order::Write(files.collect()));
             }
-            None => self.complain("this run is kept in memory and has no folder for files"),
+            None => self.complain("cannot write files: this run is in memory and has no folder"),
         }
     }
 }

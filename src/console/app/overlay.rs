@@ -1,5 +1,5 @@
-//! Hidden true values on the screens of customers and of the market: shown and hidden by a key, each showing of a day a look
-//! that is recorded.
+//! True values on the Customers and Market screens. A key shows and hides them; showing a day is a recorded
+//! inspection.
 
 use super::{App, Order, Run, Stage};
 use crate::context::ScreenId;
@@ -10,18 +10,16 @@ use novamind_worker::company::Company;
 use novamind_worker::questions::HiddenValuesQuestion;
 use std::sync::Arc;
 
-/// Whether they are shown, and which were asked for.
+/// Whether true values are shown, and which were requested.
 #[derive(Default)]
 pub struct Overlay {
     is_on: bool,
-    /// The day that is being looked at.
     asked: Pending<HiddenValuesQuestion>,
-    /// What was seen last.
     seen: Option<Arc<HiddenValues>>,
 }
 
 impl Run {
-    /// The company with what was seen of its day, if it is to be shown.
+    /// Returns the company with the true values of its day if they are shown.
     fn with_hidden_values(&self, company: Arc<Company>) -> Arc<Company> {
         let seen =
             self.overlay.seen.as_ref().filter(|seen| self.overlay.is_on && seen.day == company.seen.day);
@@ -32,21 +30,19 @@ impl Run {
         }
     }
 
-    /// Takes another company in place of what it was.
     pub(super) fn take_company(&mut self, company: Arc<Company>) {
         self.company = self.with_hidden_values(company);
     }
 }
 
 impl App {
-    /// Shows hidden true values, or hides them again.
     pub(super) fn toggle_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         if !run.company.may_look_inside {
             return self.complain(REFUSED_LOOK);
         }
         if !matches!(run.here, ScreenId::Customers | ScreenId::Market) {
-            return self.complain("true values stand on the screens Customers and Market");
+            return self.complain("true values are available on the Customers and Market screens");
         }
         if run.company.seen.day == 0 {
             return self.complain("no day has run yet");
@@ -56,10 +52,10 @@ impl App {
             return self.ask_hidden_values();
         }
         self.show_hidden_values();
-        self.say("true values are hidden again");
+        self.say("true values hidden");
     }
 
-    /// Looks at the day that is shown, where true values are to be seen and are not known.
+    /// Requests the true values of the current day if they are shown and unknown.
     pub(super) fn ask_hidden_values(&mut self) {
         let is_busy = self.busy.is_some();
         let Stage::Run(run) = &mut self.stage else { return };
@@ -78,7 +74,6 @@ impl App {
         self.orders.push(Order::Ask(ask, false));
     }
 
-    /// Takes what was seen.
     pub(super) fn take_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some((_, found)) = run.overlay.asked.try_take() else { return };

@@ -1,4 +1,4 @@
-//! Pages over the screen that ask the worker when they are opened.
+//! Pages over the screen that send a question to the worker when they open.
 
 use super::App;
 use crate::action::Action;
@@ -14,7 +14,7 @@ use novamind_session::identifiers::Group;
 use novamind_session::week_of;
 use novamind_worker::asking::Ask;
 
-/// Weeks before the end of a run that is over at which a what-if begins.
+/// Weeks before the end of a finished run at which a what-if starts.
 const WEEKS_BEFORE_END: u32 = 12;
 
 impl App {
@@ -23,7 +23,7 @@ impl App {
         self.follow(vec![Effect::Ask(ask)]);
     }
 
-    /// The curve of a group beside the plans; of the first known one if none is named.
+    /// Opens the participation curve of a group, by default of the first known one.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
         let known = self.run().and_then(|run| run.company.seen.known_groups.first().copied());
         if let Some(group) = group.or(known) {
@@ -31,13 +31,12 @@ impl App {
         }
     }
 
-    /// The strong policies beside the run that is over.
     pub(super) fn show_opponents(&mut self) {
         self.open_asking(OpponentsPage::new(self.opponents));
     }
 
-    /// The page of decisions, from the week that is shown on; in a run that is played, from the last one that ran on, and where
-    /// the run is over from so far before its end that figures of twelve weeks follow.
+    /// Opens the what-if page. It starts at the week shown in playback, at the last completed week of a running run,
+    /// and twelve weeks before the end of a finished run.
     pub(super) fn show_branches(&mut self) {
         let Some(run) = self.run() else { return };
         let seen = &run.company.seen;
@@ -51,23 +50,21 @@ impl App {
         self.open_asking(BranchesPage::new(week, last_week));
     }
 
-    /// The rows that make up a figure.
     pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
         let Some(sql) = sql else {
             let explain = self.keys.label(Action::Explain).unwrap_or_default();
-            return self.complain(format!("{title} has no source rows; {explain} explains it"));
+            return self.complain(format!("{title} has no source rows; press {explain} for an explanation"));
         };
         let here = self.run().map_or("", |run| run.here.action().entry().title);
         self.note_opened("figure", title.clone());
         self.open_asking(RowsBehind::new(format!("{here} › {title}"), sql));
     }
 
-    /// Why a figure of a week changed.
     pub(super) fn ask_why(&mut self, figure: Figure) {
         let Some((quantity, week)) = figure.why else {
             let key = self.keys.label(Action::Why).unwrap_or_default();
             return self.complain(format!(
-                "{key} explains a week's cash, leads, sales, churn, service: Overview, Cash, Customers"
+                "{key} explains weekly cash, leads, sales, churn and service on Overview, Cash, Customers"
             ));
         };
         self.note_opened("figure", figure.title.clone());
@@ -96,7 +93,7 @@ mod tests {
     use novamind_worker::questions::CurveQuestion;
     use novamind_worker::readings::Reading;
 
-    /// The console in a run, and no worker: the test answers in its place.
+    /// A console in a run without a worker: the test answers the questions.
     fn console() -> App {
         let mut app = App::new(settings("nowhere".as_ref()));
         app.window = (120, 40);
@@ -109,7 +106,7 @@ mod tests {
         app.update(Message::Input(event(key).expect("a key")));
     }
 
-    /// The questions of a type that were asked since the last time.
+    /// Returns the questions of a type since the last call.
     fn asks<Q: Question>(app: &mut App) -> Vec<Ask> {
         let ask = |order| match order {
             Order::Ask(ask, _) => ask.question::<Q>().is_some().then_some(ask),
@@ -118,7 +115,7 @@ mod tests {
         app.take_orders().into_iter().filter_map(ask).collect()
     }
 
-    /// Answers a question, or forgets it, as a thread does that panics.
+    /// Answers a question, or drops its reply as a panicking thread does.
     fn answer<Q: Question>(app: &mut App, ask: &Ask, answer: Option<Result<Q::Answer, Refusal>>) {
         let (sender, messages) = channel();
         let reply = ask.reply::<Q>(sender).expect("of this type");

@@ -1,5 +1,5 @@
-//! What the record tells of the person: screens, objects, dialogs and terms they looked at, texts they edited, whether
-//! they are there. Everything is written by the session's thread; nothing here waits.
+//! Recording of user activity: viewed screens, objects, dialogs and terms, edited texts, and presence. The session
+//! thread writes the events; nothing here blocks.
 
 use std::time::Duration;
 
@@ -17,21 +17,18 @@ use novamind_tools::ToolId;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
 
-/// Texts of the dialog before a week.
 const OF_FILING: [&str; 2] = ["rationale", "forecasts"];
 
 impl App {
-    /// Whether a run is played here: what is looked at in a replay is no part of a record.
+    /// Returns whether a run is being played. Views of a playback are not recorded.
     fn is_played(&self) -> bool {
         self.run().is_some_and(|run| run.viewer.is_none())
     }
 
-    /// Lets the session record something.
     pub(super) fn record(&mut self, note: impl FnOnce(&mut Session) + Send + 'static) {
         self.orders.push(Order::Job(Job::Note(Box::new(note))));
     }
 
-    /// Records something.
     pub(super) fn note(&mut self, activity: Activity) {
         if self.is_played() {
             self.record(|session| session.activity().note(activity));
@@ -44,7 +41,6 @@ impl App {
         }
     }
 
-    /// The person takes up the run that was opened.
     pub(super) fn take_up(&mut self) {
         if self.is_played() {
             self.presence.begin(self.stopwatch.now());
@@ -53,7 +49,7 @@ impl App {
         }
     }
 
-    /// The person leaves the run: what is open counts as left.
+    /// Records that the user leaves the run and everything open in it.
     pub(super) fn put_down(&mut self) {
         self.keep_texts();
         self.close_layers();
@@ -63,7 +59,6 @@ impl App {
         self.close_view();
     }
 
-    /// Takes what happened in the window.
     pub(super) fn take_input(&mut self, event: Event) {
         let now = self.stopwatch.now();
         let noted = match &event {
@@ -96,7 +91,7 @@ impl App {
         self.touch_texts();
     }
 
-    /// The text that is being edited: its place, and what it says.
+    /// Returns the place and content of the text that is being edited.
     fn edited(&self) -> Option<(String, String)> {
         let run = self.run().filter(|run| run.viewer.is_none())?;
         match self.layers.last() {
@@ -106,12 +101,12 @@ impl App {
         }
     }
 
-    /// The look at the screen ends here: with it, with the week, with the clock. Time under a dialog belongs to the screen
-    /// below it; the dialog has its own line.
+    /// Records the end of a view: the screen was left, a week started or the clock stopped. The time under a dialog
+    /// counts for the screen; the dialog has its own event.
     pub(super) fn close_view(&mut self) {
         let now = self.stopwatch.now();
         let Stage::Run(run) = &mut self.stage else { return };
-        // While a week is simulated nobody looks at anything.
+        // Simulated time is not counted as viewing.
         let Some(since) = run.shown.replace(now) else {
             run.shown = None;
             return;
@@ -124,13 +119,11 @@ impl App {
         self.note(Activity::View(view));
     }
 
-    /// Opens a dialog over what is open.
     pub(super) fn lay(&mut self, layer: Layer) {
         self.layers.push(layer, self.stopwatch.now());
         self.note_step();
     }
 
-    /// The dialog on top may have gone on to another step.
     pub(super) fn note_step(&mut self) {
         let step = match (self.layers.last(), &self.stage) {
             (Some(Layer::Filing), Stage::Run(run)) => crate::dialogs::Dialog::step(&run.filing),
@@ -142,7 +135,6 @@ impl App {
         }
     }
 
-    /// Closes the dialog on top.
     pub(super) fn close_layer(&mut self, confirmed: bool) {
         let outcome = if confirmed { DialogOutcome::Confirmed } else { DialogOutcome::Cancelled };
         if let Some(used) = self.layers.pop(outcome, self.stopwatch.now()) {
@@ -150,21 +142,19 @@ impl App {
         }
     }
 
-    /// Closes every dialog.
     pub(super) fn close_layers(&mut self) {
         while !self.layers.is_empty() {
             self.close_layer(false);
         }
     }
 
-    /// Records which object was opened: of a list, the rows behind a figure.
+    /// Records that an object was opened: an item of a list, or the rows of a figure.
     pub(super) fn note_opened(&mut self, what: &str, which: String) {
         if let Some(screen) = self.run().map(|run| run.here.id().to_owned()) {
             self.note(Activity::Select(Select { screen, what: what.to_owned(), which }));
         }
     }
 
-    /// What a request sends is a draft no more.
     pub(super) fn send_texts(&mut self, request: &Request) {
         match request {
             Request::Advance { .. } => self.leave_filing(DraftOutcome::Sent),
@@ -179,12 +169,10 @@ impl App {
         }
     }
 
-    /// What was typed before a week was sent or left.
     pub(super) fn leave_filing(&mut self, outcome: DraftOutcome) {
         OF_FILING.into_iter().for_each(|place| self.end_text(place, outcome));
     }
 
-    /// A text was sent or left.
     pub(super) fn end_text(&mut self, place: &str, outcome: DraftOutcome) {
         let kept = self.run().map_or(DraftsKept::None, |run| run.company.rules.drafts);
         if let Some(draft) = self.typing.end(place, outcome, kept == DraftsKept::Text) {
@@ -198,7 +186,7 @@ impl App {
         }
     }
 
-    /// Records what has come before the person, or was left, with what has just happened.
+    /// Records selections, help terms and abandoned drafts that followed from the last message.
     pub(super) fn settle_record(&mut self) {
         if !self.is_played() {
             return;
@@ -226,7 +214,6 @@ impl App {
         }
     }
 
-    /// The object that is open on the screen.
     fn look_at_screen(&self) -> Option<(&'static str, String)> {
         let run = self.run()?;
         let look = crate::context::Look { company: &run.company, keys: &self.keys, page: self.page };
@@ -249,7 +236,7 @@ impl App {
         }
     }
 
-    /// Whether the person is still where a text is edited.
+    /// Returns whether the place of a text is still visible.
     fn is_at_text(&self, place: &str) -> bool {
         let Some(run) = self.run() else { return false };
         if OF_FILING.contains(&place) {
@@ -265,7 +252,6 @@ impl App {
         }
     }
 
-    /// Time has passed.
     pub(super) fn pass_time(&mut self) {
         let now = self.stopwatch.now();
         if !self.is_played() || self.stopwatch.is_halted() {
@@ -277,7 +263,7 @@ impl App {
         self.keep_texts_in_time(now);
     }
 
-    /// After how long [`novamind_worker::message::Message::Time`] is due; none while nothing depends on it.
+    /// Returns the time until [`novamind_worker::message::Message::Time`] is due, or `None` if nothing depends on it.
     pub fn wakes_after(&self) -> Option<Duration> {
         if !self.is_played() || self.stopwatch.is_halted() {
             return None;
@@ -286,7 +272,7 @@ impl App {
         Some(next.saturating_sub(self.stopwatch.now()))
     }
 
-    /// The shell stops the program for a while.
+    /// Records that the shell suspends the program.
     pub fn suspend(&mut self) {
         self.keep_texts();
         self.close_view();
@@ -294,7 +280,7 @@ impl App {
         self.stopwatch.halt();
     }
 
-    /// It goes on.
+    /// Records that the program resumes.
     pub fn resume(&mut self) {
         if self.cover.is_none() {
             self.stopwatch.run();
@@ -304,12 +290,11 @@ impl App {
 }
 
 impl Run {
-    /// The week that runs is simulated: its time is nobody's.
+    /// Pauses the view timer: simulated time is not counted as viewing.
     pub(super) fn stop_looking(&mut self) {
         self.shown = None;
     }
 
-    /// The person looks at the screen again.
     pub(super) fn look_again(&mut self, now: Duration) {
         self.shown = Some(now);
     }

@@ -1,4 +1,4 @@
-//! What the console is begun with.
+//! Settings that the console starts with.
 
 use std::path::PathBuf;
 
@@ -8,22 +8,22 @@ use novamind_report::opponents::PlayOpponents;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
 
-/// How the console looks and where it keeps things.
+/// Appearance and locations of the console.
 pub struct Settings {
-    /// Colours.
+    /// Colors.
     pub theme: Theme,
     /// Keys.
     pub keys: Keys,
-    /// What is drawn with.
+    /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
-    /// Configuration of this person.
+    /// Configuration of the user.
     pub configuration: Configuration,
     /// Folder of the runs.
     pub runs: PathBuf,
-    /// The command that goes on with the newest run.
+    /// The command that resumes the latest run.
     pub again: String,
-    /// The start menu lists the runs of all participants.
+    /// Whether the start menu lists the runs of all participants.
     pub lists_everybody: bool,
-    /// What plays the opponents of a run.
+    /// Plays the opponents of a run.
     pub opponents: PlayOpponents,
 }

@@ -1,4 +1,4 @@
-//! The stopped clock: nothing of the run can be seen until it is started again.
+//! The pause screen: the run is hidden until the clock is started again.
 
 use crossterm::event::{Event, KeyEvent, KeyEventKind};
 use ratatui::layout::Rect;
@@ -14,17 +14,16 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_worker::Job;
 
-/// What lies over everything while the clock is stopped.
+/// The screen shown while the clock is stopped.
 pub struct Cover {
-    /// The experimenter's code as it is typed, where it takes one to start the clock.
+    /// The experimenter's code being typed, if starting the clock requires one.
     code: Option<Field>,
     wrong: bool,
-    /// A time limit has stopped it.
     by_limit: bool,
 }
 
 impl App {
-    /// Stops the clock, or asks why first.
+    /// Stops the clock; asks for a reason first if the study requires one.
     pub(super) fn ask_to_stop_clock(&mut self) {
         let asks = self.run().is_some_and(|run| run.company.rules.pause_reason);
         if self.is_replay() {
@@ -36,7 +35,6 @@ impl App {
         self.stop_clock(None, false);
     }
 
-    /// Covers the screen.
     pub(super) fn stop_clock(&mut self, reason: Option<String>, by_limit: bool) {
         if self.cover.is_some() || !matches!(self.stage, Stage::Run(_)) {
             return;
@@ -48,7 +46,7 @@ impl App {
         self.pending.clear();
         let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| Field::default());
         self.cover = Some(Cover { code, wrong: false, by_limit });
-        // The screen is covered already; a disk that refuses the line is no reason to uncover it.
+        // The screen is hidden already; a failed write does not undo that.
         self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
     }
 
@@ -56,10 +54,9 @@ impl App {
         self.cover = None;
         self.stopwatch.run();
         self.orders.push(Order::Job(Job::StartClock));
-        self.say("the clock runs again");
+        self.say("clock started");
     }
 
-    /// Takes what happens in the window while it is covered.
     pub(super) fn input_under_cover(&mut self, event: Event) {
         match event {
             Event::Key(key) if key.kind != KeyEventKind::Release => self.key_under_cover(&key),
@@ -99,7 +96,7 @@ impl App {
 }
 
 impl Cover {
-    /// Draws it over the whole window.
+    /// Draws the pause screen over the whole window.
     pub fn draw(&self, keys: &Keys, canvas: &mut Canvas<'_>, area: Rect) {
         let key = |action| keys.label(action).unwrap_or_default();
         let (start, quit) = (key(Action::StartClock), key(Action::QuitStopped));
@@ -110,7 +107,7 @@ impl Cover {
         let next = match (&self.code, self.wrong) {
             (None, _) => format!("{start} starts the clock · {quit} saves and quits"),
             (Some(_), false) => {
-                format!("The experimenter starts the clock with a code · {quit} saves and quits")
+                format!("The experimenter can start the clock with a code · {quit} saves and quits")
             }
             (Some(_), true) => format!("Wrong code, try again · {quit} saves and quits"),
         };
@@ -120,7 +117,7 @@ impl Cover {
         if let Some(code) = &self.code {
             let width = 20.min(area.width);
             let field = Rect { x: area.x + (area.width - width) / 2, y: row.y + 2, width, height: 1 };
-            // The code is not for the participant's eyes.
+            // The participant must not read the code.
             Field::of("•".repeat(code.text().chars().count())).draw(canvas, field);
         }
     }

@@ -1,26 +1,23 @@
-//! Where enter led: the places one came from, and the way back along them.
+//! Breadcrumbs: the places from which the current one was opened, and the way back.
 
 use super::{App, Run, Stage};
 use crate::action::Action;
 use crate::context::{Look, ScreenId};
 
-/// Most places that are remembered.
 const LONGEST: usize = 8;
 
-/// A place from which something was opened on another screen.
+/// A place from which the user opened something on another screen.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stop {
     screen: ScreenId,
-    /// The pane that had the focus.
     pane: usize,
-    /// What was open there: a group, a tool.
     open: Option<String>,
-    /// How far esc went back inside of the next screen when it was reached.
+    /// Escape depth of the next screen when it was opened.
     depth: usize,
 }
 
 impl Run {
-    /// Names of the places one came from, and of what is open here instead of the list that led to it.
+    /// Returns the titles of the breadcrumbs, and of the open item if it covers its list.
     pub fn path(&self, look: &Look<'_>) -> Vec<String> {
         let mut path = Vec::new();
         for stop in &self.trail {
@@ -38,14 +35,14 @@ impl Run {
         path
     }
 
-    /// What is shown is left for another place by a way of its own: nothing leads back along the path any more.
+    /// Clears the breadcrumbs, because the user navigated elsewhere.
     pub(super) fn forget_trail(&mut self) {
         self.trail.clear();
     }
 }
 
 impl App {
-    /// Shows a place on a screen that was opened from where one is.
+    /// Shows a place on another screen that was opened from the current one.
     pub(super) fn lead_to(&mut self, screen: ScreenId, prepare: impl FnOnce(&mut Run)) {
         if self.is_kept_shut(screen) {
             return;
@@ -57,7 +54,7 @@ impl App {
         let mut stop = Stop { screen: run.here, pane: from.focus(), open: from.open_here(&look), depth: 0 };
         prepare(run);
         if stop.screen != screen {
-            // A place that is on the path already is gone back to.
+            // A place that is already among the breadcrumbs is returned to.
             if let Some(at) = run.trail.iter().position(|own| own.screen == screen) {
                 run.trail.truncate(at);
             } else {
@@ -71,7 +68,7 @@ impl App {
         self.show(screen);
     }
 
-    /// Goes back along the path if esc has nothing to close here. True if it did.
+    /// Returns to the last breadcrumb if escape has nothing to close here. Returns whether it did.
     pub(super) fn goes_back_along(&mut self, action: Action) -> bool {
         let Stage::Run(run) = &mut self.stage else { return false };
         if action != Action::Close || run.screens.sql.is_running() {

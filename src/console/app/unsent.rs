@@ -1,5 +1,4 @@
-//! Texts that were typed and not sent: kept beside the run while they are edited, and offered again after the program was
-//! stopped.
+//! Drafts: unsent texts are saved with the run while they are edited, and offered when it is opened again.
 
 use std::time::Duration;
 
@@ -8,22 +7,19 @@ use crate::dialogs::restore::Restore;
 use novamind_record::trajectory::record::{Draft, DraftOutcome};
 use novamind_session::UnsentTexts;
 
-/// Texts that change are kept this often.
 const BETWEEN_KEEPING: Duration = Duration::from_secs(3);
 
-/// What is kept of texts.
 #[derive(Default)]
 pub(super) struct TextsKept {
-    /// As they were kept last; none where that is not known.
+    /// The drafts as last saved, or `None` if unknown.
     texts: Option<UnsentTexts>,
     /// When they are compared again.
     due: Option<Duration>,
-    /// Texts of an earlier sitting, until the person has said what becomes of them. Their file stays until then.
+    /// Drafts of an earlier session, until the user restores or discards them. Their file stays until then.
     offered: Option<Box<UnsentTexts>>,
 }
 
 impl App {
-    /// A text may have changed.
     pub(super) fn touch_texts(&mut self) {
         let soon = self.stopwatch.now() + BETWEEN_KEEPING;
         self.unsent.due.get_or_insert(soon);
@@ -39,7 +35,6 @@ impl App {
         }
     }
 
-    /// Keeps texts that have changed.
     pub(super) fn keep_texts(&mut self) {
         self.unsent.due = None;
         let texts = self.unsent_texts();
@@ -72,7 +67,6 @@ impl App {
         }
     }
 
-    /// Offers texts of an earlier sitting.
     pub(super) fn offer_texts(&mut self, texts: UnsentTexts) {
         if texts.is_empty() || !self.run().is_some_and(|run| run.company.is_running()) {
             return;
@@ -81,12 +75,11 @@ impl App {
         self.unsent.offered = Some(Box::new(texts));
     }
 
-    /// Puts them back, or forgets them.
     pub(super) fn settle_offer(&mut self, restore: bool) {
         let Some(texts) = self.unsent.offered.take() else { return };
         self.unsent.texts = None;
         if !restore {
-            self.say("what was not sent is dropped");
+            self.say("drafts discarded");
             return self.keep_texts();
         }
         for (place, text) in texts.places() {
@@ -105,11 +98,10 @@ impl App {
                 run.screens.tools.restore(*tool, values, &run.company);
             }
         }
-        self.say("what was not sent is back in its place");
+        self.say("drafts restored");
         self.keep_texts();
     }
 
-    /// What is known of texts belongs to the run that was open.
     pub(super) fn forget_texts(&mut self) {
         self.unsent = TextsKept::default();
     }

@@ -1,4 +1,4 @@
-//! What the keys of a replay do, and what its arrivals change.
+//! Playback actions, and responses that change the playback.
 
 use std::sync::atomic::Ordering;
 
@@ -13,7 +13,6 @@ use novamind_worker::Job;
 use novamind_worker::asking::Pending;
 use novamind_worker::message::Arrival;
 
-/// What only the person who plays can do.
 const OF_PLAYERS: [Action; 17] = [
     Action::NextWeek,
     Action::Undo,
@@ -30,13 +29,13 @@ const OF_PLAYERS: [Action; 17] = [
     Action::SaveMemo,
     Action::FindGroup,
     Action::StudyGroup,
-    // Threads are marked for an offer.
+    // Threads are marked for offers.
     Action::Mark,
     Action::MarkAll,
 ];
 
 impl Run {
-    /// Scopes of the focused place of the screen. The keys of a replay come first, but not where text is typed.
+    /// Returns the scopes of the focused place. Playback keys take precedence, except while text is typed.
     pub(super) fn scopes(&self) -> Vec<Scope> {
         let mut scopes = self.screens.get(self.here).scopes();
         let typing = scopes.first().is_some_and(|scope| scope.is_text());
@@ -46,7 +45,6 @@ impl Run {
         scopes
     }
 
-    /// Actions worth showing in the last line.
     pub(super) fn hints(&self) -> Vec<Action> {
         let own = self.screens.get(self.here).hints();
         let typing = self.scopes().first().is_some_and(|scope| scope.is_text());
@@ -63,7 +61,6 @@ impl Run {
 }
 
 impl App {
-    /// Whether a recorded run is played again.
     pub(super) fn is_replay(&self) -> bool {
         self.run().is_some_and(|run| run.viewer.is_some())
     }
@@ -77,12 +74,12 @@ impl App {
 
     pub(super) fn complain_of_replay(&mut self) {
         let key = self.keys.label(Action::TakeOver).unwrap_or_default();
-        self.complain(format!("this is a replay; take over with {key}"));
+        self.complain(format!("this is a replay; press {key} to take over"));
     }
 
-    /// Refuses what changes a run, in a replay. True if it did.
+    /// Rejects actions that change the run. Returns whether it did.
     pub(super) fn refuses_in_replay(&mut self, action: Action) -> bool {
-        // At the end the same key shows the final page.
+        // In a finished run the same key shows the final page.
         let shows_end = action == Action::NextWeek && self.run().is_some_and(|run| !run.company.is_running());
         let refused = self.is_replay() && OF_PLAYERS.contains(&action) && !shows_end;
         if refused {
@@ -91,7 +88,7 @@ impl App {
         refused
     }
 
-    /// Stops a way through the record that takes long. True if there was one.
+    /// Returns whether the console was seeking.
     pub(super) fn stop_on_the_way(&mut self) -> bool {
         let goes = self.busy.is_some();
         match self.viewer() {
@@ -103,7 +100,6 @@ impl App {
         }
     }
 
-    /// Does an action of a replay.
     pub(super) fn act_in_viewer(&mut self, action: Action) {
         let beside = self.window.0 >= Viewer::BESIDE;
         let Some(viewer) = self.viewer() else { return };
@@ -149,7 +145,6 @@ impl App {
         }
     }
 
-    /// Goes somewhere in the record.
     pub(super) fn go(&mut self, goal: Goal) {
         if self.busy.is_some() {
             return self.complain("already seeking; esc stops it");
@@ -157,7 +152,7 @@ impl App {
         let Some(viewer) = self.viewer() else { return };
         let place = &viewer.place;
         if place.at_end && goal == Goal::Weeks(1) {
-            let text = if place.follows { "nothing more recorded yet" } else { "end of the record" };
+            let text = if place.follows { "no more actions recorded yet" } else { "end of the record" };
             viewer.playing = false;
             return self.say(text);
         }
@@ -195,7 +190,7 @@ impl App {
         self.play_on();
     }
 
-    /// Orders the next week once the screen shows everything of this one.
+    /// Requests the next week once the screen is complete.
     pub(super) fn play_on(&mut self) {
         let waits =
             self.busy.is_some() || self.run().is_some_and(|run| run.asked.values().any(Pending::is_waiting));
@@ -207,7 +202,6 @@ impl App {
         }
     }
 
-    /// A moment of the record was reached, as asked or by itself.
     pub(super) fn arrived(&mut self, arrival: Arrival, asked: bool) {
         let Arrival { company, place, problem } = arrival;
         if asked {

@@ -1,4 +1,4 @@
-//! A participant's way through a study: the pages around the runs, and what cannot be reached meanwhile.
+//! Studies: the pages around a participant's runs, and the parts of the console that are closed to participants.
 
 use super::{App, Closing, Layer, Order, Stage};
 use crate::screens::menu::Menu;
@@ -9,11 +9,9 @@ use novamind_worker::Job;
 use novamind_worker::message::VisitNews;
 use novamind_worker::request::{Request, VisitRequest};
 
-/// Said where something is not for participants.
-const KEPT: &str = "in a study only your own session is open";
+const KEPT: &str = "not available in a study: only your own session is open";
 
 impl App {
-    /// Receives participants of a study from now on.
     pub(super) fn receive(&mut self, study: Box<Study>) {
         let visit = VisitState::of(&study);
         self.code_check = study.code_check();
@@ -26,7 +24,7 @@ impl App {
         self.request(Request::Visit(request));
     }
 
-    /// Whether something is kept from participants; says so.
+    /// Rejects a request that participants must not send. Returns whether it did.
     pub(super) fn keeps_from_participant(&mut self, request: &Request) -> bool {
         let kept = self.visit.is_some() && request.is_kept_from_participants();
         if kept {
@@ -35,7 +33,7 @@ impl App {
         kept
     }
 
-    /// Whether a participant is led: nothing but their own session can be reached.
+    /// Returns whether a participant uses the console and only their session is reachable.
     pub(super) fn leads_participant(&self) -> bool {
         self.visit.is_some()
     }
@@ -44,12 +42,11 @@ impl App {
         self.complain(KEPT);
     }
 
-    /// Whether questions have to be answered before the participant does anything else.
+    /// Returns whether the participant must answer questions before anything else.
     pub(super) fn owes_answers(&self) -> bool {
         self.visit.as_ref().is_some_and(|visit| !visit.due.is_empty())
     }
 
-    /// Takes note of what a request means for the visit before it is sent.
     pub(super) fn note_request(&mut self, request: &Request) {
         let Some(visit) = &mut self.visit else { return };
         match request {
@@ -67,7 +64,6 @@ impl App {
         self.stage = Stage::Visit(Box::new(page(&visit.title)));
     }
 
-    /// Takes news of the visit.
     pub(super) fn visited(&mut self, news: VisitNews) {
         let Some(visit) = &mut self.visit else { return };
         match news {
@@ -95,7 +91,7 @@ impl App {
             }
             VisitNews::Code(right) => {
                 let problem = match right {
-                    None => "this study has no code: nothing else opens",
+                    None => "this study has no experimenter's code",
                     Some(_) => "this is not the experimenter's code",
                 };
                 self.complain_on_page(problem.to_owned());
@@ -106,7 +102,7 @@ impl App {
         }
     }
 
-    /// Says on the page of the visit what went wrong. True if there is one.
+    /// Shows an error on the study page. Returns false if no study page is shown.
     pub(super) fn complain_on_page(&mut self, problem: String) -> bool {
         if let Stage::Visit(page) = &mut self.stage {
             page.complain(problem);
@@ -115,7 +111,6 @@ impl App {
         false
     }
 
-    /// A run of the participant was left; what comes next.
     pub(super) fn after_run(&mut self, problem: Option<String>) {
         let over = self.run().is_some_and(|run| !run.company.is_running());
         let answered = !self.owes_answers();
@@ -133,14 +128,13 @@ impl App {
         }
     }
 
-    /// Leaves the run to withdraw.
     pub(super) fn withdraw(&mut self) {
-        let Some(visit) = &mut self.visit else { return self.complain("this run belongs to no study") };
+        let Some(visit) = &mut self.visit else { return self.complain("this run is not part of a study") };
         visit.withdraws = true;
         self.leave(Closing::ToMenu);
     }
 
-    /// Shows questions that are due once nothing lies over the run; goes on once it is over.
+    /// Shows due questions once no dialog covers the run; leaves the run after it has ended.
     pub(super) fn settle_visit(&mut self) {
         let Some(visit) = &self.visit else { return };
         let Stage::Run(run) = &self.stage else { return };
@@ -150,7 +144,7 @@ impl App {
         let over = !run.company.is_running();
         match QuestionPage::first_of(&visit.due) {
             Some((page, shown)) => {
-                // What was said of the company's keys does not hold here.
+                // The status message refers to keys that do not work here.
                 self.note = None;
                 self.lay(Layer::Dialog(Box::new(page)));
                 self.follow(vec![shown]);

@@ -1,5 +1,4 @@
-//! What the person has before them and does with it, as the record of the run tells it: how long a screen and a dialog
-//! were open, how a text came to be, whether somebody is there.
+//! Observed user activity for the record: view times of screens and dialogs, how texts were typed, and presence.
 
 mod presence;
 mod stopwatch;

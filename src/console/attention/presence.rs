@@ -1,4 +1,4 @@
-//! Whether somebody is there: the last key, the focus of the window, its size.
+//! User presence: the last key, the window focus and the window size.
 
 use std::time::Duration;
 
@@ -6,40 +6,39 @@ use super::stopwatch::ms;
 use novamind_record::trajectory::record::PresenceEvent;
 use novamind_session::IDLE_AFTER;
 
-/// A window that is being resized is recorded once it has kept its size for this long.
+/// A window size is recorded after it has been stable for this long.
 const SETTLED: Duration = Duration::from_secs(1);
 
-/// Something to record: what happened, milliseconds without a key, and the size of the window.
+/// An event to record: its kind, milliseconds without input, and the window size.
 pub type Noted = (PresenceEvent, Option<u64>, Option<(u16, u16)>);
 
-/// Watches the keys and the window.
+/// Tracks input and window events.
 #[derive(Debug, Default)]
 pub struct PresenceWatch {
-    /// When the last key was pressed.
     last_key: Duration,
     idle: bool,
     unfocused: bool,
-    /// A new size of the window, and since when it has it.
+    /// The new window size, and since when.
     resized: Option<((u16, u16), Duration)>,
 }
 
 impl PresenceWatch {
-    /// The person is there from now on.
+    /// Starts tracking with the user present.
     pub fn begin(&mut self, now: Duration) {
         *self = PresenceWatch { last_key: now, ..PresenceWatch::default() };
     }
 
-    /// A key was pressed or text was pasted, or the mouse was used, which can be over a window without the focus.
+    /// Handles a key, a paste or mouse input. The mouse can be used over a window without focus.
     pub fn key(&mut self, by_mouse: bool, now: Duration) -> Vec<Noted> {
         let idle = ms(now.saturating_sub(self.last_key));
         self.last_key = now;
-        // A terminal that does not tell that it has the focus again has it: keys arrive.
+        // Some terminals do not report regained focus; key input implies it.
         let focus = if by_mouse { None } else { self.focus(true) };
         let active = std::mem::take(&mut self.idle).then_some((PresenceEvent::Active, Some(idle), None));
         focus.into_iter().chain(active).collect()
     }
 
-    /// The window has the focus, or another one.
+    /// Handles a focus change. Returns an event if the focus changed.
     pub fn focus(&mut self, has: bool) -> Option<Noted> {
         let changed = self.unfocused == has;
         self.unfocused = !has;
@@ -47,12 +46,12 @@ impl PresenceWatch {
         changed.then_some((event, None, None))
     }
 
-    /// The window has another size.
+    /// Handles a new window size.
     pub fn resize(&mut self, window: (u16, u16), now: Duration) {
         self.resized = Some((window, now));
     }
 
-    /// What time alone brings.
+    /// Returns the events that are due at a time.
     pub fn pass(&mut self, now: Duration) -> Vec<Noted> {
         let mut noted = Vec::new();
         if let Some((window, _)) = self.resized.take_if(|(_, since)| now >= *since + SETTLED) {
@@ -65,7 +64,7 @@ impl PresenceWatch {
         noted
     }
 
-    /// When time alone brings something next.
+    /// Returns when the next event is due without input.
     pub fn next(&self) -> Option<Duration> {
         let idle = (!self.idle).then_some(self.last_key + IDLE_AFTER);
         let resized = self.resized.map(|(_, since)| since + SETTLED);

@@ -1,10 +1,10 @@
-//! Time as the person has it: it stands while their clock is stopped, and while the program is suspended.
+//! Active time: paused while the clock is stopped and while the program is suspended.
 
 use std::time::Duration;
 
 use novamind_record::clock::steady;
 
-/// A watch that can be halted. Everything the record measures is measured with it.
+/// A stopwatch that can be paused. All recorded durations are measured with it.
 #[derive(Debug)]
 pub struct Stopwatch {
     since: Duration,
@@ -20,29 +20,29 @@ impl Default for Stopwatch {
 }
 
 impl Stopwatch {
-    /// Time that has passed while it ran.
+    /// Returns the time that has passed while it was running.
     pub fn now(&self) -> Duration {
         if self.halted { self.before } else { self.before + steady().saturating_sub(self.since) }
     }
 
-    /// Halts it.
+    /// Pauses it.
     pub fn halt(&mut self) {
         (self.before, self.halted) = (self.now(), true);
     }
 
-    /// Lets it run again.
+    /// Resumes it.
     pub fn run(&mut self) {
         if self.halted {
             (self.since, self.halted) = (steady(), false);
         }
     }
 
-    /// Whether it is halted.
+    /// Returns whether it is paused.
     pub fn is_halted(&self) -> bool {
         self.halted
     }
 
-    /// Turns it on, as if time had passed: tests need not wait.
+    /// Advances it without waiting, for tests.
     pub fn turn_on(&mut self, by: Duration) {
         if !self.halted {
             self.before += by;
@@ -50,7 +50,7 @@ impl Stopwatch {
     }
 }
 
-/// Whole milliseconds.
+/// Converts a duration to whole milliseconds.
 pub fn ms(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

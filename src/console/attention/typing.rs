@@ -1,4 +1,4 @@
-//! How texts come to be: letters typed, deleted and pasted, and pauses between them.
+//! Typing statistics: characters typed, deleted and pasted, and pauses.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -6,30 +6,30 @@ use std::time::Duration;
 use super::stopwatch::ms;
 use novamind_record::trajectory::record::{Draft, DraftOutcome};
 
-/// What stands between the cells of a form where they are taken as one text; it is no letter.
+/// Separates the cells of a form in a combined text; not counted as a character.
 pub const BETWEEN_CELLS: &str = "\u{1f}";
 
-/// A pause between two keys that counts.
+/// Minimum gap between two keys that counts as a pause.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// Where a change of a text came from.
+/// Source of a change of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edit {
     /// A key.
     Typed,
     /// The clipboard.
     Pasted,
-    /// The program filled it in.
+    /// The program.
     Filled,
 }
 
-/// Texts that are being edited, by place.
+/// Statistics of the texts that are being edited, by place.
 #[derive(Debug, Default)]
 pub struct Typing {
     texts: BTreeMap<String, Episode>,
 }
 
-/// A text from the first change to its being sent or left.
+/// Statistics of one text, from its first change until it is sent or left.
 #[derive(Debug)]
 struct Episode {
     text: String,
@@ -42,10 +42,10 @@ struct Episode {
 }
 
 impl Typing {
-    /// A text has changed.
+    /// Records a change of a text.
     pub fn change(&mut self, place: &str, before: &str, after: String, edit: Edit, now: Duration) {
         if edit == Edit::Filled && !self.texts.contains_key(place) {
-            // What the program filled in is no text of the person's.
+            // A text that only the program filled in is not a draft of the user.
             return;
         }
         let (added, removed) = difference(before, &after);
@@ -69,12 +69,13 @@ impl Typing {
         }
     }
 
-    /// A text was sent or left: how it came to be. None if it was not edited. `keep` says that its letters are kept.
+    /// Ends a draft and returns its statistics, or `None` if it was not edited. With `keep`, the text of a draft that
+    /// was left is included.
     pub fn end(&mut self, place: &str, outcome: DraftOutcome, keep: bool) -> Option<Draft> {
         self.texts.remove(place).map(|episode| episode.told(place, outcome, keep))
     }
 
-    /// Places of the texts that are being edited.
+    /// Returns the places of the texts that are being edited.
     pub fn places(&self) -> Vec<String> {
         self.texts.keys().cloned().collect()
     }
@@ -100,7 +101,7 @@ fn letters(text: &str) -> Vec<char> {
     text.chars().filter(|letter| !BETWEEN_CELLS.contains(*letter)).collect()
 }
 
-/// Letters that were added and removed between two texts that differ in one place.
+/// Counts the characters added and removed between two texts that differ in one place.
 fn difference(before: &str, after: &str) -> (u64, u64) {
     let (old, new) = (letters(before), letters(after));
     let same = old.iter().zip(&new).take_while(|(own, other)| own == other).count();

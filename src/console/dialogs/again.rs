@@ -1,4 +1,4 @@
-//! Which step of a lesson is tried again: the one that is at hand, or one before it. The default is to leave it.
+//! Confirmation for retrying a step of a lesson: the current one or an earlier one. The default is to cancel.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -12,7 +12,7 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::request::{LessonRequest, Request};
 
-/// The question.
+/// The dialog.
 pub struct TryAgain {
     /// Counted from 0.
     step: usize,
@@ -20,18 +20,17 @@ pub struct TryAgain {
 }
 
 impl TryAgain {
-    /// Asks for one of the steps up to this one, which is chosen first.
+    /// Asks for a step from the first to `last`, which is selected initially.
     pub fn new(last: usize) -> TryAgain {
         TryAgain { step: last, last }
     }
 
     fn text(&self) -> String {
         let step = self.step + 1;
-        let first =
-            "in a run of its own; tries are counted, the first guess stands, and this run stays as it is.";
+        let first = "in a new run. Tries are counted, your first guess counts, and this run does not change.";
         match self.last {
-            0 => format!("Step {step} begins again, {first}"),
-            last => format!("Step {step} of {} begins again, {first}", last + 1),
+            0 => format!("Step {step} starts again {first}"),
+            last => format!("Step {step} of {} starts again {first}", last + 1),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! One question before something that cannot be taken back. The default is to leave it.
+//! Confirmation before an irreversible action. The default is to cancel.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -11,22 +11,22 @@ use novamind_tui::canvas::{Canvas, Click, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// A question.
+/// A confirmation.
 pub struct Confirm {
     title: String,
     text: String,
     effects: Vec<Effect>,
-    /// Another answer than yes or no, and what follows from it.
+    /// A third answer and its effects.
     other: Option<(Action, Vec<Effect>)>,
 }
 
 impl Confirm {
-    /// Asks whether to let effects follow.
+    /// Asks whether to execute effects.
     pub fn new(title: impl Into<String>, text: impl Into<String>, effects: Vec<Effect>) -> Confirm {
         Confirm { title: title.into(), text: text.into(), effects, other: None }
     }
 
-    /// With another answer of its own, an action of lessons.
+    /// Adds a third answer, an action of lessons.
     pub fn or(self, action: Action, effects: Vec<Effect>) -> Confirm {
         Confirm { other: Some((action, effects)), ..self }
     }
@@ -56,10 +56,10 @@ impl Dialog for Confirm {
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
         match (action, &mut self.other) {
             (Action::Confirm, _) => Outcome::close_with(std::mem::take(&mut self.effects)),
-            // Whoever takes the key for another one learns that nothing has happened.
+            // Tells a user who mistook the key that nothing happened.
             (Action::Cancel, _) => {
                 let yes = look.keys.label(Action::Confirm).unwrap_or_default();
-                let said = format!("{}: not done; {yes} would have done it", self.title);
+                let said = format!("{}: cancelled; {yes} confirms", self.title);
                 Outcome::leave_with(vec![Effect::Say(said)])
             }
             (action, Some((other, effects))) if action == *other => {

@@ -1,4 +1,4 @@
-//! The page at the end of a lesson: the own curve of cash beside the good and the bad play, where they parted, what was guessed.
+//! The debrief of a lesson: cash compared with the good and the bad play, differing decisions, and guesses.
 
 use std::sync::Arc;
 
@@ -20,12 +20,10 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Axis, Line, Scroll, Side, Unit, chart};
 
-/// Widest page that reads well.
 const WIDEST: u16 = 160;
-/// Columns and rows from which the curves stand beside the words.
 const BESIDE: (u16, u16) = (104, 20);
 
-/// The page.
+/// The debrief page.
 #[derive(Default)]
 pub struct DebriefPage {
     found: Option<Arc<Result<Debrief, Refusal>>>,
@@ -33,7 +31,7 @@ pub struct DebriefPage {
 }
 
 impl DebriefPage {
-    /// The page of a debrief that was found already.
+    /// Opens the page, with a debrief that was already computed if there is one.
     pub fn of(found: Option<Arc<Result<Debrief, Refusal>>>) -> DebriefPage {
         DebriefPage { found, ..DebriefPage::default() }
     }
@@ -42,10 +40,9 @@ impl DebriefPage {
         self.found.as_ref()?.as_ref().as_ref().ok()
     }
 
-    /// Writes the debrief into the run's folder.
     fn written(&self) -> Outcome {
         let Some(debrief) = self.debrief() else {
-            return Outcome::with(vec![Effect::Complain("the debrief is still being found".to_owned())]);
+            return Outcome::with(vec![Effect::Complain("the debrief is still being computed".to_owned())]);
         };
         let files =
             [("debrief.md", debrief_as_markdown(debrief)), ("debrief.html", debrief_as_html(debrief))];
@@ -53,7 +50,6 @@ impl DebriefPage {
     }
 }
 
-/// What one does here.
 const KEYS: [Action; 6] = [
     Action::ToMenu,
     Action::TryAgain,
@@ -152,7 +148,6 @@ impl Dialog for DebriefPage {
     }
 }
 
-/// The debrief in lines of a width.
 fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     let said = headline(debrief);
     let paragraphs = in_words(debrief).into_iter().enumerate().flat_map(|(at, text)| {
@@ -167,7 +162,7 @@ fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     paragraphs.collect()
 }
 
-/// The curves of what the part is judged by.
+/// Draws the curves of the figure that decides the part.
 fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     let Some(judged) = &debrief.judged_by else { return draw_cash(canvas, area, debrief) };
     let curve = |values: &[(u32, f64)], role, name| {

@@ -1,4 +1,4 @@
-//! What a figure, a field or a screen is: words for it, the rows behind it, and terms that lead on.
+//! Explanations of figures, fields and screens, with source rows and links to related terms.
 
 use std::sync::Arc;
 
@@ -16,11 +16,9 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_row;
 
-/// Something that can be chosen below the text.
 #[derive(Debug, Clone, Copy)]
 enum Link {
     To(Subject),
-    /// A screen or dialog.
     Place(Action),
 }
 
@@ -36,13 +34,12 @@ impl Link {
     }
 }
 
-/// One explanation, and where the person is in it.
 struct OpenPage {
-    /// What is explained, as the glossary, tools and tables name it.
+    /// The explained term, as named by the glossary, a tool or a table.
     term: String,
     title: String,
     note: String,
-    /// Heading and text of each part.
+    /// Heading and text of each section.
     parts: Vec<(String, String)>,
     links: Vec<Link>,
     selected: usize,
@@ -63,13 +60,12 @@ impl OpenPage {
     }
 }
 
-/// The dialog.
+/// The explanation dialog.
 pub struct Explain {
-    /// The page that is read, and those before it.
+    /// The current page, and those before it.
     pages: Vec<OpenPage>,
-    /// There are rows behind the figure.
     rows: bool,
-    /// The numbers that texts name.
+    /// Parameters that the texts mention.
     numbers: Arc<Numbers>,
 }
 
@@ -103,10 +99,10 @@ impl Explain {
         Explain { pages: vec![page], rows: figure.sql.is_some(), numbers }
     }
 
-    /// Explains a screen, and lists its terms.
+    /// Explains a screen and lists its terms.
     pub fn screen(screen: ScreenId, numbers: Arc<Numbers>) -> Explain {
         let entry = screen.action().entry();
-        let help = "Select a figure or a field to have it explained, or choose a term of this screen.";
+        let help = "Select a figure or field to explain it, or choose a term of this screen.";
         let page = OpenPage {
             term: entry.name.to_owned(),
             title: entry.title.to_owned(),
@@ -204,13 +200,13 @@ impl Dialog for Explain {
         let page = self.page();
         let width = area.width.saturating_sub(4).min(100);
         let text = lines_of(page, width.saturating_sub(4) as usize);
-        // Words before links: at least three links can be seen, the rest is scrolled.
+        // Text takes precedence over links: at least three links stay visible, the rest scrolls.
         let links = (page.links.len() as u16).min(10);
         let least = links.min(3) + u16::from(links > 0);
         let room = area.height.saturating_sub(2);
         let for_text = (text.len() as u16).min(room.saturating_sub(least));
         let for_links = (links + u16::from(links > 0)).min(room - for_text);
-        // A picture takes what text and links leave.
+        // A picture takes the remaining rows.
         let for_picture = match (room - for_text - for_links).min(term_picture::MOST_ROWS) {
             rows if rows >= term_picture::LEAST_ROWS && term_picture::has_picture(&page.term) => rows,
             _ => 0,
@@ -243,7 +239,7 @@ impl Explain {
             return;
         }
         let place = format!("{} of {}", page.selected + 1, page.links.len());
-        canvas.text(area, &format!("leads to · {place}"), Role::Header);
+        canvas.text(area, &format!("see also · {place}"), Role::Header);
         let list = Rect { y: area.y + 1, height: area.height - 1, ..area };
         let from = first_row(page.selected, list.height as usize, page.links.len());
         for (row, (at, link)) in rows_of(list).zip(page.links.iter().enumerate().skip(from)) {
@@ -260,13 +256,12 @@ impl Explain {
     }
 }
 
-/// Headings and texts in lines of a width; the headings stand in a column of their own.
 fn lines_of(page: &OpenPage, width: usize) -> Vec<(String, String)> {
     let column = page.parts.iter().map(|(heading, _)| heading.chars().count()).max().unwrap_or(0);
     let column = if column > 0 { column + 2 } else { 0 };
     let mut lines = Vec::new();
     for (heading, text) in &page.parts {
-        // What stands without a heading is the sentence that says what it is: it has the whole width.
+        // A section without a heading is the summary and takes the full width.
         let (left, room) =
             if heading.is_empty() { (0, width) } else { (column, width.saturating_sub(column)) };
         for (at, line) in wrapped(text, room).into_iter().enumerate() {
@@ -311,7 +306,7 @@ mod tests {
             "Churn · customers",
             "The loss of subscribers.",
             "SELECT 1",
-            "leads to · 1 of",
+            "see also · 1 of",
         ] {
             assert!(shown.contains(part), "{part} is missing in\n{shown}");
         }
@@ -340,7 +335,7 @@ mod tests {
         let shown =
             dialog_picture(&Explain::screen(ScreenId::Inbox, Numbers::shipped().into()), &company, 80, 21);
         assert!(
-            shown.contains("Negotiate with companies.") && shown.contains("Enterprise customer"),
+            shown.contains("Negotiate with enterprises.") && shown.contains("Enterprise customer"),
             "{shown}"
         );
         let mut odd = Explain::figure(&figure("no-such-term", None), Numbers::shipped().into());

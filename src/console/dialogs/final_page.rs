@@ -1,5 +1,5 @@
-//! The page at the end of a run: the score beside published results, or how the company went under; the curve of
-//! cash; how the run was played.
+//! The page at the end of a run: rank among published results or the causes of a bankruptcy, the cash curve, and
+//! playing statistics.
 
 use std::sync::Arc;
 
@@ -25,14 +25,10 @@ use novamind_tui::widgets::{Axis, Line, Side, Unit, chart};
 use novamind_worker::company::Company;
 use novamind_worker::request::{Recorded, Request};
 
-/// Widest that reads well.
 const WIDEST: u16 = 124;
-/// From this size on, curve and highlights stand beside the rest.
 const TWO_COLUMNS: (u16, u16) = (104, 26);
-/// Width of the names of facts.
 const NAMES: usize = 22;
 
-/// What can be done from here.
 const KEYS: [Action; 7] = [
     Action::ReportOfRun,
     Action::CardOfRun,
@@ -47,7 +43,7 @@ fn hides_result(company: &Company) -> bool {
     company.rules.hide_result(company.seen.ended.is_some())
 }
 
-/// Shows a moment of the run, from which it can be played again or taken over.
+/// Opens a moment of the run in playback.
 fn replay(company: &Company, goal: Goal) -> Outcome {
     match (&company.folder, company.replayed) {
         (_, true) => Outcome::close_with(vec![Effect::Go(goal)]),
@@ -56,7 +52,7 @@ fn replay(company: &Company, goal: Goal) -> Outcome {
             Outcome::with(vec![Effect::Request(Request::Replay { recorded, goal, follow: false })])
         }
         (None, _) => {
-            let text = "this run is kept in memory and has no record to replay";
+            let text = "cannot replay: this run is in memory and has no record";
             Outcome::with(vec![Effect::Complain(text.to_owned())])
         }
     }
@@ -64,19 +60,19 @@ fn replay(company: &Company, goal: Goal) -> Outcome {
 
 /// The final page.
 pub struct FinalPage {
-    /// What was told of the run; none while its books are read.
+    /// The run report, or `None` while the ledger is read.
     story: Option<Arc<Story>>,
-    /// A participant of a study is led on from here.
+    /// Whether it leads a participant to the next page of a study.
     led: bool,
 }
 
 impl FinalPage {
-    /// The page of a run that is over.
+    /// Opens the page of a finished run.
     pub fn new(story: Option<Arc<Story>>) -> FinalPage {
         FinalPage { story, led: false }
     }
 
-    /// The same for a participant of a study: it only leads on.
+    /// Makes it lead to the next page of a study.
     pub fn leading_on(self) -> FinalPage {
         FinalPage { led: true, ..self }
     }
@@ -144,14 +140,13 @@ impl Dialog for FinalPage {
 }
 
 impl FinalPage {
-    /// The page where no result is shown.
     fn draw_over(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         canvas.clear(area, Role::Text);
         let own = centered(area, 60, 6);
         let practice = look.company.study.as_ref().is_some_and(|study| study.practice);
         let (title, said) = match practice {
-            true => ("The practice is over", "It does not count. The session comes next."),
-            false => ("The run is over", "The result is not shown in this study."),
+            true => ("The practice has ended", "It does not count. The session comes next."),
+            false => ("The run has ended", "This study does not show the result."),
         };
         let inside = canvas.pane(own, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
@@ -159,7 +154,6 @@ impl FinalPage {
         canvas.pane_keys(own, &look.hints(self.keys()));
     }
 
-    /// Writes the card into the run's folder, once the story is told.
     fn card(&self) -> Outcome {
         let Some(story) = &self.story else {
             return Outcome::with(vec![Effect::Complain("the ledger is still being read".to_owned())]);
@@ -168,7 +162,6 @@ impl FinalPage {
         Outcome::with(files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec())
     }
 
-    /// Result, rank and how the run was played.
     fn lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -180,7 +173,7 @@ impl FinalPage {
         let mut parts: Vec<Vec<TextLine<'a>>> = Vec::new();
         parts.extend(self.ruin(canvas, width, roomy));
         let standing = standing(company.seen.score, &company.seen);
-        // A ruin is explained before it is ranked.
+        // A bankruptcy is explained before it is ranked.
         let best = match (roomy, company.seen.ended) {
             (_, Some(Ended::Bankruptcy)) => usize::from(roomy),
             (true, _) => 8,
@@ -198,7 +191,7 @@ impl FinalPage {
             && !self.led
             && let Some(folder) = &company.folder
         {
-            let text = format!("The report goes to {}", folder.display());
+            let text = format!("Reports are written to {}", folder.display());
             let lines = wrapped(&text, width as usize).into_iter();
             parts.push(lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))).collect());
         }
@@ -212,7 +205,7 @@ impl FinalPage {
         lines
     }
 
-    /// How the company went under: what turned, and what the money went to.
+    /// Explains a bankruptcy: the last turn, and the main costs.
     fn ruin<'a>(&self, canvas: &Canvas<'_>, width: u16, roomy: bool) -> Option<Vec<TextLine<'a>>> {
         let ruin = self.story.as_ref()?.ruin.as_ref()?;
         let told = wrapped(&ruin.turned.join(" "), width as usize);
@@ -238,7 +231,7 @@ impl FinalPage {
         Some(lines)
     }
 
-    /// The curve of cash, and the days worth remembering below it.
+    /// Draws the cash curve with the highlights below.
     fn draw_right(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
         let highlights = self.story.as_ref().map_or(&[][..], |story| story.highlights.as_slice());
         let list = (highlights.len() as u16 + 2).min(area.height / 2);
@@ -276,7 +269,6 @@ fn headline(company: &Company) -> String {
     }
 }
 
-/// The published results with the person's own among them.
 fn ranking<'a>(
     canvas: &Canvas<'_>,
     standing: &Standing,
@@ -307,19 +299,18 @@ fn ranking<'a>(
                 lines.extend(told.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
             }
             false if best > 0 => {
-                // Which runs are published comes first; how this one differs stands above, and in the header.
+                // The publication comes first; differences of this run are in the header.
                 let first = caveat.split("; ").next().unwrap_or_default().to_owned();
                 let told = fitting([caveat.clone(), first], width as usize);
                 lines.push(TextLine::from(canvas.span(told, Role::Dim)));
             }
-            // A ruin needs the room.
+            // A bankruptcy uses the space.
             false => {}
         }
     }
     lines
 }
 
-/// How the run was played.
 fn facts<'a>(
     canvas: &Canvas<'_>,
     measures: &Measures,
@@ -368,13 +359,13 @@ fn facts<'a>(
     lines
 }
 
-/// How often intervals held what came, and the typical miss, by horizon; in short where there is no room.
+/// Formats coverage and typical error by horizon, shortened to fit.
 fn calibration(scores: &[ForecastScore], room: usize) -> String {
     let scored = || scores.iter().filter(|score| score.scored > 0);
     let inside = |score: &ForecastScore| percent(f64::from(score.covered) / f64::from(score.scored), 0);
     let long = scored().map(|score| {
         format!(
-            "{} wk {} inside, {} miss",
+            "{} wk {} in range, {} error",
             score.horizon_days / 7,
             inside(score),
             percent(score.mean_error, 0)
@@ -382,16 +373,16 @@ fn calibration(scores: &[ForecastScore], room: usize) -> String {
     });
     let long = long.collect::<Vec<_>>().join(" · ");
     if long.is_empty() {
-        return "none has come due".to_owned();
+        return "none is due yet".to_owned();
     }
     if long.width() <= room {
         return long;
     }
     let short = scored().map(|score| format!("{} wk {}", score.horizon_days / 7, inside(score)));
-    format!("inside: {}", short.collect::<Vec<_>>().join(" · "))
+    format!("in range: {}", short.collect::<Vec<_>>().join(" · "))
 }
 
-/// The share of ads on the best channel, or why there is none; the longer wording first.
+/// Describes the share of ads on the best channel, or why it is unknown; the longer wording first.
 fn best_channel(skill: &ChannelSkill) -> Vec<String> {
     let first = skill.groups.iter().find_map(|group| Some((group, group.best.as_ref()?)));
     match (skill.share, first) {
@@ -401,15 +392,15 @@ fn best_channel(skill: &ChannelSkill) -> Vec<String> {
             vec![format!("{share} · {}: {channel} of {} tried", group.group, group.tried), share]
         }
         _ if skill.groups.iter().all(|group| group.tried == 1) => {
-            vec!["– · no group had more than one channel".to_owned(), "– · one channel a group".to_owned()]
+            vec!["– · no group had more than one channel".to_owned(), "– · one channel per group".to_owned()]
         }
         _ => vec![format!("– · no channel brought {ENOUGH_LEADS} leads")],
     }
 }
 
-/// Calls a week and the most used tools, as many as have room.
+/// Lists calls per week and the most used tools, as many as fit.
 fn tools(measures: &Measures, room: usize) -> String {
-    let mut text = format!("{:.1} calls a week", measures.tools.per_week);
+    let mut text = format!("{:.1} calls per week", measures.tools.per_week);
     for (tool, calls) in &measures.tools.tools {
         let more = format!(" · {tool} {calls}×");
         if text.width() + more.width() > room {
@@ -445,7 +436,7 @@ mod tests {
                 "ads on best channel",
                 "of 2 tried",
                 "targeted development  97%",
-                "calls a week",
+                "calls per week",
                 "planning words",
                 "day 0",
                 "r report",

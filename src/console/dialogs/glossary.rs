@@ -1,4 +1,4 @@
-//! Every term of the company, found by typing into the filter.
+//! The glossary: all terms, with a filter.
 
 use std::sync::Arc;
 
@@ -16,19 +16,18 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Cell, Column, Table};
 
-/// The list of terms.
+/// The glossary dialog.
 pub struct Glossary {
     table: Table,
     numbers: Arc<Numbers>,
 }
 
-/// Rows for the text of the selected term.
 const TEXT_ROWS: u16 = 6;
-/// The same with a picture beside it: a rule, and the picture.
+/// Rows for a text with a picture: a rule and the picture.
 const PICTURE_ROWS: u16 = 1 + term_picture::MOST_ROWS;
 
 impl Glossary {
-    /// All terms by topic, with the figures of the run.
+    /// Lists all terms by topic, with the parameters of the run.
     pub fn new(numbers: Arc<Numbers>) -> Glossary {
         let columns = vec![
             Column::words("term").at_most(22),
@@ -36,7 +35,7 @@ impl Glossary {
             Column::words("what it is").at_most(160),
         ];
         let row = |term: &Term| {
-            // Other words for a term find it too: they stand behind what can be seen of the sentence.
+            // Synonyms are appended after the visible text, so that the filter finds them.
             let text = match term.aka.as_slice() {
                 [] => term.text.clone(),
                 words => format!("{} Also: {}.", term.text, words.join(", ")),
@@ -82,7 +81,7 @@ impl Dialog for Glossary {
     }
 
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
-        // The wheel walks over the list.
+        // The wheel moves the selection.
         let action = match action {
             Action::ScrollUp => Action::Up,
             Action::ScrollDown => Action::Down,
@@ -94,7 +93,7 @@ impl Dialog for Glossary {
         match action {
             Action::Open => self.open(),
             Action::Close | Action::Cancel => Outcome::close(),
-            // An explanation over the list leads on to a screen.
+            // Prevents a second glossary from opening over an explanation.
             Action::Glossary => Outcome::stay(),
             other if other.entry().scope == Scope::Global => Outcome::close_with(vec![Effect::Do(other)]),
             _ => Outcome::stay(),
@@ -158,7 +157,7 @@ impl Glossary {
         canvas.text(area, &rule, Role::Border);
         let text = format!("{} {}", term.text, self.numbers.fill(&term.more));
         let rest = Rect { y: area.y + 1, height: area.height - 1, ..area };
-        // The picture stands beside the text, where that keeps half of the width.
+        // The picture is drawn next to the text if half of the width remains.
         let has_picture = term_picture::has_picture(&term.id) && area.width >= 2 * term_picture::COLUMNS;
         let taken = if has_picture { term_picture::COLUMNS } else { 0 };
         let words = Rect { width: area.width - taken, ..rest };

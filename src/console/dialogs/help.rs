@@ -1,4 +1,4 @@
-//! The keys that work here: those of the focused pane first, then those of the screen, then what works everywhere.
+//! The help: keys of the focused pane, of the screen, and global keys.
 
 use ratatui::layout::Rect;
 
@@ -11,24 +11,23 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::editor::EDITING;
 use novamind_tui::widgets::{Cell, Column, Table};
 
-/// The keys of a place.
+/// The help dialog.
 pub struct Help {
     title: String,
     table: Table,
 }
 
-/// Keys that work in the same part of the program.
 struct Part {
     name: &'static str,
     scopes: Vec<Scope>,
     actions: Vec<Action>,
 }
 
-/// What chooses among rows, which only lists have.
+/// Actions that only lists support.
 const CHOOSES: [Action; 2] = [Action::Filter, Action::Sort];
 
 impl Help {
-    /// Shows the keys of a screen whose panes have these, the focused one first.
+    /// Lists the keys of a screen with these panes, the focused one first.
     pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &Keys) -> Help {
         let mut table = table_of(parts(panes, replay), keys);
         if panes.first().is_some_and(|pane| pane.scopes.contains(&Scope::Editor)) {
@@ -41,7 +40,7 @@ impl Help {
         Help { title: format!("Keys: {title}"), table }
     }
 
-    /// Shows the keys of a dialog, where what works on screens does not.
+    /// Lists the keys of a dialog, without those of screens.
     pub fn of_dialog(dialog: &dyn Dialog, keys: &Keys) -> Help {
         let scopes = dialog.scopes();
         let hints = dialog.hints().into_iter();
@@ -58,14 +57,13 @@ impl Help {
         Help { title: format!("Keys: {}{step}", dialog.what()), table: table_of([own, lists], keys) }
     }
 
-    /// The rows as text.
     #[cfg(test)]
     fn rows(&self) -> Vec<Vec<String>> {
         self.table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
     }
 }
 
-/// A row for each action of the parts that has a key there, or none at all.
+/// Builds a row for each action that has a key.
 fn table_of(parts: impl IntoIterator<Item = Part>, keys: &Keys) -> Table {
     let columns = vec![
         Column::words("where").at_most(8),
@@ -107,7 +105,7 @@ fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec
     ]
 }
 
-/// The parts in their order. Moving in lists is the same everywhere and comes late.
+/// Orders the parts. List navigation is the same everywhere and comes late.
 fn parts(panes: &[PaneKeys], replay: bool) -> Vec<Part> {
     let with_global = |scopes: &[Scope]| {
         let replayed = replay && !scopes.first().is_some_and(|scope| scope.is_text());
@@ -127,7 +125,7 @@ fn parts(panes: &[PaneKeys], replay: bool) -> Vec<Part> {
     let own = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
     for (scope, name) in [(Scope::Viewer, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
         if own.contains(&scope) {
-            // A form moves like a list, but has nothing to filter or to sort.
+            // A form moves like a list but cannot be filtered or sorted.
             let idle = |action: &Action| own.contains(&Scope::Form) && CHOOSES.contains(action);
             let actions = of(scope).filter(|action| !idle(action)).collect();
             parts.push(Part { name, scopes: own.clone(), actions });
@@ -209,7 +207,7 @@ mod tests {
         let filters: Vec<&str> =
             rows.iter().filter(|row| row[2] == "filter").map(|row| row[0].as_str()).collect();
         assert_eq!(filters, ["screen"], "a form has nothing to filter");
-        assert_eq!(rows[1][..3], ["pane", "esc", "close"], "what one does most comes first");
+        assert_eq!(rows[1][..3], ["pane", "esc", "close"], "the most common action comes first");
         let place = |title: &str| rows.iter().position(|row| row[2] == title).expect(title);
         assert_eq!(rows[place("open")][..2], ["screen", "enter"], "enter opens in the list only");
         assert!(place("apply") < place("open") && place("open") < place("up") && place("up") < place("quit"));
@@ -221,11 +219,11 @@ mod tests {
         let mut titles: Vec<&String> = rows.iter().map(|row| &row[3]).collect();
         titles.sort_unstable();
         titles.dedup();
-        assert_eq!(titles.len(), rows.len(), "nothing is told twice");
-        // A key that an inner place uses is not promised to an outer one.
+        assert_eq!(titles.len(), rows.len(), "no action is listed twice");
+        // A key that an inner scope uses is not listed for an outer one.
         let query = pane("Results", &[Scope::Result, Scope::List], &[]);
         let rows = Help::new(ScreenId::Sql, &[query], false, &keys).rows();
-        assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the whole cell here");
+        assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the full value here");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The page of a lesson: the whole task, the answer to its question, hints, another try.
+//! The lesson page: task, question, hints and retries.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
@@ -16,35 +16,30 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{Field, Scroll};
 use novamind_worker::request::{LessonRequest, Request};
 
-/// Widest page that reads well.
 const WIDEST: u16 = 84;
 
-/// The page.
+/// The lesson page.
 #[derive(Default)]
 pub struct LessonDialog {
     scroll: Scroll,
-    /// The answer to the question, while it is given.
     answer: Option<AnswerField>,
-    /// It was opened for the answer alone.
+    /// Whether it was opened only to answer the question.
     only_asks: bool,
 }
 
-/// An answer that is given.
 #[derive(Default)]
 struct AnswerField {
     number: Field,
-    /// Place of the choice, from 0.
     choice: usize,
     problem: Option<String>,
 }
 
 impl LessonDialog {
-    /// The question of the step, and nothing else.
+    /// Opens only the question of the step.
     pub fn asking() -> LessonDialog {
         LessonDialog { answer: Some(AnswerField::default()), only_asks: true, ..LessonDialog::default() }
     }
 
-    /// The question that is answered.
     fn asked<'a>(&self, look: &Look<'a>) -> Option<&'a LessonQuestion> {
         let question = look.company.lesson.as_ref()?.question.as_ref()?;
         (self.answer.is_some() && question.guess.is_none()).then_some(question)
@@ -86,7 +81,6 @@ impl LessonDialog {
         if self.only_asks { Outcome::close_with(effects) } else { Outcome::with(effects) }
     }
 
-    /// An action while the question is answered.
     fn act_on_answer(&mut self, action: Action, question: &LessonQuestion) -> Outcome {
         let last = question.choices.len().saturating_sub(1);
         let Some(answer) = &mut self.answer else { return Outcome::stay() };
@@ -136,7 +130,7 @@ impl LessonDialog {
         for (row, line) in rows.by_ref().zip(&text) {
             canvas.text(row, line, Role::Strong);
         }
-        // `zip` has taken one row more than there are lines: the gap.
+        // `zip` has consumed one row more than there are lines: the gap.
         for (at, lines) in &choices {
             let here = *at == answer.choice;
             for (row, (number, line)) in rows.by_ref().take(lines.len()).zip(lines.iter().enumerate()) {
@@ -203,19 +197,19 @@ impl Dialog for LessonDialog {
                 return Outcome::with(vec![Effect::Request(Request::Lesson(LessonRequest::Hint))]);
             }
             Action::NextHint => {
-                return Outcome::with(vec![Effect::Complain("there is no further hint".to_owned())]);
+                return Outcome::with(vec![Effect::Complain("there are no more hints".to_owned())]);
             }
             Action::NextPart => {
                 return match page.next_part {
                     Some(part) => begin_part(part),
                     None => Outcome::with(vec![Effect::Complain(
-                        "there is no next part, or this one is not over".to_owned(),
+                        "there is no next part, or this part has not ended".to_owned(),
                     )]),
                 };
             }
             Action::Debrief if offered => return Outcome::close_with(vec![Effect::ShowDebrief]),
             Action::Debrief => {
-                let text = "the debrief comes once this part of the lesson is over".to_owned();
+                let text = "the debrief is available after this part of the lesson has ended".to_owned();
                 return Outcome::with(vec![Effect::Complain(text)]);
             }
             Action::TryAgain => return Outcome::with(vec![Effect::TryStepAgain(step_to_try(page))]),
@@ -246,7 +240,7 @@ impl Dialog for LessonDialog {
             KeyCode::Char('%') if count == 0 => answer.number.insert("%"),
             _ => {
                 if count == 0 && !answer.number.number_key(key) {
-                    answer.problem = Some("type a number".to_owned());
+                    answer.problem = Some("enter a number".to_owned());
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! What lies over a screen for a while.
+//! Dialogs over a screen.
 
 pub mod again;
 pub mod branches;
@@ -36,112 +36,112 @@ use novamind_report::Story;
 use novamind_tools::Refusal;
 use novamind_tui::canvas::Canvas;
 
-/// What follows from an action in a dialog.
+/// The outcome of an action in a dialog.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// Effects.
+    /// Effects to execute.
     pub effects: Vec<Effect>,
-    /// The dialog is done with.
+    /// Whether the dialog closes.
     pub close: bool,
-    /// It is done with because the person did what it is for.
+    /// Whether it closes because the user completed it.
     pub confirmed: bool,
 }
 
 impl Outcome {
-    /// The dialog stays.
+    /// Keeps the dialog open.
     pub fn stay() -> Outcome {
         Outcome::default()
     }
 
-    /// The dialog closes.
+    /// Closes the dialog as completed.
     pub fn close() -> Outcome {
         Outcome { close: true, ..Outcome::default() }
     }
 
-    /// The dialog closes and something follows.
+    /// Closes the dialog as completed and executes effects.
     pub fn close_with(effects: Vec<Effect>) -> Outcome {
         Outcome { effects, close: true, confirmed: true }
     }
 
-    /// The dialog is left, and something follows all the same.
+    /// Cancels the dialog and executes effects.
     pub fn leave_with(effects: Vec<Effect>) -> Outcome {
         Outcome { effects, close: true, confirmed: false }
     }
 
-    /// Something follows; the dialog stays.
+    /// Executes effects and keeps the dialog open.
     pub fn with(effects: Vec<Effect>) -> Outcome {
         Outcome { effects, ..Outcome::default() }
     }
 }
 
-/// One dialog.
+/// A dialog.
 pub trait Dialog {
-    /// What it is, as the record names it.
+    /// Returns the name in the record.
     fn what(&self) -> String;
 
-    /// The step it is at, if it has steps.
+    /// Returns the current step, if the dialog has steps.
     fn step(&self) -> Option<&'static str> {
         None
     }
 
-    /// The term that it explains now.
+    /// Returns the term that it explains.
     fn term(&self) -> Option<String> {
         None
     }
 
-    /// The text that is being edited in it: its place, as the record names it, and what it says.
+    /// Returns the recorded place and the content of the text that is being edited.
     fn edited(&self) -> Option<(String, String)> {
         None
     }
 
-    /// Scopes, the innermost first.
+    /// Returns the scopes, the innermost first.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Actions worth showing in the footer.
+    /// Returns the actions to show in the footer.
     fn hints(&self) -> Vec<Action>;
 
-    /// The same, where they depend on the company.
+    /// Returns the actions to show in the footer, if they depend on the company.
     fn hints_here(&self, _: &Look<'_>) -> Vec<Action> {
         self.hints()
     }
 
-    /// Whether an action from everywhere goes before what its key means in dialogs.
+    /// Returns whether a global action takes precedence over the dialog's own bindings.
     fn goes_before(&self, _: Action) -> bool {
         false
     }
 
-    /// Does an action of its scopes.
+    /// Handles an action of its scopes.
     fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome;
 
-    /// Takes a typed key.
+    /// Handles a key without an action.
     fn key(&mut self, _: &KeyEvent, _: &Look<'_>) -> Outcome {
         Outcome::stay()
     }
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     fn paste(&mut self, _: &str, _: &Look<'_>) -> Outcome {
         Outcome::stay()
     }
 
-    /// Takes the answer that it waits for, if it has arrived.
+    /// Takes the awaited answer if it has arrived.
     fn take_answers(&mut self) {}
 
-    /// Takes the story of the run, which was told meanwhile.
+    /// Takes the run report.
     fn take_story(&mut self, _: &Arc<Story>) {}
 
-    /// Takes the debrief of the lesson, which was found meanwhile.
+    /// Takes the debrief of the lesson.
     fn take_debrief(&mut self, _: &Arc<Result<Debrief, Refusal>>) {}
 
-    /// A row was clicked.
+    /// Handles a click on a row.
     fn click(&mut self, _: usize, _: &Look<'_>) -> Outcome {
         Outcome::stay()
     }
 
-    /// Draws itself over the screen.
+    /// Draws the dialog over the screen.
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
 }
 
-/// Draws a dialog over an empty screen of a size; what is seen as text.
+/// Draws a dialog over an empty screen and returns the text.
 #[cfg(test)]
 fn picture(
     dialog: &dyn Dialog,

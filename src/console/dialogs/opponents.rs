@@ -1,4 +1,4 @@
-//! What the strong policies make of the world of a run that is over, beside the run.
+//! Comparison of a finished run with strong policies on the same scenario and seed.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
@@ -17,12 +17,11 @@ use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::company::Company;
 use novamind_worker::questions::OpponentsQuestion;
 
-/// Widest that reads well, and its rows.
 const SIZE: (u16, u16) = (96, 16);
 /// Columns before the bars: mark, name, score.
 const NAMED: usize = 38;
 
-/// The page.
+/// The opponents page.
 #[derive(Default)]
 pub struct OpponentsPage {
     found: Option<Result<Opponents, Refusal>>,
@@ -30,7 +29,7 @@ pub struct OpponentsPage {
 }
 
 impl OpponentsPage {
-    /// Asks for the opponents, which `play` plays.
+    /// Requests the opponents, which `play` simulates.
     pub fn new(play: PlayOpponents) -> (OpponentsPage, Ask) {
         let (asked, ask) = Pending::asking(OpponentsQuestion(play));
         (OpponentsPage { found: None, asked }, ask)
@@ -68,7 +67,7 @@ impl Dialog for OpponentsPage {
         canvas.pane_keys(own, &look.hints(&self.hints()));
         let width = inside.width as usize;
         let (role, told) = match &self.found {
-            None => (Role::Warning, "strong policies play this world from day 0 …".to_owned()),
+            None => (Role::Warning, "simulating the strong policies from day 0 …".to_owned()),
             Some(Err(refusal)) => (Role::Bad, refusal.message.clone()),
             Some(Ok(opponents)) => (Role::Dim, opponents.in_words()),
         };
@@ -82,7 +81,7 @@ impl Dialog for OpponentsPage {
     }
 }
 
-/// The policies, and the run among them where it has a score.
+/// Ranks the policies, and the run if it has a score.
 fn ranked<'a>(
     canvas: &Canvas<'_>,
     company: &Company,
@@ -152,7 +151,7 @@ mod tests {
     fn it_says_what_it_waits_for_and_why_there_is_nothing_in_windows_of_every_size() {
         let company = Company::of(&test_kit::ruined());
         let waits = OpponentsPage::default();
-        assert!(picture(&waits, &company, 60, 14).contains("strong policies play this world"));
+        assert!(picture(&waits, &company, 60, 14).contains("simulating the strong policies"));
         let refused = page(Err(Refusal::new("not_possible", "parameters were set")));
         assert!(picture(&refused, &company, 60, 14).contains("parameters were set"));
         for (width, height) in

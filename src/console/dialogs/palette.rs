@@ -1,4 +1,4 @@
-//! The palette: screens, tools, groups, queries, tables and commands, found by typing parts of their names.
+//! The command palette: finds screens, tools, groups, queries, tables and commands by parts of their names.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -20,13 +20,11 @@ use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 use novamind_worker::company::Company;
 
-/// Tools that stand first before anything is typed.
 const RECENT: usize = 5;
 
-/// Something that can be chosen.
 struct PaletteEntry {
     kind: &'static str,
-    /// What finds it at once when it is typed whole; empty if it has none.
+    /// Code that selects the entry when typed completely; may be empty.
     code: &'static str,
     title: String,
     doc: String,
@@ -35,7 +33,6 @@ struct PaletteEntry {
 }
 
 impl PaletteEntry {
-    /// Other words that people type for it.
     fn synonyms(&self) -> &'static [&'static str] {
         let Effect::Do(action) = &self.effect else { return &[] };
         match action {
@@ -54,7 +51,7 @@ impl PaletteEntry {
         }
     }
 
-    /// How much of its name was typed; less is better.
+    /// Returns how well the typed text matches the name; less is better.
     fn closeness(&self, typed: &str, in_title: bool) -> Closeness {
         let typed = typed.to_lowercase();
         let title = self.title.to_lowercase();
@@ -69,7 +66,7 @@ impl PaletteEntry {
         }
     }
 
-    /// What acts stands before what is asked, that before what is only read.
+    /// Ranks actions before queries, and queries before texts.
     fn order(&self) -> usize {
         ["tool", "command", "group", "query", "table", "term"]
             .iter()
@@ -78,32 +75,30 @@ impl PaletteEntry {
     }
 }
 
-/// How much of the name of an entry was typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Closeness {
-    /// It begins with it.
+    /// The name starts with the typed text.
     Prefix,
-    /// One of its words, or another word for it, begins with it.
+    /// A word or synonym starts with the typed text.
     Word,
-    /// The letters stand in it, in this order.
+    /// The name contains the letters in order.
     Letters,
-    /// Its explanation holds it.
+    /// The description contains the typed text.
     Text,
 }
 
-/// The palette.
+/// The command palette.
 pub struct Palette {
     entries: Vec<PaletteEntry>,
-    /// Tools that were called last, the newest first.
     recent: Vec<ToolId>,
     field: Field,
-    /// Entries that match, the best first, with the letters that matched.
+    /// Matching entries, the best first, with the positions of matched letters.
     found: Vec<Found>,
     selected: usize,
 }
 
 impl Palette {
-    /// Everything that can be chosen now.
+    /// Lists everything that can be chosen now.
     pub fn new(keys: &Keys, company: &Company, library: &Library) -> Palette {
         let mut palette = Palette {
             entries: entries(keys, company, library),
@@ -116,7 +111,7 @@ impl Palette {
         palette
     }
 
-    /// The same for a participant of a study: what is not theirs is left out, and they can withdraw.
+    /// Restricts the palette to participants of a study, and adds withdrawal.
     pub fn of_participant(mut self, has_tour: bool) -> Palette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,
@@ -153,9 +148,9 @@ impl Palette {
             .filter(|at| self.found.iter().all(|(found, _)| found != at));
         let named: Vec<Found> = named.map(|at| (at, Vec::new())).collect();
         self.found.extend(named);
-        // A code says exactly what is meant. Tools, commands and screens come before what only asks or explains, if their
-        // names hold what was typed as a word; letters here and there count less, a word of an explanation least. Before
-        // anything is typed, the tools that were used last come first.
+        // An exact code ranks first. Tools, commands and screens whose names contain the typed text as a word rank
+        // before queries and texts; scattered letters rank lower, words of a description last. Without input,
+        // recently used tools come first.
         let entries = &self.entries;
         let recent = |at: usize| match typed.is_empty() {
             true => self.recent.iter().position(|tool| tool.name() == entries[at].title),
@@ -170,7 +165,7 @@ impl Palette {
                 return (0, 0, Closeness::Prefix);
             }
             let closeness = entry.closeness(typed, !letters.is_empty());
-            // The name of a screen or a group that was typed whole is what is meant.
+            // An exact name of a screen or a group ranks first.
             let whole = entry.order() < 3 && entry.title.eq_ignore_ascii_case(typed);
             let tier = match closeness {
                 _ if whole => 1,
@@ -191,7 +186,7 @@ impl Palette {
     }
 }
 
-/// Tools that were called last, the newest first, each once.
+/// Returns recently called tools, the newest first, without duplicates.
 fn recent(company: &Company) -> Vec<ToolId> {
     let mut tools = Vec::new();
     for entry in company.journal.iter().rev() {
@@ -206,7 +201,6 @@ fn recent(company: &Company) -> Vec<ToolId> {
     tools
 }
 
-/// Why an entry can do nothing now.
 fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     let acts = |tool: &ToolId| tool.spec().kind.acts();
     match effect {
@@ -215,15 +209,14 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
         }
         Effect::ShowTool(tool) if acts(tool) && company.replayed => Some("this is a replay"),
         Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
-            Some("the run is over")
+            Some("the run has ended")
         }
         Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has run yet"),
-        Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run is over"),
+        Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run has ended"),
         _ => None,
     }
 }
 
-/// Whether a tool or a screen is not in the lesson that is played.
 fn is_outside_lesson(effect: &Effect, company: &Company) -> bool {
     let screen = |action: Action| ScreenId::ALL.into_iter().find(|screen| screen.action() == action);
     match effect {
@@ -368,7 +361,7 @@ impl Dialog for Palette {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
             canvas.click(row, Click::Row(0, place));
         }
-        canvas.pane_keys(own, "type to find · up/down choose · enter take · esc close");
+        canvas.pane_keys(own, "type to search · up/down select · enter choose · esc close");
     }
 }
 

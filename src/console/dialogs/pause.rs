@@ -1,4 +1,4 @@
-//! Why the clock is stopped, where the study asks.
+//! Asks for the reason of a pause, if the study requires one.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -11,7 +11,7 @@ use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 
-/// The question.
+/// The dialog.
 #[derive(Default)]
 pub struct PauseReason {
     reason: Field,
@@ -62,7 +62,7 @@ impl Dialog for PauseReason {
         canvas.clear(own, Role::Text);
         let inside = canvas.pane(own, "Stop the clock", "", true);
         let row = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), height: 1, ..inside };
-        canvas.text(row, "Why do you stop? The time counts until you have said so.", Role::Text);
+        canvas.text(row, "Why do you stop? The time counts until you answer.", Role::Text);
         self.reason.draw(canvas, Rect { y: row.y + 1, ..row });
         if self.empty {
             canvas.text(Rect { y: row.y + 2, ..row }, "! a reason is required", Role::Bad);

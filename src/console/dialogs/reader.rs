@@ -1,4 +1,4 @@
-//! Text to read: the dashboard, a whole cell, the changes of the week.
+//! A text viewer: the dashboard, a full cell value, the changes of the week.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -10,7 +10,7 @@ use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Text with a title.
+/// A text with a title.
 pub struct Reader {
     title: String,
     text: String,
@@ -18,7 +18,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Shows text.
+    /// Shows a text.
     pub fn new(title: impl Into<String>, text: impl Into<String>) -> Reader {
         Reader { title: title.into(), text: text.into(), from: 0 }
     }

@@ -1,5 +1,5 @@
-//! The report of a week: how cash changed and what that consists of, which figures changed most unusually, what was set before it,
-//! what is new and where to look, what became of the forecasts, what comes next.
+//! The weekly report: cash and its components, unusual changes, decisions, news, due forecasts, and what needs
+//! attention.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -23,33 +23,29 @@ use novamind_tui::text::{arrow, flowed, wrapped};
 use novamind_tui::theme::Role;
 use novamind_worker::company::Company;
 
-/// Widest that reads well.
 const WIDEST: u16 = 116;
-/// From this width on, what is said of a figure stands beside it, otherwise below it.
+/// Minimum width for comments next to the figures; in narrower windows they are below.
 const BESIDE: u16 = 100;
-/// Place of the unusual changes among the parts.
 const MOVES: usize = 2;
 
 /// The report of the last week.
 pub struct Report {
     remark: Option<String>,
-    /// The line whose figure is selected: that of cash, then those that changed most unusually.
+    /// The selected line: cash first, then the most unusual changes.
     selected: usize,
 }
 
 impl Report {
-    /// The report; with what the person should know about the saving of the week.
+    /// Opens the report, with a remark on how the week was saved.
     pub fn new(remark: Option<String>) -> Report {
         Report { remark, selected: 0 }
     }
 
-    /// Selects a line; so many are shown.
     fn select(&mut self, to: usize, look: &Look<'_>) -> Outcome {
         self.selected = to.min(usize::from(look.page).saturating_sub(1));
         Outcome::stay()
     }
 
-    /// The figure of the selected line.
     fn figure(&self, look: &Look<'_>) -> Option<Figure> {
         let name = match self.selected.checked_sub(1) {
             None => METRICS.first()?.name,
@@ -61,7 +57,6 @@ impl Report {
     }
 }
 
-/// A part of the report: a heading and its lines.
 type Section<'a> = Vec<Line<'a>>;
 
 impl Dialog for Report {
@@ -115,19 +110,20 @@ impl Dialog for Report {
             canvas.click(row, Click::Row(0, at));
         }
         let close = look.hint(Action::Cancel);
-        // The first week has none before it.
+        // The change of the first week has no explanation: there is no previous week.
         let why = match look.company.tells_causes() && look.company.weeks.len() > 1 {
             true => format!(" · {}", look.hint(Action::Why)),
             false => String::new(),
         };
         let again =
-            look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} shows it again"));
+            look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} reopens it"));
         canvas.pane_keys(own, &format!("{close}{why}{again}"));
     }
 }
 
 impl Report {
-    /// All lines for a room: what may be left out gives way to what may not. Then the places of those that can be selected.
+    /// Returns the lines that fit into a height, and the positions of selectable lines. Optional lines are dropped
+    /// first.
     fn lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -142,7 +138,7 @@ impl Report {
         let notices = &look.company.notices;
         let news = news(canvas, told, width, look);
         let decided = decided(canvas, told, width, if height >= 26 { 6 } else { 2 });
-        // Headings and the blank lines between five parts.
+        // Headings and blank lines between five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
@@ -156,7 +152,7 @@ impl Report {
             decided,
             with_heading(canvas, &heading_of_moves(told), moves),
             news.into_iter().chain(notice_lines(canvas, look.company, width, left.min(8))).collect(),
-            with_heading(canvas, "What comes next", coming),
+            with_heading(canvas, "Action needed", coming),
         ];
         let (mut lines, mut places) = (Vec::new(), vec![0]);
         for (at, part) in parts.into_iter().enumerate() {
@@ -180,7 +176,7 @@ impl Report {
         let mut lines = vec![Line::from(vec![
             canvas.span(format!("Cash {}  ", dollars(told.week.cash)), self.role_of(0, Role::Strong)),
             canvas.span(arrow(change, &dollars(change.abs())), role),
-            canvas.span(" over the week", Role::Dim),
+            canvas.span(" this week", Role::Dim),
         ])];
         let parts: Vec<String> =
             told.parts.iter().map(|(name, amount)| format!("{name} {}", signed_dollars(*amount))).collect();
@@ -189,13 +185,13 @@ impl Report {
         let remark = self.remark.iter().flat_map(|remark| wrapped(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         if told.was_filed_at_limit() {
-            let text = "The time for this week was over: it was filed with the naive projection.";
+            let text = "The time for this week ran out: it was submitted with the projection.";
             let said = wrapped(text, width as usize).into_iter();
             lines.extend(said.map(|line| Line::from(canvas.span(line, Role::Warning))));
         }
         let due = told.due.iter().take(forecasts);
         lines.extend(due.map(|due| forecast_line(canvas, due, told.is_of_limit(due), width)));
-        // Forecasts without room are still counted: the journal holds them.
+        // Forecasts that do not fit are counted; the journal lists them.
         let left_out = told.due.len().saturating_sub(forecasts);
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
             last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
@@ -205,12 +201,12 @@ impl Report {
 }
 
 impl Report {
-    /// How the name of a line is written; those that cannot be asked about are never selected.
+    /// Returns the style of a line's name. Lines without an explanation cannot be selected.
     fn role_of(&self, line: usize, own: Role) -> Role {
         if self.selected == line { Role::Selection } else { own }
     }
 
-    /// The most unusual moves that have room, and the line in which each begins.
+    /// Returns the most unusual changes that fit, and the line at which each starts.
     fn moved<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -219,7 +215,7 @@ impl Report {
         room: usize,
     ) -> (Section<'a>, Vec<usize>) {
         if told.moves.is_empty() {
-            return (vec![Line::from(canvas.span("  nothing", Role::Dim))], Vec::new());
+            return (vec![Line::from(canvas.span("  none", Role::Dim))], Vec::new());
         }
         let (mut lines, mut starts) = (Vec::new(), Vec::new());
         for (at, own) in told.moves.iter().enumerate() {
@@ -234,7 +230,7 @@ impl Report {
     }
 }
 
-/// What the changes are against, where the two weeks are not as long.
+/// Names the reference of the changes if the two weeks differ in length.
 fn heading_of_moves(told: &WeekReport) -> String {
     match &told.short {
         Some(short) => format!("Most unusual changes · a week {short}"),
@@ -246,35 +242,35 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> S
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// What was said of the week's last day, and what came. `of_limit` says that nobody said it: the program filed it.
+/// Describes a due forecast and the actual value. With `of_limit`, the program submitted it when time ran out.
 fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Line<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
     let who = match (of_limit, width) {
         (false, _) => "you",
-        (true, 90..) => "the naive projection filed at the limit",
-        (true, _) => "the naive one filed at the limit",
+        (true, 90..) => "the projection submitted at the limit",
+        (true, _) => "the projection at the limit",
     };
     let said = |write: fn(f64) -> String| {
         let Forecast { point, lower, upper, .. } = due.forecast;
-        format!("{ago} {who} said {}, {} to {}: ", write(point), write(lower), write(upper))
+        format!("{ago} {who} forecast {}, {} to {}: ", write(point), write(lower), write(upper))
     };
-    // With a sign that needs no colour.
+    // The symbol makes the verdict readable without color.
     let (verdict, role) = match due.verdict() {
-        Some(Verdict::Inside) => ("✓ inside", Role::Good),
-        Some(Verdict::Above) => ("▲ above", Role::Warning),
-        Some(Verdict::Below) => ("▼ below", Role::Warning),
+        Some(Verdict::Inside) => ("✓ in range", Role::Good),
+        Some(Verdict::Above) => ("▲ actual above range", Role::Warning),
+        Some(Verdict::Below) => ("▼ actual below range", Role::Warning),
         None => ("open", Role::Dim),
     };
-    let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", point {miss}"));
-    // Rounded ends can seem to hold what they do not: to the dollar, as the cash above them, where there is room.
+    let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", forecast {miss}"));
+    // Rounded bounds could seem to contain the actual value: exact dollars are used if they fit.
     let exact = said(dollars);
     let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
     let said = if fits { exact } else { said(short_dollars) };
     Line::from(vec![canvas.span(said, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
 }
 
-/// What was decided before the week, in so many lines at the most.
+/// Lists the decisions before the week in at most `most` lines.
 fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Section<'a> {
     let lines = |pieces: &[String]| flowed(pieces, (width as usize).saturating_sub(9));
     let mut shown = told.decided.len();
@@ -294,7 +290,7 @@ fn decided<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) 
     found.into_iter().enumerate().map(line).collect()
 }
 
-/// A move in a line or two; the one that is selected is marked.
+/// Formats a change in one or two lines; the selected one is marked.
 fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16, name: Role) -> Section<'a> {
     let role = match own.good {
         Some(true) => Role::Good,
@@ -326,19 +322,19 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &Move, width: u16, name: Role) -> Se
     vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
 }
 
-/// What is new, each with the key of the screen that shows it, in as many lines as it takes.
+/// Lists what is new, with the keys of the screens.
 fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>) -> Section<'a> {
     let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
         (told.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
         (told.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
         (told.customer_posts, "post", "posts", Some(ScreenId::Social)),
-        (told.comments, "comment on ours", "comments on ours", Some(ScreenId::Social)),
+        (told.comments, "comment on our posts", "comments on our posts", Some(ScreenId::Social)),
         (told.news_items, "news item", "news items", Some(ScreenId::Social)),
         (
             told.week.research_finished,
-            "finished R&D project or study",
-            "finished R&D projects and studies",
-            // The notices below tell what they were; projects and studies have screens of their own.
+            "completed project or study",
+            "completed projects and studies",
+            // The notices below name them; projects and studies are on different screens.
             None,
         ),
     ];
@@ -348,7 +344,7 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
     for (at, (count, one, more, screen)) in found.iter().enumerate() {
         let dot = if at > 0 { " · " } else { "" };
         let text = format!("{dot}{} {}", grouped(f64::from(*count), 0), if *count == 1 { one } else { more });
-        // What leads to the same screen shares its key.
+        // Consecutive items of a screen share its key.
         let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
         let key = screen
             .filter(|_| last)
@@ -369,7 +365,7 @@ fn news<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, look: &Look<'_>)
     lines.into_iter().map(Line::from).collect()
 }
 
-/// The last notices that have room; equal ones are counted.
+/// Lists the latest notices that fit; repeated ones are counted.
 fn notice_lines<'a>(canvas: &Canvas<'_>, company: &Company, width: u16, room: usize) -> Section<'a> {
     let mut told: Vec<(u32, String, u32)> = Vec::new();
     for (day, text) in company.notices.iter().rev() {
@@ -393,17 +389,18 @@ fn notice_lines<'a>(canvas: &Canvas<'_>, company: &Company, width: u16, room: us
     told.into_iter().rev().map(line).collect()
 }
 
-/// What needs the person, in two rows each at most, and the key that goes on. A proposal that fits is told where there is room.
+/// Lists action items in at most two rows each, and the key that continues. Suggestions are included if there is
+/// space.
 fn next<'a>(canvas: &Canvas<'_>, needs: &[Need], width: u16, roomy: bool, look: &Look<'_>) -> Section<'a> {
     if needs.is_empty() && !look.company.is_running() {
         let (page, others) =
             (look.keys.label(Action::NextWeek).unwrap_or_default(), [Action::Branches, Action::WriteReport]);
-        let text = format!("  the run is over: {page} final page · {}", look.hints(&others));
+        let text = format!("  the run has ended: {page} final page · {}", look.hints(&others));
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
     if needs.is_empty() {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
-        let text = format!("  nothing waits; {key} starts the next week");
+        let text = format!("  nothing needs attention; {key} starts the next week");
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
     let lines = |need: &Need| {
@@ -445,16 +442,16 @@ mod tests {
                 "Week 8 · day 56",
                 "Cash $",
                 "payments +$",
-                "a week ago you said",
+                "a week ago you forecast",
                 "Most unusual changes",
                 "New  ",
-                "What comes next",
+                "Action needed",
             ] {
                 assert!(text.contains(part), "{part} is missing at {name}:\n{text}");
             }
         }
         assert!(large.matches(" → ").count() > small.matches(" → ").count(), "{large}");
-        assert!(large.contains("4 weeks ago you said"), "{large}");
+        assert!(large.contains("4 weeks ago you forecast"), "{large}");
     }
 
     #[test]

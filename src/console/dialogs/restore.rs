@@ -1,4 +1,4 @@
-//! Texts that were typed when the program was stopped: back to where they were typed, or dropped.
+//! Offers drafts that were unsent when the program stopped: restore or discard them.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -11,17 +11,15 @@ use novamind_tui::canvas::{Canvas, centered, fit};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Widest that reads well.
 const WIDEST: u16 = 76;
 
 /// The offer.
 pub struct Restore {
-    /// Place and text of each.
     texts: Vec<(String, String)>,
 }
 
 impl Restore {
-    /// Offers texts with their places.
+    /// Offers drafts with their places.
     pub fn new(texts: Vec<(String, String)>) -> Restore {
         Restore { texts }
     }
@@ -52,7 +50,7 @@ impl Dialog for Restore {
         let room = usize::from(area.height.saturating_sub(5)).max(1);
         let each = (room / self.texts.len().max(1)).saturating_sub(1).max(1);
         let width = usize::from(area.width.min(WIDEST).saturating_sub(4)).max(8);
-        let mut lines = vec![Line::from(canvas.span("Not sent when the program last stopped:", Role::Text))];
+        let mut lines = vec![Line::from(canvas.span("Unsent when the program last stopped:", Role::Text))];
         for (place, text) in &self.texts {
             lines.push(Line::from(canvas.span(fit(place, width), Role::Header)));
             let shown = last_lines(text, width.saturating_sub(2), each).into_iter();
@@ -64,11 +62,11 @@ impl Dialog for Restore {
         canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         let restore = look.keys.label(Action::RestoreTexts).unwrap_or_default();
         let drop = look.keys.label(Action::DropTexts).unwrap_or_default();
-        canvas.pane_keys(own, &format!("{restore} restore · {drop} drop"));
+        canvas.pane_keys(own, &format!("{restore} restore · {drop} discard"));
     }
 }
 
-/// The end of a text, where it was being written, in so many lines.
+/// Returns the last lines of a text, where the user was writing.
 fn last_lines(text: &str, width: usize, most: usize) -> Vec<String> {
     let lines: Vec<String> =
         wrapped(text, width).into_iter().filter(|line| !line.trim().is_empty()).collect();

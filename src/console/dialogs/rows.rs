@@ -1,4 +1,4 @@
-//! The rows that make up a figure, and the query they come from.
+//! The source rows of a figure, and their query.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -19,10 +19,9 @@ use novamind_tui::widgets::Table;
 use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::queries::{QueriedTables, Query};
 
-/// Most lines of the query that are shown above its rows.
 const QUERY_LINES: usize = 6;
 
-/// The rows behind a figure.
+/// The dialog.
 pub struct RowsBehind {
     title: String,
     sql: String,
@@ -32,7 +31,7 @@ pub struct RowsBehind {
 }
 
 impl RowsBehind {
-    /// Asks the question behind a figure.
+    /// Requests the source rows of a figure.
     pub fn new(title: String, sql: String) -> (RowsBehind, Ask) {
         let of = QueriedTables::Visible(QuerySource::DrillDown);
         let (asked, ask) = Pending::asking(Query { sql: sql.clone(), of });

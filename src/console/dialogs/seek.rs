@@ -1,4 +1,4 @@
-//! Going to a week of a replay by its number.
+//! Asks for the week that playback should seek to.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -12,7 +12,7 @@ use novamind_tui::canvas::{Canvas, centered};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 
-/// Asks for the number of a week.
+/// The dialog.
 pub struct Seek {
     weeks: u32,
     field: Field,
@@ -20,7 +20,7 @@ pub struct Seek {
 }
 
 impl Seek {
-    /// For a record of so many weeks.
+    /// Opens it for a record of `weeks` weeks.
     pub fn new(weeks: u32) -> Seek {
         Seek { weeks, field: Field::default(), problem: None }
     }
@@ -30,7 +30,7 @@ impl Seek {
         match typed.parse::<u32>() {
             Ok(week) if week <= self.weeks => Outcome::close_with(vec![Effect::Go(Goal::Week(week))]),
             Ok(week) => {
-                self.problem = Some(format!("week {week} was not recorded; the last one is {}", self.weeks));
+                self.problem = Some(format!("week {week} was not recorded; the last week is {}", self.weeks));
                 Outcome::stay()
             }
             Err(_) => {
@@ -89,7 +89,7 @@ impl Dialog for Seek {
         let below = Rect { y: row.y + 2, ..row }.intersection(inside);
         match &self.problem {
             Some(problem) => canvas.text(below, problem, Role::Bad),
-            None => canvas.text(below, "the company at the end of that week", Role::Dim),
+            None => canvas.text(below, "shows the end of that week", Role::Dim),
         }
         canvas.pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
     }

@@ -1,4 +1,4 @@
-//! Going on from a moment of a replay: which mode the new run has.
+//! Taking over a playback: asks for the mode of the new run.
 
 use ratatui::layout::Rect;
 
@@ -12,10 +12,10 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::request::Request;
 
-/// Modes that are offered; a branch is never a baseline.
+/// A branch is never a baseline.
 const MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
 
-/// Asks how to go on.
+/// The dialog.
 pub struct TakeOver {
     day: u32,
     week: u32,
@@ -23,7 +23,7 @@ pub struct TakeOver {
 }
 
 impl TakeOver {
-    /// From a day on, before a week.
+    /// Opens it for a branch at a day before a week.
     pub fn new(day: u32, week: u32) -> TakeOver {
         TakeOver { day, week, selected: 0 }
     }
@@ -65,7 +65,7 @@ impl Dialog for TakeOver {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let text = format!(
-            "A new run starts here, on day {} before week {}, with everything done up to this moment. The recorded run is not changed.",
+            "A new run starts here, on day {} before week {}, with everything done so far. The recorded run does not change.",
             self.day, self.week
         );
         let lines = wrapped(&text, 72);

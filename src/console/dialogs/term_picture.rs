@@ -1,4 +1,4 @@
-//! Small pictures beside terms of the glossary: figures of the company that is on the screen, drawn as charts are.
+//! Charts for glossary terms, from figures of the open company.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -13,18 +13,16 @@ use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use novamind_tui::widgets::scale::Unit;
 use novamind_worker::company::Company;
 
-/// Lowest picture that can be read.
+/// Minimum height, in rows.
 pub const LEAST_ROWS: u16 = 7;
-/// Narrowest picture that can be read.
 const LEAST_COLUMNS: u16 = 20;
-/// Most rows that one takes.
+/// Maximum height, in rows.
 pub const MOST_ROWS: u16 = 11;
-/// Columns that one takes beside text.
+/// Width next to a text, in columns.
 pub const COLUMNS: u16 = 44;
-/// Rows that its caption takes at most.
 const CAPTION: usize = 3;
 
-/// Draws the picture of a term, if it has one.
+/// Draws the chart of a term, if it has one.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Company) {
     let seen = SeenFigures {
         weeks: &company.weeks,

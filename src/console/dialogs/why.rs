@@ -1,4 +1,4 @@
-//! Why a figure of a week changed: the equation, and a line with a bar for each cause.
+//! Causes of the change of a weekly figure: the equation, and a bar for each cause.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -17,14 +17,13 @@ use novamind_tui::widgets::spark::bar;
 use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::causes::WhyQuestion;
 
-/// Widest that reads well.
 const WIDEST: u16 = 110;
-/// Causes that stay on screen beside a long sentence.
+/// Minimum number of visible causes below a long text.
 const LEAST_LISTED: usize = 4;
 
-/// Why a figure changed.
+/// The dialog.
 pub struct WhyBox {
-    /// What was asked about, with the rows behind it.
+    /// The figure, with its source rows.
     figure: Figure,
     quantity: WeekQuantity,
     week: u32,
@@ -34,7 +33,7 @@ pub struct WhyBox {
 }
 
 impl WhyBox {
-    /// Asks for the causes of a figure of a week.
+    /// Requests the causes of the change of a figure in a week.
     pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (WhyBox, Ask) {
         let (asked, ask) = Pending::asking(WhyQuestion { quantity, week });
         (WhyBox { figure, quantity, week, asked, answer: None, selected: 0 }, ask)
@@ -48,29 +47,28 @@ impl WhyBox {
         self.selected = to.min(self.why().map_or(0, |why| why.parts.len()));
     }
 
-    /// To the form of what was decided; what nobody decided has the rows of the figure.
+    /// Opens the form of the decision, or the source rows for other causes.
     fn follow(&self) -> Outcome {
         let Some(why) = self.why() else { return Outcome::stay() };
         Outcome::close_with(match why.parts.get(self.selected).map(|part| part.cause) {
-            // A report may lie below.
+            // Closes a weekly report below.
             Some(Cause::Calls(tool)) => vec![Effect::CloseDialogs, Effect::ShowTool(tool)],
             _ => vec![Effect::ShowRows(self.figure.clone())],
         })
     }
 
-    /// The same question about another week, if there is one that has a week before it.
+    /// Asks the same question for another week, if that week has a previous one.
     fn turn(&self, week: u32, look: &Look<'_>) -> Outcome {
         let last = look.company.weeks.len() as u32;
         if !(2..=last).contains(&week) {
             return Outcome::stay();
         }
-        // The rows of the figure are those of its own week.
+        // The source rows belong to the figure's own week.
         let title = format!("{} in week {week}", self.quantity.name());
         let figure = Figure { title, sql: None, why: Some((self.quantity, week)), ..self.figure.clone() };
         Outcome::close_with(vec![Effect::AskWhy(figure)])
     }
 
-    /// What is going on while there is no answer.
     fn waiting(&self) -> String {
         match self.asked.progress() {
             None => "reading the record …".to_owned(),
@@ -81,7 +79,7 @@ impl WhyBox {
         }
     }
 
-    /// A cause, its share, a bar, and what differed as far as there is room.
+    /// Formats a cause, its contribution and a bar, with differing inputs if they fit.
     fn line<'a>(
         canvas: &Canvas<'_>,
         cause: &CauseLine,
@@ -168,7 +166,7 @@ impl Dialog for WhyBox {
         };
         let inside = canvas.pane(own, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // The list scrolls, the sentence does not.
+        // The list scrolls, the text does not.
         let listed = causes.len().min(LEAST_LISTED);
         let shown = text.len().min((inside.height as usize).saturating_sub(listed + gap).max(1));
         for (row, line) in rows_of(inside).zip(text.iter().take(shown)) {
@@ -191,7 +189,7 @@ impl Dialog for WhyBox {
             canvas.click(row, Click::Row(0, at));
         }
         let label = |action| look.keys.label(action).unwrap_or_default();
-        let weeks = format!("{} {} other week", label(Action::Left), label(Action::Right));
+        let weeks = format!("{} {} change week", label(Action::Left), label(Action::Right));
         let keys = match self.why() {
             Some(_) => format!("{} · {weeks} · {}", look.hint(Action::Open), look.hint(Action::Close)),
             None => format!("{weeks} · {}", look.hint(Action::Close)),
@@ -272,10 +270,10 @@ mod tests {
     fn another_week_is_asked_about_and_none_without_a_week_before_it() {
         let company = novamind_worker::company::Company::of(&crate::test_kit::played(4));
         let (mut dialog, _) = WhyBox::new(asked(), cancellations(), 3);
-        assert!(dialog_picture(&dialog, &company, 80, 24).contains("other week"));
+        assert!(dialog_picture(&dialog, &company, 80, 24).contains("change week"));
         for (action, week) in [(Action::Left, 2), (Action::Right, 4)] {
             let outcome = in_dialog(&mut dialog, action, &company);
-            assert!(outcome.close, "what is closed is not answered any more");
+            assert!(outcome.close, "a closed dialog takes no answer");
             let asked = outcome.effects.first();
             let Some(Effect::AskWhy(figure)) = asked else { panic!("nothing is asked") };
             assert_eq!(figure.why, Some((cancellations(), week)));

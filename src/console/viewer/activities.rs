@@ -1,4 +1,4 @@
-//! What a person did besides acting, in few words.
+//! Short descriptions of recorded user activity.
 
 use super::told::time;
 use novamind_record::trajectory::record::{
@@ -7,11 +7,10 @@ use novamind_record::trajectory::record::{
 };
 use novamind_tui::theme::Role;
 
-/// An activity in a line.
 pub(super) fn brief(activity: &Activity) -> (String, Role) {
     let text = match activity {
         Activity::View(view) => format!("viewed {} for {}", view.screen, time(view.for_ms)),
-        Activity::Select(select) if select.what == "command" => format!("asked for {}", select.which),
+        Activity::Select(select) if select.what == "command" => format!("used command {}", select.which),
         Activity::Select(select) => format!("opened {} {}", select.what, select.which),
         Activity::Dialog(dialog) => {
             let end = match dialog.outcome {
@@ -41,7 +40,7 @@ pub(super) fn brief(activity: &Activity) -> (String, Role) {
             let what = match clock.event {
                 ClockEvent::Stopped => "stopped the clock",
                 ClockEvent::Started => "started the clock",
-                ClockEvent::Forgotten => "the clock stood when the program ended",
+                ClockEvent::Forgotten => "the clock was stopped when the program ended",
             };
             let reason = clock.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
             let stood = clock.stood_ms.map_or(String::new(), |ms| format!(" after {}", time(ms)));
@@ -56,16 +55,16 @@ pub(super) fn brief(activity: &Activity) -> (String, Role) {
             let what = match limit.event {
                 LimitEvent::Warned => "warned of",
                 LimitEvent::Reminded => "reminded of",
-                LimitEvent::FiledNaively => "filed naively at",
+                LimitEvent::FiledNaively => "submitted with projection at",
                 LimitEvent::Paused => "stopped by",
             };
-            return (format!("{what} the limit of {} minutes a {scope}", limit.minutes), Role::Warning);
+            return (format!("{what} the limit of {} minutes per {scope}", limit.minutes), Role::Warning);
         }
         Activity::Question(asked) => format!("asked: {}", asked.text),
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),
         Activity::Answer(answer) => format!("{}: {}", answer.id, answer.value),
         Activity::Lesson(note) => novamind_report::lesson::in_words(note),
-        Activity::Look(look) => format!("read from outside: {} {}", look.command, look.detail),
+        Activity::Look(look) => format!("read by another program: {} {}", look.command, look.detail),
         Activity::Xray(look) => format!("x-ray of day {}: {} {}", look.shown_day, look.what, look.which),
     };
     (text, Role::Dim)
@@ -82,13 +81,13 @@ fn presence_in_words(presence: &Presence) -> String {
             Some(LeavingCause::EndOfInput) => "closed: the input ended".to_owned(),
             Some(LeavingCause::Signal) => "closed by a signal".to_owned(),
             Some(LeavingCause::Hangup) => "closed with its terminal".to_owned(),
-            Some(LeavingCause::Strict) => "closed by a refusal".to_owned(),
+            Some(LeavingCause::Strict) => "closed by a rejection".to_owned(),
             Some(LeavingCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
         },
-        PresenceEvent::Idle => format!("no key for {}", time(presence.idle_ms.unwrap_or(0))),
-        PresenceEvent::Active => format!("a key after {}", time(presence.idle_ms.unwrap_or(0))),
-        PresenceEvent::FocusLost => "another window had the focus".to_owned(),
-        PresenceEvent::FocusGained => "this window had the focus again".to_owned(),
+        PresenceEvent::Idle => format!("no input for {}", time(presence.idle_ms.unwrap_or(0))),
+        PresenceEvent::Active => format!("input after {}", time(presence.idle_ms.unwrap_or(0))),
+        PresenceEvent::FocusLost => "window lost the focus".to_owned(),
+        PresenceEvent::FocusGained => "window regained the focus".to_owned(),
         PresenceEvent::Suspended => "suspended by the shell".to_owned(),
         PresenceEvent::Resumed => "resumed".to_owned(),
         PresenceEvent::Resized => match presence.window {
@@ -132,7 +131,7 @@ mod tests {
         assert!(words.starts_with("next week: confirmed after ") && words.contains("rationale "), "{words}");
         assert_eq!(told(Activity::Draft(draft)), "notes: 20 characters left unsent, 12 pasted");
         assert_eq!(told(Activity::Help(help)), "looked up churn in customers");
-        assert_eq!(told(Activity::Select(select)), "asked for fit S1");
+        assert_eq!(told(Activity::Select(select)), "used command fit S1");
         assert!(told(Activity::Clock(clock)).starts_with("started the clock after "));
     }
 }

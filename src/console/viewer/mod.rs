@@ -1,4 +1,4 @@
-//! A recorded run on the screen: where it is, whether it plays and how fast, what was decided there.
+//! Playback state in the console: position, speed and displayed decisions.
 
 mod activities;
 mod pane;
@@ -13,40 +13,40 @@ pub use pane::EntriesShown;
 
 use novamind_session::PlaybackPosition;
 
-/// Pauses between two weeks, in milliseconds, and how fast that is.
+/// Pause between two weeks in milliseconds, and the label of the speed.
 const SPEEDS: [(u64, &str); 6] = [
-    (4_000, "¼ week a second"),
-    (2_000, "½ week a second"),
-    (1_000, "1 week a second"),
-    (500, "2 weeks a second"),
-    (200, "5 weeks a second"),
+    (4_000, "¼ week per second"),
+    (2_000, "½ week per second"),
+    (1_000, "1 week per second"),
+    (500, "2 weeks per second"),
+    (200, "5 weeks per second"),
     (0, "full speed"),
 ];
 
-/// A replay on the screen.
+/// Playback in the console.
 pub struct Viewer {
-    /// Where it is.
+    /// The position.
     pub place: PlaybackPosition,
-    /// It goes on by itself.
+    /// Whether it is playing.
     pub playing: bool,
-    /// The decisions stand beside the screen, where there is room.
+    /// Whether the decisions are shown next to the screen if there is space.
     pub shows_decisions: bool,
-    /// It was sent somewhere.
+    /// Whether it is seeking.
     pub goes: bool,
-    /// Stops it on the way.
+    /// Stops seeking.
     pub stop: Arc<AtomicBool>,
-    /// The next week was asked for.
+    /// Whether the next week was requested.
     pub ordered: bool,
     speed: usize,
-    /// Rows by which the person has scrolled the decisions away from where the replay is.
+    /// Rows that the user has scrolled the decisions from the current position.
     scroll: i32,
 }
 
 impl Viewer {
-    /// Columns from which the decisions have room beside the screen.
+    /// Minimum width for the decisions next to the screen, in columns.
     pub const BESIDE: u16 = 120;
 
-    /// A replay that stands still.
+    /// Returns a paused playback.
     pub fn new(place: PlaybackPosition) -> Viewer {
         Viewer {
             place,
@@ -60,7 +60,7 @@ impl Viewer {
         }
     }
 
-    /// It has got somewhere, as asked or by itself.
+    /// Handles the arrival at a position.
     pub fn arrive(&mut self, place: PlaybackPosition, asked: bool) {
         if place.line != self.place.line {
             self.scroll = 0;
@@ -72,18 +72,18 @@ impl Viewer {
         }
     }
 
-    /// One step faster or slower.
+    /// Changes the speed by one step.
     pub fn change_speed(&mut self, faster: bool) {
         let speed = if faster { self.speed + 1 } else { self.speed.saturating_sub(1) };
         self.speed = speed.min(SPEEDS.len() - 1);
     }
 
-    /// How fast it plays.
+    /// Returns the label of the speed.
     pub fn speed_in_words(&self) -> &'static str {
         SPEEDS[self.speed].1
     }
 
-    /// Between two weeks.
+    /// Returns the pause between two weeks.
     pub fn pause(&self) -> Duration {
         Duration::from_millis(SPEEDS[self.speed].0)
     }

@@ -1,4 +1,4 @@
-//! What was decided before the next week, beside the screen.
+//! The pane with the decisions of the next week, next to the screen.
 
 use ratatui::layout::Rect;
 
@@ -11,17 +11,16 @@ use novamind_tui::canvas::{Canvas, Click, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Columns a screen needs beside the decisions.
 const OF_SCREEN: u16 = 80;
-/// Columns of the decisions.
+/// Minimum and maximum columns of the pane.
 const COLUMNS: (u16, u16) = (40, 60);
 
-/// What of the record is told beside the figures.
+/// Which entries of the record the pane shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EntriesShown {
     /// Everything that was done.
     All,
-    /// What was decided: from far away nobody reads what was asked.
+    /// Only decisions, for the projector view.
     Decisions,
 }
 
@@ -32,7 +31,7 @@ impl EntriesShown {
 }
 
 impl Viewer {
-    /// Columns that the decisions take from the screen; none where they are hidden or there is no room.
+    /// Returns the columns of the pane, or 0 if it is hidden or does not fit.
     pub fn columns(&self, area: Rect) -> u16 {
         let room = area.width.saturating_sub(OF_SCREEN);
         match self.shows_decisions && area.width >= Viewer::BESIDE {
@@ -41,14 +40,14 @@ impl Viewer {
         }
     }
 
-    /// Draws the decisions; what was not done yet at this moment is dim.
+    /// Draws the decisions; those after the current position are dimmed.
     pub fn draw_decisions(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>, shown: EntriesShown) {
         let chapter = &self.place.chapter;
         let note = format!("{}/{} done", chapter.done, chapter.entries.len());
         let inside = canvas.pane(area, &super::told::title(chapter), &note, false);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows: Vec<(String, Role)> = Vec::new();
-        // The row at which the next action stands.
+        // The row of the next action.
         let mut next = None;
         for (at, entry) in chapter.entries.iter().enumerate().filter(|(_, entry)| shown.holds(entry)) {
             let done = at < chapter.done;
@@ -71,11 +70,11 @@ impl Viewer {
             }
         }
         if rows.is_empty() {
-            rows.push(("nothing was recorded after this moment".to_owned(), Role::Dim));
+            rows.push(("nothing recorded after this moment".to_owned(), Role::Dim));
         }
         let height = inside.height as usize;
         let last = rows.len().saturating_sub(height);
-        // The next action stands in the middle.
+        // The next action is centered.
         let from = next.unwrap_or(rows.len()).saturating_sub(height / 2).min(last);
         let from = (from as i32 + self.scroll).clamp(0, last as i32) as usize;
         for (row, (text, role)) in rows_of(inside).zip(rows.iter().skip(from)) {

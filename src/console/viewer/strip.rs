@@ -1,4 +1,4 @@
-//! The line below the screens of a replay: where it is between the first day and the last, and whether it plays.
+//! The playback bar below the screen: position and state.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -8,11 +8,10 @@ use crate::action::Action;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::theme::Role;
 
-/// Least columns of the bar.
 const LEAST_BAR: u16 = 8;
 
 impl Viewer {
-    /// Draws the line.
+    /// Draws the playback bar.
     pub fn draw_strip(&self, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.clear(row, Role::SelectionIdle);
         let place = &self.place;
@@ -47,7 +46,7 @@ impl Viewer {
                 break;
             }
             let own = Rect { width, ..left };
-            // The background of the line, the colour of the meaning.
+            // The background of the line with the foreground of the role.
             let style = canvas.style(role);
             canvas.text(own, &text, Role::SelectionIdle);
             if let Some(colour) = style.fg {
@@ -65,7 +64,7 @@ impl Viewer {
     }
 }
 
-/// A position between the first line and the last: `━━━━●────`.
+/// Draws a position between the first and the last line: `━━━━●────`.
 fn bar(line: usize, lines: usize, width: u16) -> String {
     let room = width.max(1) as usize - 1;
     let before = match lines {

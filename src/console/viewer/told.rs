@@ -1,4 +1,4 @@
-//! Decisions of a week in words: in few for the pane, in full to read.
+//! Descriptions of the decisions of a week: brief for the pane, complete for reading.
 
 use super::activities;
 use crate::screens::journal::entries::in_words;
@@ -12,15 +12,15 @@ use novamind_report::deals::deals_in_words;
 use novamind_session::{Chapter, CompanyNames, PlaybackPosition, RecordView, ScoredForecast, naively};
 use novamind_tui::theme::Role;
 
-/// Longest JSON that is written in one line, in bytes.
+/// Maximum length of JSON in one line, in bytes.
 const ONE_LINE: usize = 90;
 
-/// What the decisions are of.
+/// Returns the title of a chapter.
 pub fn title(chapter: &Chapter) -> String {
     format!("Decided before week {}", chapter.week)
 }
 
-/// A line of the record in few words, with its meaning.
+/// Describes a line of the record briefly, in styled lines.
 pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
     let one = |text: String, role: Role| vec![(text, role)];
     match &entry.record {
@@ -29,7 +29,7 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
             let sql = query.sql.split_whitespace().collect::<Vec<_>>().join(" ");
             let answer = match answered(query) {
                 Ok(rows) => format!("{}, {:.0} ms", count(rows as u32, "row"), query.took_ms),
-                Err(code) => format!("refused: {code}"),
+                Err(code) => format!("rejected: {code}"),
             };
             vec![(sql, Role::Keyword), (answer, Role::Dim)]
         }
@@ -49,7 +49,7 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
             one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
         }
         Record::Voice(said) => one(voice_in_brief(said), Role::Dim),
-        Record::End(end) => one(format!("the run was over: {}", end.reason.id()), Role::Warning),
+        Record::End(end) => one(format!("the run ended: {}", end.reason.id()), Role::Warning),
         Record::Branch(Branch { from: Some(parent) }) => {
             one(format!("branched off run {} here", parent.run), Role::Warning)
         }
@@ -57,7 +57,6 @@ pub fn brief(entry: &RecordView, names: &CompanyNames) -> Vec<(String, Role)> {
     }
 }
 
-/// What a language model said.
 fn voice_in_brief(said: &VoiceAnswer) -> String {
     match said {
         VoiceAnswer::Scores(judged) => {
@@ -66,7 +65,7 @@ fn voice_in_brief(said: &VoiceAnswer) -> String {
             format!("a language model judged post {}: {}", judged.post, scores.join(", "))
         }
         VoiceAnswer::Words(worded) => format!("a language model worded {} posts", worded.posts.len()),
-        VoiceAnswer::Failed(failed) => format!("the language model did not serve: {}", failed.problem),
+        VoiceAnswer::Failed(failed) => format!("the language model failed: {}", failed.problem),
     }
 }
 
@@ -85,12 +84,12 @@ fn call_in_brief(call: &Call, names: &CompanyNames) -> Vec<(String, Role)> {
             vec![(format!("{sign}{named}"), Role::Text)]
         }
         Outcome::Refused(refusal) => {
-            vec![(named, Role::Text), (format!("refused: {}", refusal.message), Role::Bad)]
+            vec![(named, Role::Text), (format!("rejected: {}", refusal.message), Role::Bad)]
         }
     }
 }
 
-/// Rows of the answer, or the code of what was wrong.
+/// Returns the number of rows, or the error code.
 fn answered(query: &Query) -> Result<u64, &str> {
     query.rows.ok_or(query.error.as_deref().unwrap_or_default())
 }
@@ -121,11 +120,11 @@ fn verdict(scored: &ScoredForecast) -> &'static str {
     if scored.is_inside() { "inside" } else { "OUTSIDE" }
 }
 
-/// Everything that was decided, with arguments, statements and answers.
+/// Describes all decisions with arguments, statements and results.
 pub fn whole(place: &PlaybackPosition, names: &CompanyNames) -> String {
     let chapter = &place.chapter;
     let mut parts = vec![format!(
-        "Day {}, before week {}. Outcomes marked “later” come from later in the record; nobody knew them then.",
+        "Day {}, before week {}. Outcomes marked “later” come from later in the record and were unknown then.",
         chapter.day, chapter.week
     )];
     for (at, entry) in chapter.entries.iter().enumerate() {
@@ -154,10 +153,10 @@ fn in_full(entry: &RecordView, names: &CompanyNames) -> String {
             };
             match outcome {
                 Outcome::Accepted(answer) => {
-                    format!("{tool}{remark}\n{}\n  answered\n{}", pretty(args), pretty(answer))
+                    format!("{tool}{remark}\n{}\n  result\n{}", pretty(args), pretty(answer))
                 }
                 Outcome::Refused(refusal) => {
-                    format!("{tool}\n{}\n  refused: {}", pretty(args), refusal.message)
+                    format!("{tool}\n{}\n  rejected: {}", pretty(args), refusal.message)
                 }
             }
         }
@@ -165,9 +164,9 @@ fn in_full(entry: &RecordView, names: &CompanyNames) -> String {
             let sql = query.sql.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n");
             match answered(query) {
                 Ok(rows) => {
-                    format!("asked\n{sql}\n  {} in {:.1} ms", count(rows as u32, "row"), query.took_ms)
+                    format!("query\n{sql}\n  {} in {:.1} ms", count(rows as u32, "row"), query.took_ms)
                 }
-                Err(code) => format!("asked\n{sql}\n  refused: {code}"),
+                Err(code) => format!("query\n{sql}\n  rejected: {code}"),
             }
         }
         Record::Advance(filed) => {
@@ -197,7 +196,6 @@ fn forecast_in_full(scored: &ScoredForecast, later: bool) -> String {
     )
 }
 
-/// A time somebody looked at something.
 pub(super) fn time(milliseconds: u64) -> String {
     match milliseconds / 1000 {
         0 => "a moment".to_owned(),
@@ -237,7 +235,7 @@ mod tests {
         assert_eq!(said(accepted(Some(Reversal::Redoes(4)))), ["redo: set_prices A 12"]);
         let (code, message) = ("price_not_positive".to_owned(), "too low".to_owned());
         let refused = Outcome::Refused(RefusalRecord { code, message, ..RefusalRecord::default() });
-        assert_eq!(said(call(json!({"A": -1}), refused, None)), ["set_prices A -1", "refused: too low"]);
+        assert_eq!(said(call(json!({"A": -1}), refused, None)), ["set_prices A -1", "rejected: too low"]);
         let query = |rows, error: Option<&str>| {
             let (sql, error) = ("SELECT 1\n FROM x".to_owned(), error.map(str::to_owned));
             Record::Query(Query {
@@ -252,7 +250,7 @@ mod tests {
             })
         };
         assert_eq!(said(query(Some(1200), None)), ["SELECT 1 FROM x", "1,200 rows, 3 ms"]);
-        assert_eq!(said(query(None, Some("sql_error"))), ["SELECT 1 FROM x", "refused: sql_error"]);
+        assert_eq!(said(query(None, Some("sql_error"))), ["SELECT 1 FROM x", "rejected: sql_error"]);
         for (for_ms, words) in [(400, "a moment"), (1_500, "1 s"), (83_000, "1 min 23 s")] {
             let view = View { screen: "cash".to_owned(), from: String::new(), for_ms };
             assert_eq!(said(Record::Activity(Activity::View(view))), [format!("viewed cash for {words}")]);
@@ -260,7 +258,7 @@ mod tests {
         let from = Some(Parent { run: "aa".to_owned(), seq: 3 });
         assert_eq!(said(Record::Branch(Branch { from })), ["branched off run aa here"]);
         let end = End { reason: Ended::Horizon, cash: 4.0, score: Some(4.0) };
-        assert_eq!(said(Record::End(end)), ["the run was over: horizon"]);
+        assert_eq!(said(Record::End(end)), ["the run ended: horizon"]);
     }
 
     #[test]

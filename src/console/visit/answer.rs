@@ -1,4 +1,4 @@
-//! The answer to a question of a study, while it is given.
+//! The draft of an answer to a study question.
 
 use std::time::Duration;
 
@@ -11,37 +11,37 @@ use novamind_study::{DueQuestion, Form};
 use novamind_tui::widgets::{Editor, Field};
 use novamind_worker::request::GivenAnswer;
 
-/// What was entered so far.
+/// The input so far.
 #[derive(Debug, Clone)]
 pub enum Entered {
-    /// A point of a scale, or one of some options: its place from 0.
+    /// A point of a scale or one of several options, by index.
     One(Option<usize>),
-    /// Some of several options, and the one that the next mark is for.
+    /// Several options, and the option under the cursor.
     Several(Vec<bool>, usize),
-    /// A number, as it is typed.
+    /// A number as typed.
     Number(Field),
-    /// Words.
+    /// A text.
     Words(Box<Editor>),
 }
 
-/// A question with what was entered so far.
+/// A question with the input so far.
 pub struct AnswerDraft {
     /// The question.
     pub due: DueQuestion,
-    /// What was entered.
+    /// The input.
     pub entered: Entered,
-    /// It was shown before.
+    /// Whether it was shown before.
     pub asked: bool,
-    /// The answer the person went on with last.
+    /// The last confirmed answer.
     confirmed: Option<Value>,
     changes: u32,
-    /// Milliseconds on the screen before it was shown last.
+    /// Milliseconds on the screen in earlier views.
     shown_ms: u64,
     shown: Duration,
 }
 
 impl AnswerDraft {
-    /// A question nobody has seen yet.
+    /// Returns an empty draft of a question that was not shown yet.
     pub fn new(due: DueQuestion) -> AnswerDraft {
         let entered = match &due.question.form {
             Form::Likert { .. } | Form::Choice { several: false, .. } | Form::Attention { .. } => {
@@ -54,17 +54,17 @@ impl AnswerDraft {
         AnswerDraft { due, entered, asked: false, confirmed: None, changes: 0, shown_ms: 0, shown: steady() }
     }
 
-    /// It is on the screen from now on.
+    /// Starts the view timer.
     pub fn show(&mut self) {
         (self.asked, self.shown) = (true, steady());
     }
 
-    /// It is no longer on the screen.
+    /// Pauses the view timer.
     pub fn hide(&mut self) {
         self.shown_ms += steady().saturating_sub(self.shown).as_millis() as u64;
     }
 
-    /// What was entered, as plain mode would have it typed.
+    /// Returns the input in the notation of plain mode.
     fn typed(&self) -> String {
         let number = |at: usize| (at + 1).to_string();
         match &self.entered {
@@ -78,16 +78,18 @@ impl AnswerDraft {
         }
     }
 
-    /// Takes what was entered for the answer.
+    /// Validates and accepts the input as the answer.
     ///
     /// # Errors
-    /// It is none; what would be one.
+    /// The input is invalid; the message says what is expected.
     pub fn confirm(&mut self) -> Result<(), String> {
         let form = &self.due.question.form;
         let typed = self.typed();
         let value = match typed.is_empty() {
             true if !self.due.question.required => Value::Null,
-            true => return Err(format!("an answer is needed: {}", form.value("").err().unwrap_or_default())),
+            true => {
+                return Err(format!("an answer is required: {}", form.value("").err().unwrap_or_default()));
+            }
             false => form.value(&typed).map_err(|expected| format!("needed: {expected}"))?,
         };
         let chosen_live = matches!(self.entered, Entered::One(_));
@@ -97,7 +99,7 @@ impl AnswerDraft {
         Ok(())
     }
 
-    /// The answer that was given.
+    /// Returns the answer.
     pub fn given(&self) -> GivenAnswer {
         GivenAnswer {
             due: self.due.clone(),
@@ -107,19 +109,18 @@ impl AnswerDraft {
         }
     }
 
-    /// How many options there are to choose from.
     fn options(&self) -> usize {
         self.due.question.form.options().len()
     }
 
-    /// Chooses an option: the only one, or marks it or not among several.
+    /// Chooses an option, or toggles it if several can be marked.
     pub fn choose(&mut self, at: usize) {
         if at >= self.options() {
             return;
         }
         match &mut self.entered {
             Entered::One(chosen) => {
-                // The first choice is no change.
+                // The first choice is not a change.
                 self.changes += u32::from(chosen.is_some_and(|before| before != at));
                 *chosen = Some(at);
             }
@@ -131,7 +132,7 @@ impl AnswerDraft {
         }
     }
 
-    /// Does an action on what is entered.
+    /// Handles an action on the input.
     pub fn act(&mut self, action: Action) {
         let last = self.options().saturating_sub(1);
         let step = |at: usize| match action {
@@ -165,7 +166,7 @@ impl AnswerDraft {
         }
     }
 
-    /// Takes a key that is typed; why it does nothing, where that is not seen.
+    /// Handles a typed key. Returns why it was ignored if that is not obvious.
     pub fn key(&mut self, key: &KeyEvent) -> Option<String> {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match (&mut self.entered, key.code) {
@@ -184,7 +185,7 @@ impl AnswerDraft {
         None
     }
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     pub fn paste(&mut self, text: &str) {
         match &mut self.entered {
             Entered::Number(field) => field.insert(text.trim()),

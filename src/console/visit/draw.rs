@@ -1,4 +1,4 @@
-//! How the pages of a visit look.
+//! Drawing of the study pages.
 
 use ratatui::layout::Rect;
 
@@ -10,7 +10,6 @@ use novamind_tui::canvas::{Canvas, centered, rows_of};
 use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 
-/// Widest page that reads well.
 const WIDEST: u16 = 84;
 
 impl VisitPage {
@@ -35,7 +34,7 @@ impl VisitPage {
             let told = wrapped(&text, width.saturating_sub(4) as usize);
             lines.extend(told.into_iter().map(|line| (line, role)));
         }
-        // Where the window is small, blank lines give way to what is said.
+        // In small windows, blank lines are dropped first.
         if lines.len() + 2 > body.height as usize {
             lines.retain(|(line, _)| !line.is_empty());
         }
@@ -67,12 +66,11 @@ impl VisitPage {
         }
     }
 
-    /// Title and paragraphs.
     fn said(&self, key: &dyn Fn(Action) -> String) -> (&'static str, Vec<(String, Role)>) {
         let text = |words: &str| (words.to_owned(), Role::Text);
         let strong = |words: String| (words, Role::Strong);
         let go = key(Action::GoOn);
-        let next_person = strong(format!("{go} the next participant"));
+        let next_person = strong(format!("{go} next participant"));
         match &self.kind {
             PageKind::Label(_) => {
                 ("Label", vec![strong("Type the label that the experimenter gave you.".to_owned())])
@@ -81,43 +79,43 @@ impl VisitPage {
             PageKind::Wait | PageKind::Consent(_) => ("", vec![text("One moment …")]),
             PageKind::Practice { resumed, may_pass } => {
                 let first = match resumed {
-                    false => {
-                        "The practice comes first: another company, to learn the controls. It does not count."
-                    }
-                    true => "The practice goes on where you left it. It does not count.",
+                    false => "First comes a practice company, to learn the controls. It does not count.",
+                    true => "The practice continues where you left it. It does not count.",
                 };
                 let mut said = vec![text(first)];
-                said.push(text("It ends by itself after its last day. Then the session begins with a company of its own."));
-                said.push(strong(format!("{go} begins the practice")));
+                said.push(text(
+                    "It ends automatically after its last day. The session then starts with a new company.",
+                ));
+                said.push(strong(format!("{go} starts the practice")));
                 if *may_pass {
                     let pass = key(Action::PassPractice);
-                    said.push(strong(format!("{pass} passes over it: the session comes next")));
+                    said.push(strong(format!("{pass} skips it and continues with the session")));
                 }
                 ("Practice", said)
             }
             PageKind::Session { resumed } => {
                 let first = match resumed {
-                    false => "The session begins now.",
-                    true => "The session goes on where you left it.",
+                    false => "The session starts now.",
+                    true => "The session continues where you left it.",
                 };
-                let kept = "Everything you confirm is kept. You can leave at any time and go on later with your label.";
+                let kept = "Everything you confirm is saved. You can leave at any time and continue later with your label.";
                 let palette = key(Action::Palette);
                 let withdraw = format!(
                     "You can withdraw at any time ({palette} {}). That erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
                 let pause = format!(
-                    "For a break, {} stops the clock: the screen is covered, and the time does not count.",
+                    "For a break, {} stops the clock: the screen is hidden, and the time does not count.",
                     key(Action::StopClock)
                 );
-                let goes = strong(format!("{go} {}", if *resumed { "goes on" } else { "begins" }));
+                let goes = strong(format!("{go} {}", if *resumed { "continues" } else { "starts" }));
                 ("Session", vec![text(first), text(kept), text(&pause), text(&withdraw), goes])
             }
             PageKind::Left => (
                 "Left",
                 vec![
                     text(
-                        "Everything is kept. You can go on later: come back to this machine and give your label again.",
+                        "Everything is saved. To continue later, return to this computer and enter your label again.",
                     ),
                     next_person,
                 ],
@@ -125,13 +123,13 @@ impl VisitPage {
             PageKind::Withdraw(None) => {
                 let (yes, no) = (key(Action::Confirm), key(Action::Cancel));
                 let erased =
-                    "Withdrawing erases everything you did in this study, for good. It cannot be undone.";
+                    "Withdrawing permanently erases everything you did in this study. It cannot be undone.";
                 (
                     "Withdraw",
                     vec![
                         text(erased),
                         strong(format!("{yes} withdraw, after one more question")),
-                        strong(format!("{no} go on with the study")),
+                        strong(format!("{no} continue the study")),
                     ],
                 )
             }
@@ -155,7 +153,7 @@ impl VisitPage {
                 "Thank you",
                 vec![
                     text(
-                        "This was all. Thank you for taking part. Everything is recorded; please tell the experimenter.",
+                        "You have finished. Thank you for taking part. Everything is recorded; please tell the experimenter.",
                     ),
                     next_person,
                 ],

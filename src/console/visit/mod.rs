@@ -1,6 +1,6 @@
-//! The way of a participant through a study: label, consent, practice, session, questions, thanks.
+//! The pages of a participant's session: label, consent, practice, session, questions, thanks.
 //!
-//! While it lasts, nothing else of the console can be reached; the experimenter's code opens the rest.
+//! No other part of the console is reachable meanwhile; the experimenter's code opens the rest.
 
 mod answer;
 mod draw;
@@ -15,22 +15,22 @@ use novamind_study::{DueQuestion, NextStep, Study};
 use novamind_tui::widgets::Field;
 use novamind_worker::request::{Request, VisitRequest};
 
-/// What the console knows of the visit, on pages and in runs.
+/// Study state of the console, on pages and in runs.
 pub struct VisitState {
-    /// What participants are shown as the title of the study.
+    /// Title of the study for participants.
     pub title: String,
-    /// The practice shows the tour.
+    /// Whether the practice includes the tour.
     tour: bool,
-    /// What is due and was not answered yet.
+    /// Due questions without an answer.
     pub due: Vec<DueQuestion>,
-    /// The run that is open, or is being opened, is the practice.
+    /// Whether the current run is the practice.
     pub practises: bool,
-    /// The person left the run to withdraw.
+    /// Whether the participant left the run to withdraw.
     pub withdraws: bool,
 }
 
 impl VisitState {
-    /// A visit to a study, before anybody has come.
+    /// Returns the state before the first participant.
     pub fn of(study: &Study) -> VisitState {
         VisitState {
             title: study.protocol.title.clone(),
@@ -41,7 +41,7 @@ impl VisitState {
         }
     }
 
-    /// Whether the tour belongs to the run that is open.
+    /// Returns whether the current run includes the tour.
     pub fn has_tour(&self) -> bool {
         self.tour && self.practises
     }
@@ -49,42 +49,38 @@ impl VisitState {
 
 /// A page outside of a run.
 pub struct VisitPage {
-    /// Title of the study.
     title: String,
     kind: PageKind,
-    /// What went wrong.
     problem: Option<String>,
-    /// Labels that were refused at this page.
+    /// Number of rejected labels on this page.
     refused: u32,
 }
 
-/// What the page is about.
 enum PageKind {
-    /// The participant gives their label.
+    /// The participant enters their label.
     Label(Field),
-    /// The experimenter gives their code.
+    /// The experimenter enters the code.
     Code(Field),
-    /// Something is being looked up.
+    /// Waiting for a response.
     Wait,
-    /// The participant agrees, or not.
+    /// The participant agrees or declines.
     Consent(Agreement),
     /// The practice comes next.
     Practice { resumed: bool, may_pass: bool },
     /// The session comes next.
     Session { resumed: bool },
-    /// The participant has left a run that is not over.
+    /// The participant has left a run that has not ended.
     Left,
-    /// The participant withdraws: they were asked once, and type the word at the second time.
+    /// The participant withdraws: confirmed once, then by typing a word.
     Withdraw(Option<Field>),
-    /// The participant does not agree.
+    /// The participant declined.
     Declined,
-    /// The participant has withdrawn; what is kept of them.
+    /// The participant has withdrawn; describes what is kept.
     Withdrawn(String),
-    /// Everything is done.
+    /// The participant has finished.
     Thanks,
 }
 
-/// The word that confirms a withdrawal.
 const WITHDRAW: &str = "withdraw";
 
 impl VisitPage {
@@ -92,32 +88,32 @@ impl VisitPage {
         VisitPage { title: title.to_owned(), kind, problem: None, refused: 0 }
     }
 
-    /// The page that asks for a label.
+    /// Returns the page that asks for a label.
     pub fn label(title: &str) -> VisitPage {
         VisitPage::new(title, PageKind::Label(Field::default()))
     }
 
-    /// The page while something is looked up.
+    /// Returns the page shown while waiting.
     pub fn wait(title: &str) -> VisitPage {
         VisitPage::new(title, PageKind::Wait)
     }
 
-    /// The page after a run was left before its end.
+    /// Returns the page after a run was left before its end.
     pub fn left(title: &str) -> VisitPage {
         VisitPage::new(title, PageKind::Left)
     }
 
-    /// The page on which somebody withdraws.
+    /// Returns the withdrawal page.
     pub fn withdraw(title: &str) -> VisitPage {
         VisitPage::new(title, PageKind::Withdraw(None))
     }
 
-    /// The page after somebody has not agreed.
+    /// Returns the page after a participant declined.
     pub fn declined(title: &str) -> VisitPage {
         VisitPage::new(title, PageKind::Declined)
     }
 
-    /// The page of what comes next.
+    /// Returns the page of the next step.
     pub fn next(title: &str, step: NextStep) -> VisitPage {
         let kind = match step {
             NextStep::Consent(text) => PageKind::Consent(Agreement::new(text.text)),
@@ -125,7 +121,7 @@ impl VisitPage {
                 PageKind::Practice { resumed: unfinished.is_some(), may_pass }
             }
             NextStep::Session(unfinished) => PageKind::Session { resumed: unfinished.is_some() },
-            // The run opens by itself, with its questions over it.
+            // The run opens automatically, with the questions over it.
             NextStep::Questions(_) => PageKind::Wait,
             NextStep::Thanks => PageKind::Thanks,
             NextStep::Withdrawn(kept) => PageKind::Withdrawn(kept),
@@ -133,19 +129,19 @@ impl VisitPage {
         VisitPage::new(title, kind)
     }
 
-    /// The label was refused; how many were by now.
+    /// Shows why a label was rejected, and counts it.
     pub fn refuse_label(&mut self, problem: String) {
         self.refused += 1;
         let field = Field::default();
         (self.kind, self.problem) = (PageKind::Label(field), Some(problem));
     }
 
-    /// Something went wrong.
+    /// Shows an error.
     pub fn complain(&mut self, problem: String) {
         self.problem = Some(problem);
     }
 
-    /// Scopes of the page.
+    /// Returns the scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.kind {
             PageKind::Label(_) | PageKind::Code(_) | PageKind::Withdraw(Some(_)) => {
@@ -157,7 +153,7 @@ impl VisitPage {
         }
     }
 
-    /// Actions worth showing. The one for experimenters is not.
+    /// Returns the actions for the footer, without the experimenter's action.
     pub fn hints(&self) -> Vec<Action> {
         match &self.kind {
             PageKind::Label(_) => vec![Action::GoOn],
@@ -177,7 +173,7 @@ impl VisitPage {
         }
     }
 
-    /// Does an action.
+    /// Handles an action.
     pub fn act(&mut self, action: Action) -> Vec<Effect> {
         let withdraws = action == Action::Withdraw && self.hints().contains(&action);
         match (&mut self.kind, action) {
@@ -228,7 +224,7 @@ impl VisitPage {
                 self.ask(VisitRequest::Withdraw)
             }
             PageKind::Withdraw(Some(_)) => {
-                self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or esc to go on"));
+                self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or press esc to continue"));
                 Vec::new()
             }
             // The next participant.
@@ -240,13 +236,12 @@ impl VisitPage {
         }
     }
 
-    /// Asks the session's thread for something and waits.
+    /// Sends a request and shows the waiting page.
     fn ask(&mut self, request: VisitRequest) -> Vec<Effect> {
         self.turn_to(PageKind::Wait);
         vec![Effect::Request(Request::Visit(request))]
     }
 
-    /// The field that is typed into.
     fn field(&mut self) -> Option<&mut Field> {
         match &mut self.kind {
             PageKind::Label(field) | PageKind::Code(field) | PageKind::Withdraw(Some(field)) => Some(field),
@@ -254,7 +249,7 @@ impl VisitPage {
         }
     }
 
-    /// Takes a typed key.
+    /// Handles a typed key.
     pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.field() {
             Some(field) => {
@@ -267,7 +262,7 @@ impl VisitPage {
         Vec::new()
     }
 
-    /// Takes pasted text.
+    /// Handles pasted text.
     pub fn paste(&mut self, text: &str) {
         if let Some(field) = self.field() {
             field.insert(text.trim());

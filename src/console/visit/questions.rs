@@ -1,4 +1,4 @@
-//! A page of questions: one after the other, with a way back, until all answers are sent together.
+//! A page of questions, shown one by one; all answers are sent together.
 
 use std::cell::Cell;
 
@@ -19,24 +19,22 @@ use novamind_tui::text::wrapped;
 use novamind_tui::theme::Role;
 use novamind_worker::request::{Request, VisitRequest};
 
-/// Widest lines that read well.
 const WIDEST: u16 = 92;
-/// Said where more options follow.
 const MORE: &str = "  ↓ more";
 
-/// The questions of a questionnaire on one occasion.
+/// The questions of a questionnaire at one occasion.
 pub struct QuestionPage {
     drafts: Vec<AnswerDraft>,
     at: usize,
-    /// First line of what is asked, where it is longer than the window.
+    /// First visible line of the question, if it is longer than the window.
     from: usize,
-    /// Lines of it that could be read in the last frame, and the farthest that shows anything new.
+    /// Visible question lines of the last frame, and the last useful scroll position.
     read: Cell<(usize, usize)>,
     problem: Option<String>,
 }
 
 impl QuestionPage {
-    /// The first page of what is due, and what follows from showing it; none if nothing is due.
+    /// Returns the first page of the due questions and the effect of showing it, or `None` if no question is due.
     pub fn first_of(due: &[DueQuestion]) -> Option<(QuestionPage, Effect)> {
         let first = due.first()?;
         let same = |one: &&DueQuestion| {
@@ -52,12 +50,12 @@ impl QuestionPage {
         &self.drafts[self.at]
     }
 
-    /// Whether the answer is chosen, not typed.
+    /// Returns whether the answer is chosen rather than typed.
     fn chooses(&self) -> bool {
         matches!(self.draft().entered, Entered::One(_) | Entered::Several(..))
     }
 
-    /// Shows a question; what is recorded of that the first time.
+    /// Shows a question. Returns the effect that records it, the first time.
     fn show(&mut self, at: usize) -> Option<Effect> {
         self.at = at.min(self.drafts.len().saturating_sub(1));
         (self.from, self.problem) = (0, None);
@@ -68,7 +66,6 @@ impl QuestionPage {
         fresh.then_some(Effect::Request(Request::Visit(VisitRequest::Ask(question))))
     }
 
-    /// Pages through what is asked.
     fn page(&mut self, forward: bool) {
         let (lines, last) = self.read.get();
         let to = if forward { self.from + lines } else { self.from.saturating_sub(lines) };
@@ -92,14 +89,14 @@ impl QuestionPage {
 
     fn go_back(&mut self) -> Outcome {
         let Some(before) = self.at.checked_sub(1) else {
-            self.problem = Some("this is the first question of the page".to_owned());
+            self.problem = Some("this is the first question of this page".to_owned());
             return Outcome::stay();
         };
         self.drafts[self.at].hide();
         Outcome::with(self.show(before).into_iter().collect())
     }
 
-    /// Title, introduction and question, a line each with its role.
+    /// Returns title, introduction and question as styled lines.
     fn asked(&self, width: usize) -> Vec<(String, Role)> {
         let due = &self.draft().due;
         let mut lines: Vec<(String, Role)> = Vec::new();
@@ -128,7 +125,7 @@ impl Dialog for QuestionPage {
 
     fn hints(&self) -> Vec<Action> {
         let mut hints = Vec::new();
-        // In words its first key begins a new line; the frame says which one goes on.
+        // In a text answer the first key inserts a line break; the frame names the key that continues.
         if !matches!(self.draft().entered, Entered::Words(_)) {
             hints.push(Action::GoOn);
         }
@@ -200,7 +197,7 @@ impl Dialog for QuestionPage {
 }
 
 impl QuestionPage {
-    /// Rooms of what is asked, of the answer, and of a line below.
+    /// Splits the space into question, answer and a line below.
     fn parts(&self, inside: Rect) -> [Rect; 3] {
         let wanted = self.asked(inside.width as usize).len() as u16;
         let rows = form_rows(self.draft(), inside.width).min(inside.height / 2);
@@ -220,7 +217,7 @@ impl QuestionPage {
         let last = lines.len().saturating_sub(room);
         let from = self.from.min(last);
         let more = lines.len() - from > room;
-        // The last row may say that there is more.
+        // The last row may be used for the scroll hint.
         self.read.set((room.saturating_sub(1).max(1), last));
         for (at, (row, (line, role))) in rows_of(area).zip(lines.iter().skip(from)).enumerate() {
             match more && at + 1 == room {
@@ -234,11 +231,11 @@ impl QuestionPage {
         let key = |action| look.keys.label(action).unwrap_or_default();
         let last = self.at + 1 == self.drafts.len();
         let on = match self.draft().entered {
-            // enter is a new line there.
+            // Enter inserts a line break.
             Entered::Words(_) => "tab".to_owned(),
             _ => key(Action::GoOn),
         };
-        let what = if last { "sends the answers" } else { "goes on" };
+        let what = if last { "sends the answers" } else { "continues" };
         let mut words = vec![format!("{on} {what}")];
         if matches!(self.draft().entered, Entered::Words(_)) {
             words.push("enter new line".to_owned());
@@ -247,7 +244,7 @@ impl QuestionPage {
         words.join(" · ")
     }
 
-    /// The key that leaves from here: where one types, none that is a letter.
+    /// Returns the key that leaves the page; not a letter while text is typed.
     fn way_out(&self, keys: &Keys) -> Option<String> {
         let works =
             |chords: &&[Chord]| self.chooses() || chords.first().is_some_and(|chord| !chord.is_text());
@@ -255,22 +252,20 @@ impl QuestionPage {
     }
 }
 
-/// What an answer is, in a line.
 fn said_below(draft: &AnswerDraft) -> String {
     let question = &draft.due.question;
     let expected = match &question.form {
-        Form::Likert { points, .. } => format!("1 to {} or the arrows choose", (*points).min(9)),
-        Form::Choice { several: true, .. } => "space or a number marks; several can be marked".to_owned(),
-        Form::Choice { .. } | Form::Attention { .. } => "a number or the arrows choose".to_owned(),
+        Form::Likert { points, .. } => format!("choose with 1 to {} or the arrows", (*points).min(9)),
+        Form::Choice { several: true, .. } => "mark with space or a number; you can mark several".to_owned(),
+        Form::Choice { .. } | Form::Attention { .. } => "choose with a number or the arrows".to_owned(),
         form => form.value("").err().unwrap_or_default(),
     };
     match question.required {
-        true => format!("{expected}; an answer is needed"),
-        false => format!("{expected}; can be left empty"),
+        true => format!("{expected}; an answer is required"),
+        false => format!("{expected}; optional"),
     }
 }
 
-/// Rows that an answer needs.
 fn form_rows(draft: &AnswerDraft, width: u16) -> u16 {
     match &draft.entered {
         Entered::Number(_) => 1,
@@ -301,7 +296,7 @@ fn draw_form(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
     }
 }
 
-/// A scale with what its ends mean.
+/// Draws a scale with the labels of its ends.
 fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option<usize>, ends: [&str; 2]) {
     let mut rows = rows_of(area);
     let Some(row) = rows.next() else { return };
@@ -309,7 +304,7 @@ fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option
     for at in 0..points {
         let place = Rect { x: row.x + at as u16 * each, width: each - 1, ..row }.intersection(row);
         let here = chosen == Some(at);
-        // With a sign that needs no colour.
+        // Brackets make the choice visible without color.
         let text = if here { format!("[{}]", at + 1) } else { format!(" {} ", at + 1) };
         canvas.text(place, &text, if here { Role::Selection } else { Role::Strong });
         canvas.click(place, Click::Row(0, at));
@@ -327,7 +322,7 @@ fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option
     }
 }
 
-/// Lines of the options: the number of the option, and the line.
+/// Returns the option lines with the index of their option.
 fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
     let sign = |at: usize| match &draft.entered {
         Entered::One(chosen) if *chosen == Some(at) => "(•)",
@@ -337,7 +332,7 @@ fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
     };
     let lines = |(at, option): (usize, String)| {
         let head = format!("{:>2} {} ", at + 1, sign(at));
-        // Beside it there may be a sign that there is more.
+        // Space for the sign that more options follow.
         let room = (width as usize).saturating_sub(head.width() + MORE.width()).max(1);
         let told = wrapped(&option, room).into_iter().enumerate();
         told.map(|(line, text)| {
@@ -357,7 +352,7 @@ fn draw_options(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
     };
     let lines = option_lines(draft, area.width);
     let room = area.height as usize;
-    // The last line of the option that is chosen has to be seen.
+    // The last line of the selected option must be visible.
     let until = lines.iter().rposition(|(at, _)| Some(*at) == here).map_or(0, |at| at + 1);
     let from = until.saturating_sub(room);
     let more = lines.len() - from > room;

@@ -1,13 +1,13 @@
-//! Signs that are drawn instead of written, so that lines join and curves are seen whatever font the reader has.
+//! Characters that are drawn as paths, so that lines connect and curves are visible with any font.
 
 use std::fmt::Write;
 
-/// Thickness of lines and diameter of dots, pixels.
+/// Line width and dot diameter, in pixels.
 const LINE: f64 = 1.2;
 const THICK_LINE: f64 = 2.6;
 const DOT: f64 = 2.3;
 
-/// The outline of a sign in a cell; none for signs that are written.
+/// Returns the path of a character in a cell, or `None` for characters that are written as text.
 pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Option<String> {
     let block = |from: f64, to: f64| rectangle(left, top + height * from, width, height * (to - from));
     Some(match sign {
@@ -25,12 +25,12 @@ pub fn path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Opt
 
 fn rectangle(left: f64, top: f64, width: f64, height: f64) -> String {
     let mut path = String::new();
-    // Writing into a text cannot fail.
+    // Writing to a string cannot fail.
     let _ = write!(path, "M{left:.1} {top:.1}h{width:.1}v{height:.1}h-{width:.1}z");
     path
 }
 
-/// Dots two by four; the low six bits go down the columns, the highest two are the last row.
+/// Two by four dots. The lower six bits run down the columns, the upper two are the last row.
 fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let bits = sign as u32 - 0x2800;
     let places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)];
@@ -44,7 +44,7 @@ fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Stri
     places.iter().enumerate().filter_map(dot).collect()
 }
 
-/// A quarter, a half or three quarters of the cell, in stripes.
+/// Fills a quarter, a half or three quarters of the cell with stripes.
 fn shade(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let share = match sign {
         '░' => 0.25,
@@ -56,13 +56,12 @@ fn shade(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String
     (0..STRIPES).map(|stripe| rectangle(left, top + f64::from(stripe) * step, width, step * share)).collect()
 }
 
-/// The thin sign of a thick one.
 fn thin(sign: char) -> Option<char> {
     let pairs = [('━', '─'), ('┃', '│'), ('┏', '┌'), ('┓', '┐'), ('┗', '└'), ('┛', '┘')];
     pairs.into_iter().find(|(thick, _)| *thick == sign).map(|(_, thin)| thin)
 }
 
-/// Lines from the middle of the cell to some of its sides.
+/// Draws lines from the center of the cell to some of its sides.
 fn corner(sign: char, line: f64, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let (to_left, to_right) = (!"│┌└├".contains(sign), !"│┐┘┤".contains(sign));
     let (up, down) = (!"─┌┐┬".contains(sign), !"─└┘┴".contains(sign));
@@ -93,7 +92,7 @@ mod tests {
         assert_eq!(pieces('┌'), Some(2));
         assert_eq!(pieces('─'), Some(2));
         assert_eq!(pieces('┏'), Some(2));
-        assert_ne!(drawn('┏'), drawn('┌'), "the focus is seen in pictures, too");
+        assert_ne!(drawn('┏'), drawn('┌'), "pictures show the focus");
         assert_eq!(pieces('\u{28ff}'), Some(8));
         assert_eq!(pieces('\u{2801}'), Some(1));
     }

@@ -1,4 +1,4 @@
-//! Horizontal bars with their names and values, on one scale that keeps zero in sight.
+//! Horizontal bars with names and values, on a common scale with zero.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -6,40 +6,38 @@ use unicode_width::UnicodeWidthStr;
 use crate::canvas::{Align, Canvas};
 use crate::theme::Role;
 
-/// Signs that bars of several series are made of: told apart without colour, and in ASCII too.
+/// Characters of the bars of each series, distinguishable without color and in ASCII.
 pub const SIGNS: [&str; 4] = ["█", "▒", "━", "•"];
 
-/// One bar.
+/// A bar.
 pub struct Bar<'a> {
-    /// What it stands for; empty below another bar of the same thing.
+    /// Name; empty below another bar of the same item.
     pub name: &'a str,
-    /// Side to which names are pushed: numbers stand right.
+    /// Alignment of the name: numbers are right-aligned.
     pub side: Align,
-    /// Value; none leaves the bar out.
+    /// Value; `None` draws no bar.
     pub value: Option<f64>,
-    /// Value as it is written.
+    /// Formatted value.
     pub shown: &'a str,
-    /// Number of its series.
+    /// Index of its series.
     pub series: usize,
     /// Whether it is selected.
     pub selected: bool,
 }
 
-/// Where bars, their names and their values stand in a row, and what a cell is worth.
+/// Layout of the names, bars and values of a row, and the scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     names: u16,
     values: u16,
-    /// Cells for bars.
     room: u16,
     /// Cell of zero, among those.
     zero: u16,
-    /// Cells for a unit.
     per_unit: f64,
 }
 
 impl Scale {
-    /// A scale on which all of some bars can be compared, in rows of a width.
+    /// Returns a scale that fits all bars into rows of a width.
     pub fn of<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> Scale {
         let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
         for bar in bars {
@@ -51,7 +49,7 @@ impl Scale {
         let third = (width / 3).max(1);
         let names = (names.min(u16::MAX as usize) as u16).min(third.max(12)).min(width);
         let values = (values.min(u16::MAX as usize) as u16).min(third);
-        // Two blanks, and the line of zero.
+        // Two spaces, and the zero line.
         let room = width.saturating_sub(names + values + 3);
         let span = most - least;
         let per_unit = if span > 0.0 { f64::from(room) / span } else { 0.0 };
@@ -59,7 +57,7 @@ impl Scale {
         Scale { names, values, room, zero: zero.min(room), per_unit }
     }
 
-    /// First cell and number of cells of a bar, left or right of the line of zero. What is not zero is seen.
+    /// Returns the first cell and the number of cells of a bar. Values other than zero have at least one cell.
     fn cells(&self, value: f64) -> (u16, u16) {
         let length = (value.abs() * self.per_unit).round() as u16;
         let length = if value == 0.0 { 0 } else { length.max(1) };
@@ -71,7 +69,7 @@ impl Scale {
         }
     }
 
-    /// Draws a bar into a row.
+    /// Draws a bar in a row.
     pub fn draw(&self, canvas: &mut Canvas<'_>, row: Rect, bar: &Bar<'_>) {
         let name = Rect { width: self.names.min(row.width), ..row };
         if bar.selected {
@@ -115,7 +113,7 @@ mod tests {
         let positive = scale(&[10.0, 5.0, 0.01, 0.0], 32);
         assert_eq!(positive.cells(10.0), (1, 20));
         assert_eq!(positive.cells(5.0), (1, 10));
-        assert_eq!(positive.cells(0.01), (1, 1), "what is not zero is seen");
+        assert_eq!(positive.cells(0.01), (1, 1), "values other than zero are visible");
         assert_eq!(positive.cells(0.0), (1, 0));
         let both = scale(&[-10.0, 30.0], 32);
         assert_eq!(both.cells(-10.0), (0, 5));

@@ -1,4 +1,4 @@
-//! Curves with axes whose labels are round and fit, a light grid, bands, and names at the ends of the curves.
+//! Charts: curves with round axis labels, a grid, bands, and names at the ends of the curves.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -9,51 +9,51 @@ use crate::canvas::{Align, Canvas};
 use crate::text::arrow;
 use crate::theme::Role;
 
-/// Narrowest plot that leaves room for names at the ends of its curves.
+/// Minimum width of a plot with names at the ends of its curves.
 const ROOM_FOR_NAMES: u16 = 36;
 
-/// A line of a chart.
+/// A curve of a chart.
 #[derive(Debug, Clone)]
 pub struct Line {
-    /// Points; those that are no numbers are left out.
+    /// Points; those that are not numbers are omitted.
     pub points: Vec<(f64, f64)>,
-    /// Meaning.
+    /// Role.
     pub role: Role,
-    /// Single points instead of a line.
+    /// Whether single points are drawn instead of a line.
     pub scattered: bool,
-    /// Name at its end, where there is room; empty for none.
+    /// Name at its end, if there is space; may be empty.
     pub name: &'static str,
 }
 
 impl Line {
-    /// A line of values at 0, 1, 2, …
+    /// Returns a curve of values at 0, 1, 2, …
     pub fn of(values: &[f64], role: Role) -> Line {
         let points = values.iter().enumerate().map(|(at, value)| (at as f64, *value)).collect();
         Line::through(points, role)
     }
 
-    /// A line through points.
+    /// Returns a curve through points.
     pub fn through(points: Vec<(f64, f64)>, role: Role) -> Line {
         Line { points, role, scattered: false, name: "" }
     }
 
-    /// The same, with a name at its end.
+    /// Adds a name at its end.
     pub fn named(self, name: &'static str) -> Line {
         Line { name, ..self }
     }
 }
 
-/// What lies between two lines, shaded.
+/// A shaded area between two curves.
 #[derive(Debug, Clone)]
 pub struct Band {
-    /// Lower and upper end by place, in the order of the places.
+    /// Position, lower and upper end, in the order of positions.
     pub ends: Vec<(f64, f64, f64)>,
-    /// Name, as that of a line.
+    /// Name at its end; may be empty.
     pub name: &'static str,
 }
 
 impl Band {
-    /// Its ends at a place; none outside.
+    /// Returns the ends at a position, or `None` outside.
     fn at(&self, x: f64) -> Option<(f64, f64)> {
         let next = self.ends.iter().position(|end| end.0 >= x)?;
         let (after, before) = (self.ends[next], self.ends[next.saturating_sub(1)]);
@@ -65,57 +65,56 @@ impl Band {
     }
 }
 
-/// The axis below.
+/// The horizontal axis.
 pub struct Axis<'a> {
-    /// Writes a value.
+    /// Formats a value.
     pub write: &'a dyn Fn(f64) -> String,
-    /// Values that must be on it.
+    /// Values that the axis must contain.
     pub holds: &'a [f64],
 }
 
-/// The axis to the left.
+/// The vertical axis.
 pub struct Side<'a> {
-    /// What its values are.
+    /// Unit of the values.
     pub unit: Unit,
-    /// Values that must be on it.
+    /// Values that the axis must contain.
     pub holds: &'a [f64],
 }
 
-/// A letter or a word at a point, over everything else.
+/// A label at a point, on top of everything else.
 pub struct Sign {
-    /// Place on the axis below.
+    /// Position on the horizontal axis.
     pub x: f64,
-    /// Place on the axis to the left.
+    /// Position on the vertical axis.
     pub y: f64,
-    /// What stands there.
+    /// The text.
     pub text: &'static str,
-    /// Meaning.
+    /// Role.
     pub role: Role,
 }
 
 /// A chart.
 pub struct Plot<'a> {
-    /// Curves; the last one lies on top.
+    /// Curves; the last one is on top.
     pub lines: &'a [Line],
-    /// A band below them.
+    /// A band below the curves.
     pub band: Option<&'a Band>,
-    /// Place that is marked by an upright line.
+    /// Position marked by a vertical line.
     pub mark: Option<f64>,
-    /// The axis below.
+    /// The horizontal axis.
     pub x: &'a Axis<'a>,
-    /// The axis to the left.
+    /// The vertical axis.
     pub y: &'a Side<'a>,
 }
 
-/// Draws lines; says so when there is nothing to draw yet.
+/// Draws curves, or a text if there is no data.
 pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Side<'_>) {
     Plot { lines, band: None, mark: None, x, y }.draw(canvas, area);
 }
 
-/// A label of the axis below: its column, the first column of its text, the text.
+/// A label of the horizontal axis: column of its tick, first column of its text, text.
 type Label = (u16, u16, String);
 
-/// Where the values of a plot stand in its area.
 struct Frame {
     inside: Rect,
     x: [f64; 2],
@@ -139,12 +138,12 @@ impl Frame {
 }
 
 impl Plot<'_> {
-    /// Draws it; says so when there is nothing to draw yet.
+    /// Draws the plot, or a text if there is no data.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         self.draw_with(canvas, area, &[]);
     }
 
-    /// Draws it with signs on top; those outside of the axes stand at their ends.
+    /// Draws the plot with labels on top; labels outside of the axes are drawn at the edge.
     pub fn draw_with(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[Sign]) {
         let area = area.intersection(canvas.buffer.area);
         if area.width < 16 || area.height < 4 {
@@ -199,7 +198,7 @@ impl Plot<'_> {
         names.map(UnicodeWidthStr::width).max().unwrap_or(0) as u16
     }
 
-    /// The axis below with as many round labels as fit.
+    /// Draws the horizontal axis with as many round labels as fit.
     fn draw_foot(&self, canvas: &mut Canvas<'_>, area: Rect, frame: &Frame) {
         let inside = frame.inside;
         let line = Rect { x: inside.x - 1, y: inside.bottom(), width: inside.width + 1, height: 1 };
@@ -212,7 +211,7 @@ impl Plot<'_> {
             (column, x.min(area.right().saturating_sub(width)), label)
         };
         let clear = |left: &Label, right: &Label| left.1 + (left.2.width() as u16) + 1 < right.1;
-        // Labels that stand apart and differ: two that read the same are one too many.
+        // Labels must not touch and must differ.
         let fits = |labels: &Vec<Label>| {
             labels.windows(2).all(|pair| clear(&pair[0], &pair[1]) && pair[0].2 != pair[1].2)
         };
@@ -232,7 +231,7 @@ impl Plot<'_> {
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
         let Some(band) = self.band else { return };
         for at in 0..frame.inside.width {
-            // All that the band covers between the edges of the column: neighbouring columns touch, however steep it is.
+            // Includes the edges of the column, so that neighboring columns of a steep band touch.
             let edges = [f64::from(at) - 0.5, f64::from(at) + 0.5].map(|column| {
                 let share = column / f64::from(frame.inside.width.saturating_sub(1).max(1));
                 band.at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
@@ -258,7 +257,7 @@ impl Plot<'_> {
             points.windows(2).for_each(|pair| raster.line(pair[0], pair[1], line.role));
         }
         raster.paint(canvas, frame.inside);
-        // A single week is a point, not a line.
+        // A single week is drawn as a point.
         for line in self.lines.iter().filter(|line| line.scattered || alone(line)) {
             for point in line.points.iter().filter(|point| point.1.is_finite()) {
                 let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
@@ -267,7 +266,7 @@ impl Plot<'_> {
         }
     }
 
-    /// Names beside the last points, in the order in which those stand above each other.
+    /// Draws names next to the last points, in vertical order.
     fn draw_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &Frame) {
         let of_line = |line: &Line| {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
@@ -286,7 +285,7 @@ impl Plot<'_> {
     }
 }
 
-/// A row of its own for each of the rows that are wanted, from above, as near to it as their order allows.
+/// Assigns different rows from top to bottom, each as close to the wanted row as the order permits.
 fn rows_apart(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {
@@ -309,12 +308,12 @@ fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
     match least {
         _ if most > least => [least, most],
         0.0 => [0.0, 1.0],
-        // A level without change stands in the middle, and the axis begins at zero.
+        // A constant value is drawn in the middle, with an axis from zero.
         level => [(2.0 * level).min(0.0), (2.0 * level).max(0.0)],
     }
 }
 
-/// The axis to the left and the grid; the line of zero is whole.
+/// Draws the vertical axis and the grid, with a solid zero line.
 fn draw_side(canvas: &mut Canvas<'_>, area: Rect, frame: &Frame, marks: &[f64], labels: &[String]) {
     let inside = frame.inside;
     let axis = inside.x - 1;
@@ -340,16 +339,16 @@ fn grid(width: u16) -> String {
     (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
-/// Zero, where a curve comes near it: far above it, zero would only flatten the curve.
+/// Returns zero as a required axis value if a curve is near it; otherwise it would flatten the curve.
 pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
     let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
     let least = values.fold(f64::INFINITY, f64::min);
     if least < 0.5 * most { &[0.0] } else { &[] }
 }
 
-/// A chart in words: the last value, its change, the least and the most; as much of it as has room.
+/// Describes a series: last value, change, minimum and maximum, as far as they fit.
 pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> String {
-    let Some(now) = values.last() else { return "nothing yet".to_owned() };
+    let Some(now) = values.last() else { return "no data yet".to_owned() };
     let mut words = write(*now);
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -365,7 +364,7 @@ pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> St
     words
 }
 
-/// Room for a note in the upper border of a pane beside its title.
+/// Returns the width for a note next to the title of a pane.
 pub fn note_room(area: Rect, title: &str) -> usize {
     (area.width as usize).saturating_sub(title.width() + 9)
 }

@@ -1,4 +1,4 @@
-//! An editor of several lines, on top of the text area of a library.
+//! A multi-line editor, based on a text area of a library.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
@@ -9,21 +9,21 @@ use tui_textarea::{CursorMove, TextArea, WrapMode};
 use crate::canvas::Canvas;
 use crate::theme::Role;
 
-/// An editor of several lines.
+/// A multi-line editor.
 #[derive(Debug, Clone)]
 pub struct Editor {
     area: TextArea<'static>,
 }
 
-/// Keys that edit the text, and what they do.
+/// Editing keys, their labels and descriptions.
 pub const EDITING: [(&str, &str, &str); 4] = [
-    ("ctrl-u", "line start", "Remove the text to the beginning of the line."),
+    ("ctrl-u", "line start", "Remove the text to the start of the line."),
     ("ctrl-k", "line end", "Remove the text to the end of the line."),
     ("ctrl-w", "word", "Remove the word before the cursor."),
     ("ctrl-z", "undo typing", "Undo the last change of the text."),
 ];
 
-/// Longest text, in bytes.
+/// Maximum length of the text, in bytes.
 const LONGEST: usize = 256 << 10;
 
 impl Default for Editor {
@@ -33,13 +33,13 @@ impl Default for Editor {
 }
 
 impl Editor {
-    /// An editor that holds text, the cursor at its end.
+    /// Returns an editor with a text and the cursor at its end.
     pub fn of(text: &str) -> Editor {
         let lines = text.lines().map(|line| line.replace('\t', "    ")).collect();
         let mut area = TextArea::new(lines);
         area.set_wrap_mode(WrapMode::WordOrGlyph);
         area.set_tab_length(4);
-        // The terminal's own cursor stands where text is typed.
+        // The cursor of the terminal marks the position.
         area.set_cursor_line_style(Style::new());
         area.set_cursor_style(Style::new());
         area.move_cursor(CursorMove::Bottom);
@@ -47,39 +47,39 @@ impl Editor {
         Editor { area }
     }
 
-    /// The same without wrapping: for text whose lines mean something.
+    /// Disables wrapping, for text with meaningful lines.
     pub fn unwrapped(mut self) -> Editor {
         self.area.set_wrap_mode(WrapMode::None);
         self
     }
 
-    /// What it holds.
+    /// Returns the text.
     pub fn text(&self) -> String {
         self.area.lines().join("\n")
     }
 
-    /// Lines.
+    /// Returns the lines.
     pub fn lines(&self) -> &[String] {
         self.area.lines()
     }
 
-    /// Whether it holds nothing but blanks.
+    /// Returns whether the text is empty or white space.
     pub fn is_blank(&self) -> bool {
         self.area.lines().iter().all(|line| line.trim().is_empty())
     }
 
-    /// Row and column of the cursor, in characters.
+    /// Returns the row and column of the cursor, in characters.
     pub fn cursor(&self) -> (usize, usize) {
         let cursor = self.area.cursor();
         (cursor.0, cursor.1)
     }
 
-    /// First row and column on screen.
+    /// Returns the first visible row and column.
     pub fn scroll(&self) -> (u16, u16) {
         self.area.scroll_offset()
     }
 
-    /// Takes a key; ctrl-u removes to the beginning of the line, as in a field, and ctrl-z undoes.
+    /// Handles a key. ctrl-u removes to the start of the line, as in fields, and ctrl-z undoes.
     pub fn key(&mut self, key: &KeyEvent) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
@@ -96,7 +96,7 @@ impl Editor {
         }
     }
 
-    /// Puts text at the cursor, as far as there is room.
+    /// Inserts text at the cursor, up to the maximum length.
     pub fn insert(&mut self, text: &str) {
         if self.text().len() + text.len() <= LONGEST {
             let clean: String = text.replace("\r\n", "\n").replace('\r', "\n").replace('\t', "    ");
@@ -105,7 +105,7 @@ impl Editor {
         }
     }
 
-    /// Replaces everything; the editor's own undo brings it back.
+    /// Replaces the text; ctrl-z restores it.
     pub fn replace(&mut self, text: &str) {
         self.area.select_all();
         self.area.cut();
@@ -126,7 +126,7 @@ impl Editor {
         }
     }
 
-    /// Draws the text, and the cursor while it is edited.
+    /// Draws the text, with the cursor while it is edited.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
         if area.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! A line of text that is being typed.
+//! A single-line text field.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
@@ -8,49 +8,49 @@ use unicode_width::UnicodeWidthStr;
 use crate::canvas::Canvas;
 use crate::theme::Role;
 
-/// A line of text with a cursor between its graphemes.
+/// A single-line text field with a cursor between graphemes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Field {
     text: String,
-    /// Graphemes before the cursor.
+    /// Number of graphemes before the cursor.
     cursor: usize,
-    /// The first letter that is typed replaces the text.
+    /// Whether the first typed letter replaces the text.
     selected: bool,
 }
 
-/// Longest text, in bytes: more is a mistake of the clipboard.
+/// Maximum length of the text, in bytes, as a protection from accidental pastes.
 const LONGEST: usize = 4096;
 
 impl Field {
-    /// A field that holds text, the cursor behind it.
+    /// Returns a field with a text and the cursor at its end.
     pub fn of(text: impl Into<String>) -> Field {
         let text = text.into();
         let cursor = text.graphemes(true).count();
         Field { text, cursor, selected: false }
     }
 
-    /// A field whose text is replaced by the first letter that is typed, unless another key comes before.
+    /// Returns a field whose text is replaced by the first typed letter, unless another key comes first.
     pub fn to_replace(text: impl Into<String>) -> Field {
         Field { selected: true, ..Field::of(text) }
     }
 
-    /// What it holds.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Whether it holds nothing.
+    /// Returns whether the text is empty.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()
     }
 
-    /// The same with a dot for every letter: nobody who looks on reads it.
+    /// Returns a copy with a dot for every letter.
     pub fn masked(&self) -> Field {
         let dots = "•".repeat(self.text.graphemes(true).count());
         Field { text: dots, cursor: self.cursor, selected: self.selected }
     }
 
-    /// Takes a key; false if it means nothing here.
+    /// Handles a key. Returns false if the key is not supported.
     pub fn key(&mut self, key: &KeyEvent) -> bool {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         let removes = matches!(key.code, KeyCode::Backspace | KeyCode::Delete);
@@ -85,7 +85,7 @@ impl Field {
         true
     }
 
-    /// Does what a key does in a field for a number; false if no number has such a letter.
+    /// Handles a key in a number field. Returns false for letters that numbers cannot contain.
     pub fn number_key(&mut self, key: &KeyEvent) -> bool {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match key.code {
@@ -94,7 +94,7 @@ impl Field {
         }
     }
 
-    /// Puts text at the cursor; line ends become blanks.
+    /// Inserts text at the cursor; line breaks become spaces.
     pub fn insert(&mut self, text: &str) {
         if std::mem::take(&mut self.selected) {
             *self = Field::default();
@@ -106,7 +106,7 @@ impl Field {
         }
         let at = self.byte_of(self.cursor);
         self.text.insert_str(at, &clean);
-        // A combining mark joins the grapheme before it, so the cursor follows bytes, not a count.
+        // A combining mark joins the previous grapheme, so the cursor is computed from bytes.
         self.cursor = self.text[..at + clean.len()].graphemes(true).count();
     }
 
@@ -128,7 +128,7 @@ impl Field {
         self.cursor = self.text[..kept].graphemes(true).count();
     }
 
-    /// Draws the text with its cursor; what lies left of a narrow field is scrolled away.
+    /// Draws the text with its cursor; a narrow field scrolls horizontally.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         if area.is_empty() {
             return;
@@ -156,8 +156,8 @@ impl Field {
     }
 }
 
-/// Said where a number is typed and something else came.
-pub const ONLY_NUMBERS: &str = "this is a number: 1200, 1.5k, 2M; esc leaves the field";
+/// Shown if a number is expected and another key is typed.
+pub const ONLY_NUMBERS: &str = "enter a number: 1200, 1.5k, 2M; esc leaves the field";
 
 fn in_a_number(letter: char) -> bool {
     letter.is_ascii_digit()

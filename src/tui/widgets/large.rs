@@ -1,37 +1,37 @@
-//! Figures in large letters.
+//! Large digits.
 
 use ratatui::layout::Rect;
 
 use crate::canvas::{Canvas, rows_of};
 use crate::theme::Role;
 
-/// Rows of a letter, in points.
+/// Height of a letter, in points.
 const POINTS: usize = 5;
-/// Columns of a letter with the gap after it, in points.
+/// Width of a letter with its gap, in points.
 pub const LETTER: u16 = 4;
 
-/// How large a point of a letter is.
+/// The size of a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PointSize {
-    /// A column wide and half a row high.
+    /// One column wide and half a row high.
     Small,
     /// Two columns wide and a row high.
     Large,
 }
 
 impl PointSize {
-    /// Columns of a point.
+    /// Returns the width of a point, in columns.
     pub fn columns(self) -> u16 {
         if self == PointSize::Small { 1 } else { 2 }
     }
 
-    /// Rows of a letter.
+    /// Returns the height of a letter, in rows.
     pub fn rows(self) -> u16 {
         if self == PointSize::Small { 3 } else { POINTS as u16 }
     }
 }
 
-/// Draws a figure in large letters; as it is where they have no room.
+/// Draws a figure in large letters, or as plain text if they do not fit.
 pub fn draw_large(canvas: &mut Canvas<'_>, area: Rect, figure: &str, role: Role, size: PointSize) {
     let columns = figure.chars().count() as u16 * LETTER * size.columns();
     if columns > area.width + size.columns() {
@@ -59,7 +59,7 @@ pub fn draw_large(canvas: &mut Canvas<'_>, area: Rect, figure: &str, role: Role,
     }
 }
 
-/// A letter of figures, row by row from above, three points each.
+/// Returns the rows of a letter from top to bottom, three points each.
 fn letter_points(letter: char) -> [u8; POINTS] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

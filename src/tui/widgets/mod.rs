@@ -1,4 +1,4 @@
-//! Parts that several screens are made of.
+//! Widgets that several screens share.
 
 pub mod bars;
 pub mod chart;

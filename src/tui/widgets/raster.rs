@@ -1,4 +1,4 @@
-//! Curves as dots in the cells of a terminal: several dots in a cell where the marker has them.
+//! Curves of dots in terminal cells; some markers have several dots per cell.
 
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
@@ -6,7 +6,7 @@ use ratatui::symbols::Marker;
 use crate::canvas::Canvas;
 use crate::theme::Role;
 
-/// Bits of the dots of a braille character, by column and row.
+/// Bits of the braille dots, by column and row.
 const BRAILLE: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 
 /// Dots over an area of cells.
@@ -14,18 +14,18 @@ pub struct Raster {
     marker: Marker,
     columns: usize,
     rows: usize,
-    /// Dots that are set in a cell, and the meaning of the last one.
+    /// Dots of each cell, and the role of the last one.
     cells: Vec<(u8, Role)>,
 }
 
 impl Raster {
-    /// An empty raster over so many cells.
+    /// Returns an empty raster of a size in cells.
     pub fn new(marker: Marker, columns: u16, rows: u16) -> Raster {
         let (columns, rows) = (columns as usize, rows as usize);
         Raster { marker, columns, rows, cells: vec![(0, Role::Text); columns * rows] }
     }
 
-    /// Dots of a cell, across and down.
+    /// Returns the dots per cell, horizontally and vertically.
     fn dots(&self) -> (usize, usize) {
         match self.marker {
             Marker::Braille => (2, 4),
@@ -34,7 +34,7 @@ impl Raster {
         }
     }
 
-    /// Sets the dot at a share of the width and of the height, counted from above.
+    /// Sets a dot, counted from the top left.
     fn set(&mut self, x: usize, y: usize, role: Role) {
         let (across, down) = self.dots();
         let (column, row) = (x / across, y / down);
@@ -50,7 +50,7 @@ impl Raster {
         *cell = (cell.0 | bit, role);
     }
 
-    /// A line between two places, given as shares of width and height from the lower left corner.
+    /// Draws a line between two points, given as shares of width and height from the lower left corner.
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
         let (from, to) = (self.dot_at(from), self.dot_at(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
@@ -67,7 +67,7 @@ impl Raster {
         (x.clamp(0.0, 1.0) * most(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * most(self.rows * down))
     }
 
-    /// Paints the dots that are set over what is there.
+    /// Draws the dots over existing content.
     pub fn paint(&self, canvas: &mut Canvas<'_>, area: Rect) {
         for (at, (bits, role)) in self.cells.iter().enumerate().filter(|(_, (bits, _))| *bits != 0) {
             let glyph = match self.marker {

@@ -1,16 +1,16 @@
-//! Round numbers between two bounds, for the axes of charts.
+//! Round numbers between two bounds, for chart axes.
 
-/// What the values of an axis are.
+/// The unit of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     /// Dollars.
     Dollars,
-    /// Anything else.
+    /// Any other unit.
     Number,
 }
 
 impl Unit {
-    /// Round values with as many decimals as they need, so that no two of them read the same: `$500k`, `$1M`, `$1.002M`.
+    /// Formats round values with as many decimals as they need to differ: `$500k`, `$1M`, `$1.002M`.
     pub fn labels(self, values: &[f64]) -> Vec<String> {
         let step = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         values.iter().map(|value| self.label(*value, step)).collect()
@@ -37,18 +37,18 @@ impl Unit {
     }
 }
 
-/// Round values between two bounds, at most so many: multiples of 1, 2 or 5 times a power of ten.
+/// Returns at most `most` round values between two bounds: multiples of 1, 2 or 5 times a power of ten.
 pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
     let step = step([from, to], most);
     let (first, last) = ((from / step - 1e-9).ceil(), (to / step + 1e-9).floor());
     if !step.is_finite() || step <= 0.0 || last < first {
         return Vec::new();
     }
-    // Zero has no sign.
+    // Adding zero removes the sign of minus zero.
     (0..=(last - first) as usize).map(|at| (first + at as f64) * step + 0.0).collect()
 }
 
-/// The round distance of at most so many ticks; not finite if there is none.
+/// Returns the distance of at most `most` ticks; not finite if there is none.
 fn step([from, to]: [f64; 2], most: usize) -> f64 {
     let span = to - from;
     if !span.is_finite() || span <= 0.0 || most == 0 {
@@ -70,7 +70,7 @@ fn step([from, to]: [f64; 2], most: usize) -> f64 {
     }
 }
 
-/// Bounds widened to the next ticks where those are near, so that a curve ends below a label and not above it.
+/// Widens bounds to the next ticks if those are close, so that curves end below a label.
 pub fn widened([from, to]: [f64; 2], most: usize) -> [f64; 2] {
     let step = step([from, to], most);
     if !step.is_finite() {
@@ -79,7 +79,7 @@ pub fn widened([from, to]: [f64; 2], most: usize) -> [f64; 2] {
     let (below, above) = ((from / step + 1e-9).floor() * step, (to / step - 1e-9).ceil() * step);
     let near = |distance: f64| distance <= 0.3 * (to - from);
     let mut wide = [if near(from - below) { below } else { from }, if near(above - to) { above } else { to }];
-    // One label alone says nothing about the scale.
+    // A scale needs at least two labels.
     if ticks(wide, most + 1).len() < 2 {
         wide = [below, above];
     }
@@ -126,7 +126,7 @@ mod tests {
     fn bounds_reach_to_the_next_round_number_if_it_is_near() {
         assert_eq!(widened([0.0, 980.0], 5), [0.0, 1000.0]);
         assert_eq!(widened([300_000.0, 13_500_000.0], 4), [0.0, 15_000_000.0]);
-        assert_eq!(widened([48.3, 51.1], 3), [48.0, 51.1], "the next one above is far");
+        assert_eq!(widened([48.3, 51.1], 3), [48.0, 51.1], "the next tick above is far");
         let [from, to] = widened([99.0, 101.0], 2);
         assert!(ticks([from, to], 3).len() >= 2, "{from} {to}");
     }

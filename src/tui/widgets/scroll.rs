@@ -1,19 +1,19 @@
-//! How far a text is scrolled that is longer than its window.
+//! The scroll position of a text that is longer than its window.
 
 use std::cell::Cell;
 
 use super::ListAction;
 
-/// The row that stands first, and the farthest that may.
+/// The first visible row, and the last possible one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scroll {
     from: usize,
-    /// The farthest that shows anything new, as it was drawn last.
+    /// The last useful position, as of the last frame.
     last: Cell<usize>,
 }
 
 impl Scroll {
-    /// Moves through the text by rows, by pages of so many rows, or to an end; true if the action does that.
+    /// Scrolls by rows, by pages of `page` rows, or to an end. Returns whether the action was a scroll action.
     pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
         let from = self.from.min(self.last.get());
         let to = match action.into() {
@@ -29,12 +29,12 @@ impl Scroll {
         true
     }
 
-    /// To the end, also of a text that is about to grow.
+    /// Scrolls to the end, even if the text grows before the next frame.
     pub fn show_end(&mut self) {
         self.from = usize::MAX;
     }
 
-    /// The row to begin with where rows up to this one can stand first.
+    /// Returns the first visible row, limited to `last`.
     pub fn within(&self, last: usize) -> usize {
         self.last.set(last);
         self.from.min(last)

@@ -1,8 +1,8 @@
-//! Trends in one row of characters.
+//! Sparklines and bars in one row of characters.
 
 const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The last values as bars of one row; the lowest is the lowest bar. Equal values stand in the middle, zeros at the foot.
+/// Returns the last values as a sparkline. Equal values are at half height, zeros at the bottom.
 pub fn spark(values: &[f64], width: usize) -> String {
     let shown = &values[values.len().saturating_sub(width)..];
     let finite = || shown.iter().copied().filter(|value| value.is_finite());
@@ -16,7 +16,7 @@ pub fn spark(values: &[f64], width: usize) -> String {
     shown.iter().map(level).collect()
 }
 
-/// A bar of a share of a width.
+/// Returns a bar for a share of a width.
 pub fn bar(share: f64, width: usize) -> String {
     let filled = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
     "█".repeat(filled) + &"░".repeat(width - filled)

@@ -1,4 +1,4 @@
-//! A table that can be walked, sorted and filtered. Only the rows on screen are drawn.
+//! A table with selection, sorting and filter. Only visible rows are drawn.
 
 use std::cmp::Ordering;
 
@@ -11,105 +11,103 @@ use super::field::Field;
 use crate::canvas::{Align, Canvas, Click, fit};
 use crate::theme::Role;
 
-/// Narrowest part of a column of words that is worth showing.
+/// Minimum width of a truncated text column.
 const LEAST_WORDS: u16 = 8;
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// Head.
+    /// Title.
     pub title: String,
-    /// Side of its cells.
+    /// Alignment of its cells.
     pub align: Align,
-    /// Widest it gets.
+    /// Maximum width.
     pub most: u16,
-    /// Width down to which it gives way to the columns after it.
+    /// Width to which it may shrink in favor of later columns.
     pub least: u16,
 }
 
 impl Column {
-    /// A column of words.
+    /// Returns a text column.
     pub fn words(title: impl Into<String>) -> Column {
         Column { title: title.into(), align: Align::Left, most: 40, least: u16::MAX }
     }
 
-    /// A column of numbers.
+    /// Returns a column of numbers.
     pub fn numbers(title: impl Into<String>) -> Column {
         Column { title: title.into(), align: Align::Right, most: 24, least: u16::MAX }
     }
 
-    /// The same, at most this wide.
+    /// Limits the width.
     pub fn at_most(self, most: u16) -> Column {
         Column { most, ..self }
     }
 
-    /// The same, which is cut down to this width where the columns after it have no room.
+    /// Permits it to shrink to this width if later columns need the space.
     pub fn at_least(self, least: u16) -> Column {
         Column { least, ..self }
     }
 }
 
-/// A cell: what is shown, and what it is sorted by.
+/// A cell: the displayed text and the sort key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
     /// Text.
     pub text: String,
-    /// Number behind it, if it is one.
+    /// Number to sort by, if it is a number.
     pub number: Option<f64>,
-    /// Meaning.
+    /// Role.
     pub role: Role,
 }
 
 impl Cell {
-    /// Words.
+    /// Returns a text cell.
     pub fn words(text: impl Into<String>) -> Cell {
         Cell { text: text.into(), number: None, role: Role::Text }
     }
 
-    /// A number as it is shown.
+    /// Returns a number cell with its formatted value.
     pub fn number(value: f64, shown: impl Into<String>) -> Cell {
         Cell { text: shown.into(), number: Some(value), role: Role::Text }
     }
 
-    /// The same in another meaning.
+    /// Sets the role.
     pub fn role(self, role: Role) -> Cell {
         Cell { role, ..self }
     }
 }
 
-/// A table and where the person is in it.
+/// A table with its selection, order and filter.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
-    /// Rows as shown: filtered and sorted.
+    /// Indices of the displayed rows, filtered and sorted.
     shown: Vec<usize>,
     widths: Vec<u16>,
-    /// Place among the shown rows.
+    /// Position among the displayed rows.
     selected: usize,
     column: usize,
     sorted: Option<(usize, Ordering)>,
     filter: String,
-    /// The filter while it is typed.
     typing: Option<Field>,
-    /// Single cells matter: the selected one is marked.
     by_cell: bool,
 }
 
 impl Table {
-    /// A table of columns without rows.
+    /// Returns a table without rows.
     pub fn new(columns: Vec<Column>) -> Table {
         let mut table = Table { columns, ..Table::default() };
         table.measure();
         table
     }
 
-    /// The same, with the selected cell marked in its row.
+    /// Marks the selected cell in its row.
     pub fn by_cell(self) -> Table {
         Table { by_cell: true, ..self }
     }
 
-    /// Replaces columns and rows, keeping place, order and filter where they still make sense.
+    /// Replaces columns and rows, and keeps selection, order and filter if possible.
     pub fn set(&mut self, columns: Vec<Column>, rows: Vec<Vec<Cell>>) {
         if columns.len() != self.columns.len() {
             self.sorted = None;
@@ -126,64 +124,64 @@ impl Table {
         self.arrange();
     }
 
-    /// Every row, in the order it was given.
+    /// Returns all rows in their original order.
     pub fn rows(&self) -> &[Vec<Cell>] {
         &self.rows
     }
 
-    /// Number of the selected row among all rows, in the order they were given.
+    /// Returns the index of the selected row among all rows.
     pub fn selected(&self) -> Option<usize> {
         self.shown.get(self.selected).copied()
     }
 
-    /// Numbers of the rows that are shown, in their order.
+    /// Returns the indices of the displayed rows in their order.
     pub fn shown(&self) -> &[usize] {
         &self.shown
     }
 
-    /// Number of the selected column.
+    /// Returns the index of the selected column.
     pub fn selected_column(&self) -> usize {
         self.column
     }
 
-    /// Selects a column, as far as there is one.
+    /// Selects a column, at most the last one.
     pub fn select_column(&mut self, column: usize) {
         self.column = column.min(self.columns.len().saturating_sub(1));
     }
 
-    /// Selects a row by its number among all rows.
+    /// Selects a row by its index among all rows.
     pub fn select(&mut self, row: usize) {
         if let Some(place) = self.shown.iter().position(|shown| *shown == row) {
             self.selected = place;
         }
     }
 
-    /// Selects by place among the shown rows, as a click does.
+    /// Selects a row by its position among the displayed rows, as a click does.
     pub fn select_place(&mut self, place: usize) {
         self.selected = place.min(self.shown.len().saturating_sub(1));
     }
 
-    /// Whether a filter is being typed.
+    /// Returns whether a filter is being typed.
     pub fn is_typing(&self) -> bool {
         self.typing.is_some()
     }
 
-    /// Whether only the rows with a text are shown, or one is being typed.
+    /// Returns whether a filter is set or being typed.
     pub fn is_filtered(&self) -> bool {
         self.is_typing() || !self.filter.is_empty()
     }
 
-    /// The text that the rows shown have; empty where all are shown.
+    /// Returns the filter, or an empty text.
     pub fn filter_text(&self) -> &str {
         &self.filter
     }
 
-    /// The field of the filter.
+    /// Returns the field of the filter.
     pub fn typing(&mut self) -> Option<&mut Field> {
         self.typing.as_mut()
     }
 
-    /// Changes the filter while it is typed and applies it; does nothing if none is typed.
+    /// Changes the filter while it is typed and applies it.
     pub fn edit_filter(&mut self, edit: impl FnOnce(&mut Field)) {
         if let Some(field) = &mut self.typing {
             edit(field);
@@ -191,7 +189,7 @@ impl Table {
         }
     }
 
-    /// Applies the filter as far as it is typed.
+    /// Applies the filter as typed so far.
     pub fn typed(&mut self) {
         if let Some(field) = &self.typing {
             self.filter = field.text().to_owned();
@@ -199,7 +197,7 @@ impl Table {
         }
     }
 
-    /// Number of rows as shown and of all, filter and order, for the title of a pane.
+    /// Describes the displayed and all rows, filter and order, for the title of a pane.
     pub fn note(&self) -> String {
         let mut parts = Vec::new();
         if !self.filter.is_empty() {
@@ -213,7 +211,7 @@ impl Table {
         parts.join(" · ")
     }
 
-    /// Does what a list can do; false if it can do nothing with the action.
+    /// Handles a list action. Returns false if it is not supported.
     pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
         let Some(action) = action.into() else { return false };
         let last = self.shown.len().saturating_sub(1);
@@ -246,7 +244,7 @@ impl Table {
     fn sort(&mut self) {
         let numeric =
             self.rows.iter().any(|row| row.get(self.column).is_some_and(|cell| cell.number.is_some()));
-        // Numbers are wanted with the largest first, words from a to z.
+        // Numbers are first sorted in descending order, text in ascending order.
         let first = if numeric { Ordering::Greater } else { Ordering::Less };
         self.sorted = match self.sorted {
             Some((column, order)) if column == self.column && order == first => {
@@ -285,7 +283,7 @@ impl Table {
         self.widths = self.columns.iter().enumerate().map(|(at, column)| width(at, column)).collect();
     }
 
-    /// Draws head and rows. `pane` is the number of the pane for clicks.
+    /// Draws the head and the rows. `pane` is the number of the pane for clicks.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
         if area.height < 2 || area.width < 2 {
             return;
@@ -303,7 +301,7 @@ impl Table {
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
             canvas.aligned(cell, &column.title, role, column.align);
         }
-        // Says that more columns stand to the left, or to the right.
+        // Shows that there are more columns to the left or right.
         if let [_, (second, (x, _)), ..] = columns[..]
             && second > 1
         {
@@ -354,9 +352,7 @@ impl Table {
         }
     }
 
-    /// Columns that fit, with their place and width: the first one always, the others scrolled so that the
-    /// selected one is seen.
-    /// Widths of the columns; those that can give way do as far as all need.
+    /// Returns the widths of the columns after shrinking.
     fn widths_within(&self, width: u16) -> Vec<u16> {
         let all: usize = self.widths.iter().map(|own| usize::from(*own) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
@@ -377,7 +373,7 @@ impl Table {
             let order = std::iter::once(0).chain(from..self.columns.len());
             for at in order.filter(|at| *at < self.columns.len()) {
                 let own = widths[at];
-                // A part of a column only if it is still a readable part of words.
+                // A truncated column must still be readable text.
                 let room = width.saturating_sub(x);
                 let readable = match self.columns[at].align {
                     Align::Right => own,
@@ -402,7 +398,7 @@ impl Table {
     }
 }
 
-/// First row on screen so that the selected one is near the middle.
+/// Returns the first visible row so that the selected one is near the middle.
 pub fn first_row(selected: usize, height: usize, rows: usize) -> usize {
     selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
 }

@@ -99,7 +99,7 @@ fn the_farewell_names_whose_run_goes_on() {
     terminal.type_keys("q");
     let (code, screen) = terminal.end();
     assert_eq!(code, 0);
-    assert!(screen.contains("`novamind --as P01 --run latest` continues"), "{screen}");
+    assert!(screen.contains("Resume it with `novamind --as P01 --run latest`"), "{screen}");
     let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--run", "latest"], (120, 30));
     terminal.wait_for("day 0/500");
     terminal.type_keys("q");
@@ -113,11 +113,11 @@ fn what_was_chosen_by_key_is_there_the_next_time() {
     terminal.wait_for("Needs you");
     assert!(!terminal.contents().is_ascii());
     terminal.type_keys(";c");
-    terminal.wait_for("theme high-contrast, from now on");
+    terminal.wait_for("theme: high-contrast");
     terminal.type_keys(";d");
-    terminal.wait_for("drawn with blocks");
+    terminal.wait_for("charts use blocks");
     terminal.type_keys(";d");
-    terminal.wait_for("drawn with ASCII signs");
+    terminal.wait_for("use ASCII characters");
     let chosen = runs.path().join("no-configuration/console.toml");
     let is_kept = || std::fs::read_to_string(&chosen).is_ok_and(|text| text.contains("ascii"));
     terminal.wait_until_true("the choice is kept", is_kept);
@@ -142,7 +142,7 @@ fn a_wrong_theme_or_key_file_is_named_before_the_terminal_is_taken() {
     std::fs::write(configuration.join("keys.toml"), "[global]\nquit = [\"hyper\"]").expect("written");
     let (code, screen) = Terminal::start(runs.path(), &[], (100, 30)).end();
     assert_eq!(code, 3);
-    assert!(screen.contains("keys.toml") && screen.contains("is no key"), "{screen}");
+    assert!(screen.contains("keys.toml") && screen.contains("is not a key"), "{screen}");
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn a_failure_of_the_program_gives_the_terminal_back_and_names_the_run() {
     terminal.type_keys("\x1b[24~");
     let (code, screen) = terminal.end();
     assert_eq!(code, 101);
-    assert!(screen.contains("everything confirmed is safe in"), "{screen}");
+    assert!(screen.contains("all confirmed actions are saved in"), "{screen}");
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
     terminal.wait_for("day 0/500");
     terminal.type_keys("q");

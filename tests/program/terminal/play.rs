@@ -134,7 +134,7 @@ fn the_mouse_presses_and_can_be_left_to_the_terminal() {
     terminal.wait_for("mouse off");
     terminal.wait_for_bytes(b"\x1b[?1000l");
     terminal.type_keys(";m");
-    terminal.wait_for("shift and drag");
+    terminal.wait_for("shift-drag");
     terminal.type_keys("q");
     assert_eq!(terminal.end().0, 0);
 }

@@ -37,10 +37,10 @@ fn what_was_typed_survives_a_kill_of_the_console() {
     terminal.signal("-KILL");
     terminal.killed();
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
-    terminal.wait_for("Not sent when");
+    terminal.wait_for("Unsent when");
     terminal.wait_for("we wait for leads");
     terminal.type_keys("\r");
-    terminal.wait_until_gone("Not sent when");
+    terminal.wait_until_gone("Unsent when");
     terminal.type_keys("n\r");
     terminal.wait_for("we wait for leads");
     terminal.signal("-TERM");

@@ -1,4 +1,4 @@
-//! The decisions of the run, and what each alternative decides otherwise.
+//! The decisions of the run, and the edits of each alternative.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -10,36 +10,30 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Field;
 use novamind_tui::widgets::table::first_row;
 
-/// Said where a parameter that the run sets is to be edited.
-const PARAMETER_IS_SET_ANEW: &str = "leave it out, and decide otherwise with set KEY VALUE";
+const PARAMETER_IS_SET_ANEW: &str = "omit it, and add another value with set KEY VALUE";
 
-/// A row of the list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Row {
-    /// An edit of the alternative that concerns no single call, by its place.
+    /// Index of an edit that applies to no recorded call.
     Edit(usize),
-    /// A decision of the run, by its place.
+    /// Index of a recorded decision.
     Past(usize),
 }
 
-/// What is typed.
 struct TypedDecision {
     field: Field,
-    /// The line whose call is edited; none for another decision.
+    /// The recorded line whose call is edited; `None` for an added decision.
     line: Option<u64>,
 }
 
-/// Decisions from a week on.
 pub(super) struct Decisions {
     week: u32,
     last_week: u32,
     days_per_week: u32,
-    /// None until they were read.
+    /// `None` until the decisions are loaded.
     past: Option<Vec<PastDecision>>,
-    /// They are not told.
     is_refused: bool,
     alternatives: Vec<Vec<DecisionEdit>>,
-    /// The alternative that is shown.
     shown: usize,
     selected: usize,
     typing: Option<TypedDecision>,
@@ -72,12 +66,11 @@ impl Decisions {
         (self.past, self.days_per_week) = (Some(past), days_per_week);
     }
 
-    /// They are not told: nothing is waited for.
     pub(super) fn refuse(&mut self) {
         self.is_refused = self.past.is_none();
     }
 
-    /// The alternatives that decide something otherwise.
+    /// Returns the alternatives that have edits.
     pub(super) fn alternatives(&self) -> Vec<Vec<DecisionEdit>> {
         self.alternatives.iter().filter(|own| !own.is_empty()).cloned().collect()
     }
@@ -87,7 +80,7 @@ impl Decisions {
     }
 
     pub(super) fn note(&self) -> String {
-        format!("alternative {} of {} · ‹ › other week", self.shown + 1, self.alternatives.len())
+        format!("alternative {} of {} · ‹ › change week", self.shown + 1, self.alternatives.len())
     }
 
     fn edits(&mut self) -> &mut Vec<DecisionEdit> {
@@ -98,7 +91,7 @@ impl Decisions {
         self.past.as_deref().unwrap_or_default()
     }
 
-    /// Edits first, then the decisions of the run from the week on.
+    /// Edits first, then the recorded decisions from the start week.
     fn rows(&self) -> Vec<Row> {
         let edits = self.alternatives[self.shown].iter().enumerate();
         let free = edits.filter(|(_, edit)| line_of(edit).is_none()).map(|(at, _)| Row::Edit(at));
@@ -115,7 +108,7 @@ impl Decisions {
         self.selected = row.min(self.rows().len().saturating_sub(1));
     }
 
-    /// Does an action; what is wrong with it if something is.
+    /// Handles an action. Returns an error message if the action is not possible.
     pub(super) fn act(&mut self, action: Action) -> Result<(), String> {
         match action {
             Action::Commit => return self.commit(),
@@ -139,7 +132,7 @@ impl Decisions {
         Ok(())
     }
 
-    /// Lets branches part at the start of another week; edits of earlier decisions are given up.
+    /// Moves the start of the branches to another week. Edits of earlier decisions are dropped.
     fn begin_in(&mut self, week: u32) {
         self.week = week.clamp(1, self.last_week);
         let from = (self.week - 1) * self.days_per_week;
@@ -161,12 +154,12 @@ impl Decisions {
         self.shown = (self.shown + 1) % self.alternatives.len();
         self.select(0);
         match (before == self.shown, is_empty) {
-            (true, true) => Err("decide something otherwise before you begin another alternative".to_owned()),
+            (true, true) => Err("change a decision before you add another alternative".to_owned()),
             _ => Ok(()),
         }
     }
 
-    /// Leaves the selected decision out, or makes it as it was; takes a selected edit back.
+    /// Omits or restores the selected decision; removes a selected edit.
     fn drop_selected(&mut self) {
         match self.rows().get(self.selected) {
             Some(Row::Edit(at)) => drop(self.edits().remove(*at)),
@@ -239,7 +232,7 @@ impl Decisions {
         match (&self.past, rows.is_empty()) {
             (None, _) if self.is_refused => {}
             (None, _) => canvas.text(list, "reading the record …", Role::Warning),
-            (Some(_), true) => canvas.text(list, "nothing was decided in these weeks", Role::Dim),
+            (Some(_), true) => canvas.text(list, "no decisions in these weeks", Role::Dim),
             _ => {}
         }
         let first = first_row(self.selected, list.height as usize, rows.len());
@@ -260,10 +253,10 @@ impl Decisions {
 
     fn draw_field(&self, canvas: &mut Canvas<'_>, row: Rect) {
         let Some(typing) = &self.typing else {
-            let forms = format!("for instance {}", FORMS.join("  ·  "));
+            let forms = format!("for example {}", FORMS.join("  ·  "));
             return canvas.text(row, &fit(&forms, row.width as usize), Role::Dim);
         };
-        let label = typing.line.map_or("decide".to_owned(), |line| format!("line {line}"));
+        let label = typing.line.map_or("decision".to_owned(), |line| format!("line {line}"));
         canvas.text(row, &label, Role::Dim);
         let used = (label.len() as u16 + 1).min(row.width);
         typing.field.draw(canvas, Rect { x: row.x + used, width: row.width - used, ..row });
@@ -278,7 +271,7 @@ impl Decisions {
         let week = own.day() / self.days_per_week + 1;
         let edit = self.edit_of(own.seq()).map(|edit| &self.alternatives[self.shown][edit]);
         let (sign, rest, role) = match edit {
-            Some(DecisionEdit::Drop(_)) => ("×", " · is not made".to_owned(), Role::Bad),
+            Some(DecisionEdit::Drop(_)) => ("×", " · omitted".to_owned(), Role::Bad),
             Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
             _ => {
                 let is_refused = own.call().is_some_and(|call| !call.accepted);
@@ -295,7 +288,6 @@ impl Decisions {
     }
 }
 
-/// The line of the decision that an edit concerns.
 fn line_of(edit: &DecisionEdit) -> Option<u64> {
     match edit {
         DecisionEdit::Drop(line) | DecisionEdit::Change { seq: line, .. } => Some(*line),

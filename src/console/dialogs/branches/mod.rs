@@ -1,4 +1,4 @@
-//! What would have been: the decisions of the run from a week on, edited, and what comes of them.
+//! The what-if page: edits decisions from a week on and compares the results.
 
 mod decisions;
 mod outcome;
@@ -20,20 +20,15 @@ use novamind_worker::branches::{BranchesFound, BranchesQuestion};
 use novamind_worker::request::Request;
 use outcome::Figures;
 
-/// Futures that are drawn.
 const FUTURES: u32 = 20;
 
-/// What is shown.
 enum Page {
-    /// The decisions, which can be edited.
     Decisions,
-    /// Days are simulated.
     Working,
-    /// What came of it.
     Figures(Box<Figures>),
 }
 
-/// The page.
+/// The what-if page.
 pub struct BranchesPage {
     decisions: Decisions,
     page: Page,
@@ -42,7 +37,7 @@ pub struct BranchesPage {
 }
 
 impl BranchesPage {
-    /// For branches from a week on, at most from the last one; asks what was decided.
+    /// Opens the page at `week`, which the user can move up to `last_week`. Requests the recorded decisions.
     pub fn new(week: u32, last_week: u32) -> (BranchesPage, Ask) {
         let (asked, ask) = Pending::asking(BranchesQuestion::Decisions);
         let decisions = Decisions::new(week, last_week);
@@ -52,7 +47,7 @@ impl BranchesPage {
     fn ask(&mut self, futures: Option<u32>) -> Outcome {
         let alternatives = self.decisions.alternatives();
         if alternatives.is_empty() {
-            self.problem = Some(format!("decide something otherwise first; for instance {}", FORMS[0]));
+            self.problem = Some(format!("change a decision first; for example {}", FORMS[0]));
             return Outcome::stay();
         }
         self.page = Page::Working;
@@ -75,7 +70,6 @@ impl BranchesPage {
         }
     }
 
-    /// Makes the branch that is selected a run.
     fn adopt(&mut self) -> Outcome {
         let Page::Figures(figures) = &self.page else { return Outcome::stay() };
         let (week, edits) = (self.decisions.week(), figures.selected_edits());
@@ -187,7 +181,7 @@ impl Dialog for BranchesPage {
         let own = centered(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
         canvas.clear(own, Role::Text);
         let week = self.decisions.week();
-        let inside = canvas.pane(own, &format!("What if, from week {week} on"), &self.note(), true);
+        let inside = canvas.pane(own, &format!("What if, from week {week}"), &self.note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
         let page = Rect { height: inside.height - below, ..inside };

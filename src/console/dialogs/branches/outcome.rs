@@ -1,4 +1,4 @@
-//! Branches side by side: curves of a figure, its values after some weeks, what differs.
+//! Comparison of branches: curves of a figure, its values at milestones, and the differences.
 
 use ratatui::layout::Rect;
 
@@ -14,23 +14,18 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::chart;
 use novamind_tui::widgets::{Axis, Line, Side, Unit};
 
-/// Rows of a chart that is worth drawing.
 const LEAST_CHART: u16 = 6;
-/// Most of them.
 const MOST_CHART: u16 = 16;
 
-/// Width of the column of weeks.
 const FIRST_COLUMN: u16 = 10;
 
-/// What came of the branches.
 pub(super) struct Figures {
     comparison: BranchComparison,
     futures: Option<Futures>,
     days_per_week: u32,
     figure: usize,
-    /// The branch whose decisions are shown.
     selected: usize,
-    /// How sure its difference in the figure is: resampled once, not for every frame.
+    /// Confidence interval of its difference, computed once rather than in every frame.
     sure: Option<String>,
 }
 
@@ -61,7 +56,6 @@ impl Figures {
         format!("{name}{percent}")
     }
 
-    /// What the selected branch decides otherwise.
     pub(super) fn selected_edits(&self) -> Vec<DecisionEdit> {
         self.comparison.branches.get(self.selected).map_or(Vec::new(), |branch| branch.edits.clone())
     }
@@ -99,7 +93,7 @@ impl Figures {
         let lines = self.lines_of_a_row(area);
         let milestones = self.comparison.milestones(self.days_per_week).len() * lines;
         let table = milestones as u16 + 1;
-        // In a small window figures go before what is known from the title.
+        // In a small window the table takes precedence over the first line.
         if area.height > table + self.comparison.branches.len() as u16 {
             let row = take(&mut rest, 1);
             let heading = heading(&self.comparison, self.days_per_week);
@@ -118,7 +112,6 @@ impl Figures {
         }
     }
 
-    /// Each branch with the role of its curve.
     fn draw_branches(&self, canvas: &mut Canvas<'_>, rest: &mut Rect) {
         for (number, branch) in self.comparison.branches.iter().enumerate() {
             let row = take(rest, 1);
@@ -160,7 +153,6 @@ impl Figures {
         chart(canvas, area, &lines, &x, &Side { unit, holds: &[] });
     }
 
-    /// The figure at each milestone, in each branch.
     fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, lines: usize) {
         let figure = self.shown();
         let days = self.comparison.milestones(self.days_per_week);
@@ -188,7 +180,7 @@ impl Figures {
         }
     }
 
-    /// A figure of a branch at a milestone, in one line or in two.
+    /// Formats a figure of a branch at a milestone in one or two lines.
     fn cell(&self, number: usize, figure: BranchFigure, day: u32, lines: usize) -> Vec<String> {
         match &self.futures {
             Some(futures) if lines > 1 => futures_cell_in_two(futures, number, figure, day).into(),
@@ -203,7 +195,7 @@ impl Figures {
         }
     }
 
-    /// Lines that a milestone takes: two where a figure does not fit into one.
+    /// Returns the lines per milestone: two if a figure does not fit into one.
     fn lines_of_a_row(&self, area: Rect) -> usize {
         let width = area.width.saturating_sub(FIRST_COLUMN) / self.comparison.branches.len().max(1) as u16;
         let days = self.comparison.milestones(self.days_per_week);
@@ -215,7 +207,7 @@ impl Figures {
         if is_cut && (has_room || self.futures.is_some()) { 2 } else { 1 }
     }
 
-    /// How sure a difference is, and what the selected branch decides otherwise.
+    /// Describes the uncertainty of the difference and the edits of the selected branch.
     fn told(&self) -> Vec<String> {
         let Some(branch) = self.comparison.branches.get(self.selected) else { return Vec::new() };
         let mut told = Vec::new();
@@ -233,7 +225,7 @@ fn is_share(figure: BranchFigure) -> bool {
     matches!(figure.unit(), FigureUnit::Share | FigureUnit::FineShare)
 }
 
-/// Takes some rows from above.
+/// Splits some rows off the top.
 fn take(rest: &mut Rect, height: u16) -> Rect {
     let height = height.min(rest.height);
     let taken = Rect { height, ..*rest };

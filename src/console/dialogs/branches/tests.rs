@@ -1,4 +1,4 @@
-//! The page as it is used: edited, simulated, looked at, adopted.
+//! Tests of the what-if page: editing, simulating, viewing and adopting a branch.
 
 use serde_json::json;
 
@@ -44,13 +44,13 @@ fn decisions_of_the_week_and_later_are_listed_and_can_be_left_out_or_changed() {
     let mut page = page();
     for (width, height) in SIZES {
         let picture = dialog_picture(&page, &company, width, height);
-        for words in ["from week 5 on", "week  5  set_prices", "week  6", "refused"] {
+        for words in ["from week 5", "week  5  set_prices", "week  6", "refused"] {
             assert!(picture.contains(words), "{words} in {picture}");
         }
         assert!(!picture.contains("week  1"), "{picture}");
     }
     in_dialog(&mut page, Action::DropDecision, &company);
-    assert!(dialog_picture(&page, &company, 80, 24).contains("is not made"));
+    assert!(dialog_picture(&page, &company, 80, 24).contains("omitted"));
     assert_eq!(page.decisions.alternatives(), [vec![DecisionEdit::Drop(9)]]);
     in_dialog(&mut page, Action::DropDecision, &company);
     assert!(page.decisions.alternatives().is_empty());
@@ -59,7 +59,7 @@ fn decisions_of_the_week_and_later_are_listed_and_can_be_left_out_or_changed() {
     in_dialog(&mut page, Action::Commit, &company);
     let changed = DecisionEdit::Change { seq: 9, args: json!({"B": 30}) };
     assert_eq!(page.decisions.alternatives(), [vec![changed]]);
-    // An edit of a call that the branches no longer reach is given up.
+    // Edits of calls before the start week are dropped.
     in_dialog(&mut page, Action::Right, &company);
     assert!(page.decisions.alternatives().is_empty());
 }
@@ -69,7 +69,7 @@ fn other_decisions_are_typed_and_alternatives_stand_side_by_side() {
     let company = company();
     let mut page = page();
     assert!(in_dialog(&mut page, Action::SimulateBranches, &company).effects.is_empty());
-    assert!(dialog_picture(&page, &company, 80, 24).contains("decide something otherwise first"));
+    assert!(dialog_picture(&page, &company, 80, 24).contains("change a decision first"));
     type_in(&mut page, "set_price * 2");
     assert!(page.problem.as_ref().is_some_and(|told| told.contains("did you mean set_prices")));
     in_dialog(&mut page, Action::Discard, &company);
@@ -82,7 +82,7 @@ fn other_decisions_are_typed_and_alternatives_stand_side_by_side() {
     };
     let told: Vec<String> = alternatives.iter().map(|own| own[0].to_string()).collect();
     assert_eq!(told, ["set_prices * 0.9", "keep set_prices"]);
-    // esc stops the work and leads back; a second one leaves.
+    // The first esc stops the work, the second one closes the page.
     assert!(!in_dialog(&mut page, Action::Cancel, &company).close && !page.asked.is_waiting());
     assert!(in_dialog(&mut page, Action::Close, &company).close);
 }

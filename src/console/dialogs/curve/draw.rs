@@ -1,4 +1,4 @@
-//! The page of the explorer: the plans in lines, what leads would do, and the curve.
+//! Drawing of the curve explorer: the plans, the responses of leads, and the curve.
 
 use ratatui::layout::Rect;
 
@@ -18,13 +18,9 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{Axis, Band, Line, Plot, Side, Sign};
 use novamind_tui::widgets::scale::Unit;
 
-/// Widest that reads well.
 const WIDEST: u16 = 140;
-/// Lowest chart worth its rows.
 const LEAST_CHART: u16 = 5;
-/// Rows from which each plan has a line of its own.
 const LEAST_IN_FULL: u16 = 12;
-/// Rows from which the chart is explained.
 const LEAST_WITH_LEGEND: u16 = 14;
 
 impl CurvePage {
@@ -50,7 +46,7 @@ impl CurvePage {
         canvas.pane_keys(own, &self.keys(look));
     }
 
-    /// What drags stands before all other keys.
+    /// The drag keys come first.
     fn keys(&self, look: &Look<'_>) -> String {
         let label = |action| look.keys.label(action).unwrap_or_default();
         let drags = match self.opened() {
@@ -97,7 +93,7 @@ impl CurvePage {
         }
     }
 
-    /// Before a plan that is dragged.
+    /// Returns the prefix of a dragged plan.
     fn mark(&self, plan: Plan) -> &'static str {
         if self.chosen.is_none_or(|own| own == plan) { "›" } else { " " }
     }
@@ -123,7 +119,7 @@ impl CurvePage {
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
         let top = plans().map(|own| own.quality).fold(1.0, f64::max);
         let most = opened.greatest_price();
-        // What nobody can pay for has no place on the chart: lines end there, and the band reaches its upper edge.
+        // Unaffordable prices are not drawn: lines end there, and the band extends to its upper edge.
         let line = |of: fn(&CurvePoint) -> f64, role| {
             let inside = points.iter().filter(|point| of(point) <= top);
             Line::through(inside.map(|point| (point.price, of(point))).collect(), role)
@@ -146,7 +142,7 @@ impl CurvePage {
             let role = if here { Role::Selection } else { Role::Series(1) };
             Sign { x: (own.list - promotion).max(0.0), y: own.quality, text: plan.id(), role }
         };
-        // The chosen one lies on top.
+        // The selected plan is drawn on top.
         let mut order = Plan::ALL;
         order.sort_by_key(|plan| self.chosen == Some(*plan));
         let signs: Vec<Sign> = order.into_iter().map(sign).collect();
@@ -154,7 +150,7 @@ impl CurvePage {
     }
 }
 
-/// A plan with what was dragged: `A $12 → $15, quality 0.20, taken by 12.3%`.
+/// Describes a plan and its changes: `A $12 → $15, quality 0.20, taken by 12.3%`.
 fn line_of(opened: &ExploredCurve, plan: Plan) -> String {
     let (now, was) = (&opened.plans[plan], &opened.explorer.plans[plan]);
     let words = plan_in_words(plan, now, opened.outcome.takers.as_ref());
@@ -168,17 +164,16 @@ fn line_of(opened: &ExploredCurve, plan: Plan) -> String {
     if changes.is_empty() { words } else { format!("{words} ({})", changes.join(", ")) }
 }
 
-/// What the signs of the chart mean, as far as there is room.
+/// Explains the chart as far as space permits.
 fn legend(opened: &ExploredCurve, area: Rect) -> Vec<String> {
     if area.height < LEAST_WITH_LEGEND {
         return Vec::new();
     }
-    let unit = if opened.explorer.group.is_enterprise() { "price a seat" } else { "price" };
+    let unit = if opened.explorer.group.is_enterprise() { "price per seat" } else { "price" };
     let mut words =
-        format!("{unit} across, quality up · line: half of the leads ask for no more · shaded: 1 to 9 in 10");
+        format!("x: {unit}, y: quality · line: enough for half of the leads · shaded: for 1 to 9 in 10");
     if !opened.explorer.is_truth() {
-        words +=
-            " · dim lines: half, at the ends of the error · spread and rise are assumed: studies tell means";
+        words += " · dim lines: half, at both ends of the error · spread and slope are assumed; studies measure means";
     }
     wrapped(&words, area.width as usize)
 }

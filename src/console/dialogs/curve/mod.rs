@@ -1,5 +1,5 @@
-//! The curve explorer: the quality that a group requires at a price, the plans beside it, and what leads would make of other
-//! prices and qualities. Nothing that is dragged here is set.
+//! The curve explorer: the required quality of a group at each price, the plans, and how leads would respond to other
+//! prices and qualities. Nothing is set.
 
 mod draw;
 #[cfg(test)]
@@ -19,30 +19,28 @@ use novamind_tui::canvas::Canvas;
 use novamind_worker::asking::{Ask, Pending};
 use novamind_worker::questions::CurveQuestion;
 
-/// Qualities are dragged by this much, with page keys by ten times as much.
+/// Step by which qualities are changed; page keys change by ten steps.
 const QUALITY_STEP: f64 = 0.01;
-/// No product is as good as this.
 const MOST_QUALITY: f64 = 2.0;
 
-/// What is known of a group, with the plans as they are dragged.
 struct ExploredCurve {
     explorer: CurveExplorer,
     plans: ByPlan<PlanPoint>,
     outcome: CurveOutcome,
 }
 
-/// The explorer of a group.
+/// The curve explorer.
 pub struct CurvePage {
     group: Group,
     asked: Pending<CurveQuestion>,
-    /// What was found; none while it is drawn.
+    /// The curve, or `None` while it is computed.
     found: Option<Result<ExploredCurve, Refusal>>,
-    /// The plan that is dragged; none for all of them.
+    /// The dragged plan; `None` for all plans.
     chosen: Option<Plan>,
 }
 
 impl CurvePage {
-    /// Asks for the curve of a group.
+    /// Requests the curve of a group.
     pub fn new(group: Group) -> (CurvePage, Ask) {
         let (asked, ask) = Pending::asking(CurveQuestion(group));
         (CurvePage { group, asked, found: None, chosen: Some(Plan::A) }, ask)
@@ -51,7 +49,7 @@ impl CurvePage {
     fn take(&mut self, explorer: CurveExplorer) -> ExploredCurve {
         let plans = explorer.plans;
         let outcome = explorer.outcome(&plans);
-        // Plans that are one product at one price move together.
+        // Plans with the same quality and price move together.
         if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
             self.chosen = None;
         }
@@ -62,7 +60,7 @@ impl CurvePage {
         self.found.as_ref()?.as_ref().ok()
     }
 
-    /// Changes the chosen plan, or all of them, and asks the leads again.
+    /// Changes the selected plan or all plans, and recomputes the responses of leads.
     fn drag(&mut self, change: impl Fn(&mut PlanPoint)) {
         let chosen = self.chosen;
         let Some(Ok(opened)) = &mut self.found else { return };
@@ -82,7 +80,6 @@ impl CurvePage {
         self.drag(|own| own.quality = stepped(own.quality, steps, QUALITY_STEP).clamp(0.0, MOST_QUALITY));
     }
 
-    /// Back to the plans as they stand.
     fn reset(&mut self) {
         if let Some(Ok(opened)) = &mut self.found {
             opened.plans = opened.explorer.plans;
@@ -90,7 +87,7 @@ impl CurvePage {
         }
     }
 
-    /// A, B, C, all together.
+    /// Selects the next of A, B, C and all plans.
     fn choose_next(&mut self) {
         self.chosen = match self.chosen {
             None => Some(Plan::A),
@@ -98,7 +95,7 @@ impl CurvePage {
         };
     }
 
-    /// Another known group, forward or back.
+    /// Requests the curve of the next or previous known group.
     fn turn(&mut self, forward: bool, look: &Look<'_>) -> Outcome {
         let known = &look.company.seen.known_groups;
         let Some(at) = known.iter().position(|own| *own == self.group) else { return Outcome::stay() };
@@ -108,7 +105,7 @@ impl CurvePage {
         Outcome::with(vec![Effect::Ask(self.asked.ask(CurveQuestion(self.group)))])
     }
 
-    /// To the form of prices with those that were dragged typed into it.
+    /// Opens the price form with the dragged prices filled in.
     fn to_form(&self) -> Outcome {
         let Some(opened) = self.opened() else { return Outcome::stay() };
         let moved = |plan: &Plan| opened.plans[*plan].list != opened.explorer.plans[*plan].list;
@@ -126,13 +123,12 @@ impl CurvePage {
 }
 
 impl ExploredCurve {
-    /// The price at the right end of the curve.
     fn greatest_price(&self) -> f64 {
         self.explorer.points.last().map_or(1.0, |point| point.price)
     }
 }
 
-/// Dollars by which prices are dragged: some hundred steps over the curve.
+/// Returns the price step in dollars: about a hundred steps over the curve.
 fn price_step(most: f64) -> f64 {
     match most {
         most if most <= 150.0 => 1.0,
@@ -141,10 +137,10 @@ fn price_step(most: f64) -> f64 {
     }
 }
 
-/// The next multiples of a step, so many on.
+/// Moves a value by whole steps along the multiples of `step`.
 fn stepped(value: f64, steps: f64, step: f64) -> f64 {
     let at = value / step;
-    // From between two multiples the first step leads to the nearer end.
+    // From between two multiples, the first step goes to the nearest one in its direction.
     let from = if steps > 0.0 { (at + 1e-9).floor() } else { (at - 1e-9).ceil() };
     (from + steps) * step
 }

@@ -1,4 +1,4 @@
-//! The explorer is dragged with keys, says what would come of it, and changes nothing.
+//! Tests of the curve explorer: keys drag plans, the responses change, and nothing is set.
 
 use super::*;
 use crate::test_kit::{asked, dialog_picture, in_dialog, played};
@@ -26,7 +26,7 @@ fn prices_and_qualities_are_dragged_and_the_leads_asked_again() {
     assert_eq!(opened.plans[Plan::A].list, list.floor() + 2.0);
     assert_eq!(opened.plans[Plan::B], opened.explorer.plans[Plan::B]);
     assert_ne!(opened.outcome, before);
-    // All plans together, then back.
+    // Drags all plans together, then resets them.
     for _ in 0..3 {
         in_dialog(&mut page, Action::NextPlan, &company);
     }

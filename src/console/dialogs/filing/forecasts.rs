@@ -1,4 +1,4 @@
-//! The third step of a week's end: what cash will be, as a range for each horizon.
+//! Step 3 of the next-week dialog: cash forecasts, an interval per horizon.
 
 use ratatui::layout::Rect;
 
@@ -17,7 +17,7 @@ impl FilingDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
         let (company, roomy) = (look.company, area.height >= 12);
         let question = format!(
-            "Cash now {}. What will it be? Choose ranges that contain the actual cash 95 times in 100.",
+            "Cash now: {}. Forecast it with ranges that contain the actual value 95 times in 100.",
             dollars(company.seen.cash)
         );
         let asked = wrapped(&question, area.width as usize);
@@ -50,14 +50,14 @@ impl FilingDialog {
         }
     }
 
-    /// What the naive projection is, and how often it held where that may be told.
+    /// Describes the projection, and its past coverage if the rules permit.
     fn said_of_naive(&self, look: &Look<'_>, width: usize, roomy: bool) -> Vec<(String, Role)> {
         let filled = self.filled.as_flattened().contains(&true);
         let fills = match (filled, look.keys.label(Action::FillNaively)) {
             (false, Some(key)) => format!("{key} fills empty cells"),
-            _ => "naive, recorded as such".to_owned(),
+            _ => "marked as projection".to_owned(),
         };
-        let said = format!("{fills}: the last four weeks go on, at the costs set now");
+        let said = format!("{fills}: the last four weeks continue at current costs");
         let mut lines: Vec<(String, Role)> =
             wrapped(&said, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !look.company.is_baseline() {
@@ -91,7 +91,7 @@ impl FilingDialog {
                 format!("{} of {}", score.covered, score.scored)
             }
             Some(score) if score.scored > 0 => format!(
-                "inside {} of {} · typical miss {}",
+                "in range {} of {} · typical error {}",
                 score.covered,
                 score.scored,
                 percent(score.mean_error, 1)

@@ -1,5 +1,4 @@
-//! What is filed before a week runs: review, rationale, forecasts. Three steps that can be walked back; what was
-//! typed stays until the week has run.
+//! The next-week dialog: review, rationale and forecasts. The user can go back; drafts stay until the week has run.
 
 mod forecasts;
 mod review;
@@ -24,7 +23,6 @@ use novamind_tui::widgets::{Editor, Field};
 use novamind_worker::company::Company;
 use novamind_worker::request::Request;
 
-/// Steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FilingStep {
     Review,
@@ -32,36 +30,32 @@ enum FilingStep {
     Forecasts,
 }
 
-/// The dialog, with its drafts.
+/// The dialog with its drafts.
 pub struct FilingDialog {
     step: FilingStep,
     review: Review,
     rationale: Editor,
-    /// Low, point, high of every horizon.
+    /// Low, point and high of each horizon.
     cells: [[Field; 3]; 4],
     at: (usize, usize),
-    /// The cell is being typed into.
     typing: bool,
-    /// What was in the cell before it was typed into, and whether the naive projection had filled it.
+    /// The cell before it was edited, and whether the projection had filled it.
     before: Field,
     was_filled: bool,
-    /// Cells that the naive projection filled in.
+    /// Cells that the projection filled in.
     filled: [[bool; 3]; 4],
     problem: Option<String>,
-    /// Tools whose forms hold values that were not sent.
     unsent: Vec<ToolId>,
-    /// Of a baseline run: the program writes no rationale.
+    /// In baseline runs the program fills in no rationale.
     baseline: bool,
 }
 
-/// What a rationale is asked for with. It has none of the words that are counted in rationales.
+/// Prompt for the rationale. It contains no words that are counted in rationales.
 const RATIONALE_QUESTION: &str = "Why these decisions, and what will come of them?";
-/// Said where one is missing.
 const RATIONALE_NEEDED: &str = "a rationale is required: write at least one sentence";
-/// What an empty rationale shows. It has none of the words that are counted in rationales.
+/// Placeholder of the rationale. It contains no words that are counted in rationales.
 const RATIONALE_HINT: &str = "what you changed, and your reasons";
 
-/// Weeks of the horizons, in words.
 const HORIZONS: [&str; 4] = ["1 week", "4 weeks", "12 weeks", "26 weeks"];
 
 impl Default for FilingDialog {
@@ -84,7 +78,7 @@ impl Default for FilingDialog {
 }
 
 impl FilingDialog {
-    /// Goes back to the first step; drafts stay. Warns of forms whose values were not sent.
+    /// Returns to the first step and keeps the drafts. Warns about forms with unsent values.
     pub fn reopen(&mut self, unsent: Vec<ToolId>, baseline: bool) {
         (self.unsent, self.baseline) = (unsent, baseline);
         self.step = FilingStep::Review;
@@ -93,12 +87,12 @@ impl FilingDialog {
         self.typing = false;
     }
 
-    /// Whether a draft would be lost.
+    /// Returns whether there is a draft that could be lost.
     pub fn has_draft(&self) -> bool {
         !self.rationale.is_blank() || self.typed().any(|(row, column)| !self.cells[row][column].is_empty())
     }
 
-    /// The rationale and the cells of the forecasts as they were typed.
+    /// Returns the rationale and the forecast cells as typed.
     pub fn unsent(&self) -> (String, [[String; 3]; 4]) {
         let mut cells: [[String; 3]; 4] = Default::default();
         for (row, column) in self.typed() {
@@ -107,25 +101,24 @@ impl FilingDialog {
         (self.rationale.text(), cells)
     }
 
-    /// Puts what was typed back.
+    /// Restores a draft.
     pub fn restore(&mut self, rationale: &str, cells: &[[String; 3]; 4]) {
         self.rationale = Editor::of(rationale);
         self.cells = cells.each_ref().map(|row| row.each_ref().map(|text| Field::of(text.as_str())));
         self.filled = Default::default();
     }
 
-    /// The typed cells in a line each.
     fn typed_text(&self) -> String {
         let texts = self.typed().map(|(row, column)| self.cells[row][column].text());
         texts.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(BETWEEN_CELLS)
     }
 
-    /// Number of the step, from 1.
+    /// Returns the number of the step, from 1.
     pub fn step_number(&self) -> usize {
         self.step as usize + 1
     }
 
-    /// Shows why a week was refused.
+    /// Shows why a week was rejected.
     pub fn refused(&mut self, problem: String) {
         self.problem = Some(problem);
     }
@@ -163,12 +156,12 @@ impl FilingDialog {
         };
     }
 
-    /// Places of the cells that the person filled in, or left empty.
+    /// Positions of the cells that the projection did not fill.
     fn typed(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..4).flat_map(|row| (0..3).map(move |column| (row, column))).filter(|at| !self.filled[at.0][at.1])
     }
 
-    /// Fills the empty cells with the naive projection. Around a point that was typed its interval keeps its width.
+    /// Fills empty cells with the projection. Around a typed point, its interval keeps its width.
     fn fill_naively(&mut self, company: &Company) {
         for (row, naive) in company.naive.all.iter().enumerate() {
             let typed = |column: usize| parse_number(self.cells[row][column].text());
@@ -185,7 +178,7 @@ impl FilingDialog {
         self.problem = None;
     }
 
-    /// The forecasts as typed, or the first cell that is wrong.
+    /// Parses the forecasts. Returns the first invalid cell as an error.
     fn forecasts(&self, company: &Company) -> Result<Forecasts, ((usize, usize), String)> {
         let mut all = company.naive;
         all.filled_naively = self.filled.map(|row| row.contains(&true));
@@ -203,7 +196,7 @@ impl FilingDialog {
                 return Err(((row, 0), format!("{}: low is above high", HORIZONS[row])));
             }
             if point < lower || point > upper {
-                return Err(((row, 1), format!("{}: the point lies outside low to high", HORIZONS[row])));
+                return Err(((row, 1), format!("{}: the point is not between low and high", HORIZONS[row])));
             }
             all.all[row] = Forecast { horizon_days: all.all[row].horizon_days, point, lower, upper };
         }
@@ -219,7 +212,7 @@ impl FilingDialog {
                 .map(|change| format!("{} {} → {}", change.setting, number(change.old), number(change.new)))
                 .chain(company.seen.purchases.iter().cloned())
                 .collect();
-            let text = if changes.is_empty() { "nothing changed".to_owned() } else { changes.join("; ") };
+            let text = if changes.is_empty() { "no changes".to_owned() } else { changes.join("; ") };
             self.rationale.insert(&text);
         }
     }
@@ -310,14 +303,14 @@ impl Dialog for FilingDialog {
             Action::Close | Action::LeaveEditor => return Outcome::close(),
             Action::FillRationale if self.step == FilingStep::Rationale => self.fill_rationale(look.company),
             Action::FillNaively if self.step == FilingStep::Forecasts => self.fill_naively(look.company),
-            // A week in which nothing is decided takes one key on the way to the last step.
+            // Without new decisions, one key fills everything and goes to the last step.
             Action::FillNaively if self.step == FilingStep::Review && !look.company.is_baseline() => {
                 self.fill_rationale(look.company);
                 self.fill_naively(look.company);
                 self.step = FilingStep::Forecasts;
             }
             Action::FillNaively if self.step == FilingStep::Review => {
-                self.problem = Some("forecasts can be filled in at step 3".to_owned());
+                self.problem = Some("you can fill in forecasts in step 3".to_owned());
             }
             Action::Discard => {
                 self.typing = false;
@@ -411,11 +404,8 @@ impl Dialog for FilingDialog {
 
 impl FilingDialog {
     fn draw_rationale(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company) {
-        let why = if company.is_baseline() {
-            "Required, and kept with the run."
-        } else {
-            "It is kept with the run."
-        };
+        let why =
+            if company.is_baseline() { "Required, and saved with the run." } else { "Saved with the run." };
         let used = 3;
         for (row, (line, role)) in rows_of(area).zip([(RATIONALE_QUESTION, Role::Text), (why, Role::Dim)]) {
             canvas.text(row, line, role);

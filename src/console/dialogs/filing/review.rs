@@ -1,4 +1,4 @@
-//! The first step of a week's end: what it costs, what was changed, and what needs an answer before.
+//! Step 1 of the next-week dialog: costs, changes, and open issues.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
@@ -13,24 +13,24 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::Scroll;
 use novamind_worker::company::Company;
 
-/// How far the review is scrolled.
+/// Scroll position of the review.
 #[derive(Default)]
 pub struct Review {
     scroll: Scroll,
 }
 
 impl Review {
-    /// Goes through a review that is longer than its window.
+    /// Scrolls a review that is longer than its window.
     pub fn scroll(&mut self, action: Action, page: usize) {
         self.scroll.act(action, page);
     }
 
-    /// Draws what fits.
+    /// Draws the visible part.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &Company, unsent: &[ToolId]) {
         let lines = lines(canvas, area.width as usize, company, unsent);
         let room = area.height as usize;
         let fits = lines.len() <= room;
-        // One row tells how much is not shown.
+        // One row shows how many lines are hidden.
         let shown = if fits { room } else { room.saturating_sub(1) };
         let from = self.scroll.within(lines.len().saturating_sub(shown));
         canvas.page = (shown as u16).max(1);
@@ -79,7 +79,7 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]
     lines.push(TextLine::default());
     lines.push(head("Before you continue", canvas));
     for tool in unsent {
-        let text = format!("  ! the {tool} form holds unsent values");
+        let text = format!("  ! the {tool} form has unsent values");
         lines.push(TextLine::from(canvas.span(text, Role::Warning)));
     }
     for need in &company.needs {
@@ -97,7 +97,7 @@ fn lines(canvas: &Canvas<'_>, width: usize, company: &Company, unsent: &[ToolId]
         }
     }
     if company.needs.is_empty() && unsent.is_empty() {
-        lines.push(TextLine::from(canvas.span("  nothing needs you", Role::Dim)));
+        lines.push(TextLine::from(canvas.span("  nothing needs attention", Role::Dim)));
     }
     lines
 }

@@ -412,7 +412,7 @@ fn a_participant_agrees_or_nothing_begins() {
     };
     let mut menu = asked();
     let screen = shown(&menu, 80, 23);
-    for part in ["Before the session", "We keep what you do", "n I do not", "scroll to its end to agree"] {
+    for part in ["Before the session", "We keep what you do", "n I do not", "scroll to the end to agree"] {
         assert!(screen.contains(part), "{part} is missing in\n{screen}");
     }
     assert!(!screen.contains("stop at any time"));

@@ -88,7 +88,7 @@ fn a_chart_in_words_says_as_much_as_has_room() {
     assert_eq!(summary(&values, &write, 80), "2 ▲ 1 · min 1 · max 3");
     assert_eq!(summary(&values, &write, 8), "2 ▲ 1");
     assert_eq!(summary(&values, &write, 2), "2");
-    assert_eq!(summary(&[], &write, 80), "nothing yet");
+    assert_eq!(summary(&[], &write, 80), "no data yet");
 }
 
 #[test]

@@ -1,14 +1,14 @@
-//! What all answers have in common: a JSON array, and texts that can be shown.
+//! Validation that all language model responses share: a JSON array, and printable texts.
 
 use serde_json::Value;
 use unicode_width::UnicodeWidthChar;
 
 use novamind_base::notation::printable;
 
-/// Letters without a width of their own, at most: accents of a text that is written apart.
+/// Maximum zero-width characters, such as accents of decomposed text.
 const MOST_MARKS: usize = 20;
 
-/// The array that an answer is. Models like to put it into a block of code; nothing else may stand around it.
+/// Parses a response that is a JSON array. A code fence around it is allowed, because models often add one.
 pub(super) fn array(answer: &str) -> Result<Vec<Value>, String> {
     match serde_json::from_str(without_fence(answer.trim())) {
         Ok(Value::Array(values)) => Ok(values),
@@ -22,7 +22,8 @@ fn without_fence(answer: &str) -> &str {
     inner.map_or(answer, |(_, rest)| rest.trim())
 }
 
-/// Whether a text can be shown in one place: not empty, one line, no letter that acts, no longer than that.
+/// Checks that a text can be shown in one line: not empty, no control characters, at most `most_letters`
+/// characters.
 pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("a text is empty".to_owned());
@@ -30,7 +31,7 @@ pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> 
     if text.chars().any(char::is_control) || printable(text) != text {
         return Err("a text has control characters or line ends".to_owned());
     }
-    // Marks that pile up on a letter reach into the lines around it.
+    // Stacked combining marks overlap adjacent lines.
     if text.chars().filter(|letter| letter.width() == Some(0)).count() > MOST_MARKS {
         return Err(format!("a text has more than {MOST_MARKS} letters without a width"));
     }

@@ -1,35 +1,35 @@
-//! Which language model lends its voice, where it answers, and what for.
+//! Settings of a language model: endpoint, name and purpose.
 
 use serde::{Deserialize, Serialize};
 
 use novamind_base::notation::printable;
 use novamind_world::params::ParameterError;
 
-/// Seconds that a week may wait where nothing is said.
+/// Default maximum wait per week, in seconds.
 const SECONDS_A_WEEK: u32 = 30;
-/// Seconds that a week may wait at most.
+/// Upper limit of the wait per week, in seconds.
 const MOST_SECONDS_A_WEEK: u32 = 600;
-/// Letters of a name.
+/// Maximum length of a name, in characters.
 const MOST_LETTERS: usize = 200;
 
-/// A language model as a file names it.
+/// A language model as configured in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelSettings {
-    /// Address of an OpenAI-compatible interface, without `/chat/completions`.
+    /// Base URL of an OpenAI-compatible API, without `/chat/completions`.
     pub endpoint: String,
-    /// Name by which the endpoint knows the model.
+    /// Name of the model at the endpoint.
     pub model: String,
-    /// Environment variable that holds the key; none: no key is sent. The key itself is kept nowhere.
+    /// Environment variable with the API key; `None` to send no key. The key itself is never stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_variable: Option<String>,
-    /// Seconds that a week waits for it at most.
+    /// Maximum wait per week, in seconds.
     #[serde(default = "seconds_a_week")]
     pub seconds_a_week: u32,
-    /// It judges the player's posts.
+    /// Whether it judges the player's posts.
     #[serde(default)]
     pub judge: bool,
-    /// It words the posts of others.
+    /// Whether it words the posts of others.
     #[serde(default = "words")]
     pub words: bool,
 }
@@ -42,7 +42,7 @@ fn words() -> bool {
     true
 }
 
-/// What a run records of its language model.
+/// The part of the settings that a run records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelStamp {
@@ -50,14 +50,15 @@ pub struct ModelStamp {
     pub host: String,
     /// Name of the model.
     pub model: String,
-    /// It judges the player's posts.
+    /// Whether it judges the player's posts.
     pub judge: bool,
-    /// It words the posts of others.
+    /// Whether it words the posts of others.
     pub words: bool,
 }
 
 impl ModelStamp {
-    /// What it does in the run, in words: `llama3 at 127.0.0.1:11434 words posts and judges those of the player`.
+    /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 words posts and judges those of the
+    /// player`.
     pub fn in_words(&self) -> String {
         let deeds = match (self.words, self.judge) {
             (true, true) => "words posts and judges those of the player",
@@ -69,10 +70,10 @@ impl ModelStamp {
 }
 
 impl ModelSettings {
-    /// Reads the text of a file.
+    /// Parses a settings file.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its line and key.
+    /// The first problem, with its line and key.
     pub fn read(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
         let settings: ModelSettings =
             toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
@@ -80,10 +81,10 @@ impl ModelSettings {
         Ok(settings)
     }
 
-    /// Whether every value can be.
+    /// Checks all values.
     ///
     /// # Errors
-    /// Key and problem of the first that cannot.
+    /// Key and problem of the first invalid value.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         self.check_endpoint().map_err(|problem| ("endpoint", problem))?;
         let letters = self.model.chars().count();
@@ -132,18 +133,18 @@ impl ModelSettings {
         if fits { Ok(()) } else { Err(example()) }
     }
 
-    /// Host of the endpoint, with its port.
+    /// Returns the host of the endpoint with its port.
     pub fn host(&self) -> &str {
         let rest = self.endpoint.strip_prefix("http://").unwrap_or(&self.endpoint);
         rest.split('/').next().unwrap_or_default()
     }
 
-    /// Where questions go.
+    /// Returns the URL of requests.
     pub fn address(&self) -> String {
         format!("{}/chat/completions", self.endpoint.trim_end_matches('/'))
     }
 
-    /// What a run records of it.
+    /// Returns the part of the settings that a run records.
     pub fn stamp(&self) -> ModelStamp {
         let ModelSettings { model, judge, words, .. } = self.clone();
         ModelStamp { host: self.host().to_owned(), model, judge, words }

@@ -12,7 +12,7 @@ const MOST_MARKS: usize = 20;
 pub(super) fn array(answer: &str) -> Result<Vec<Value>, String> {
     match serde_json::from_str(without_fence(answer.trim())) {
         Ok(Value::Array(values)) => Ok(values),
-        Ok(_) | Err(_) => Err("it is no JSON array".to_owned()),
+        Ok(_) | Err(_) => Err("it is not a JSON array".to_owned()),
     }
 }
 
@@ -29,15 +29,15 @@ pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> 
         return Err("a text is empty".to_owned());
     }
     if text.chars().any(char::is_control) || printable(text) != text {
-        return Err("a text has control characters or line ends".to_owned());
+        return Err("a text contains control characters or line breaks".to_owned());
     }
     // Stacked combining marks overlap adjacent lines.
     if text.chars().filter(|letter| letter.width() == Some(0)).count() > MOST_MARKS {
-        return Err(format!("a text has more than {MOST_MARKS} letters without a width"));
+        return Err(format!("a text has more than {MOST_MARKS} zero-width characters"));
     }
     match text.chars().count() {
         letters if letters > most_letters => {
-            Err(format!("a text has {letters} letters, more than {most_letters}"))
+            Err(format!("a text has {letters} characters; the maximum is {most_letters}"))
         }
         _ => Ok(()),
     }
@@ -51,7 +51,7 @@ mod tests {
     fn marks_that_pile_up_are_refused_and_accents_are_not() {
         assert!(check_text("Cafe\u{301}, 12 euros", 100).is_ok());
         let piled = format!("Up{} 12", "\u{301}".repeat(MOST_MARKS + 1));
-        assert!(check_text(&piled, 100).expect_err("piled").contains("without a width"));
+        assert!(check_text(&piled, 100).expect_err("piled").contains("zero-width"));
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl ModelScore {
     /// The reason why it is invalid.
     pub fn check(&self) -> Result<(), String> {
         if !(-1.0..=1.0).contains(&self.score) {
-            return Err(format!("the score of {} is not within -1 and 1", self.group));
+            return Err(format!("the score of {} is not between -1 and 1", self.group));
         }
         check_text(&self.reason, MOST_LETTERS)
     }
@@ -95,9 +95,9 @@ pub fn read(answer: &str, groups: &[Group]) -> Result<Vec<ModelScore>, String> {
     }
     let of_group = |group: &Group| {
         let value = values.iter().find(|value| value["group"] == group.id());
-        let value = value.ok_or_else(|| format!("it has no score of {group}"))?;
-        let score = value["score"].as_f64().ok_or_else(|| format!("the score of {group} is no number"))?;
-        let reason = value["reason"].as_str().ok_or_else(|| format!("the reason of {group} is no text"))?;
+        let value = value.ok_or_else(|| format!("it has no score for {group}"))?;
+        let score = value["score"].as_f64().ok_or_else(|| format!("the score of {group} is not a number"))?;
+        let reason = value["reason"].as_str().ok_or_else(|| format!("the reason for {group} is not a text"))?;
         let reason = reason.trim().to_owned();
         let score = ModelScore { group: *group, score, reason };
         score.check()?;

@@ -90,20 +90,20 @@ impl ModelSettings {
         let letters = self.model.chars().count();
         if self.model.trim().is_empty() || letters > MOST_LETTERS || self.model.chars().any(char::is_control)
         {
-            return Err(("model", format!("a model has a name of 1 to {MOST_LETTERS} letters, in one line")));
+            return Err(("model", format!("must have 1 to {MOST_LETTERS} characters in one line")));
         }
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if self.key_variable.as_ref().is_some_and(|name| name.is_empty() || !name.chars().all(is_letter)) {
-            let problem = "name the environment variable that holds the key, for instance MODEL_KEY; the key \
-                           itself does not belong here";
+            let problem = "must be the name of the environment variable with the key, for instance \
+                           MODEL_KEY, not the key itself";
             return Err(("key_variable", problem.to_owned()));
         }
         if !(1..=MOST_SECONDS_A_WEEK).contains(&self.seconds_a_week) {
-            let problem = format!("a week waits for 1 to {MOST_SECONDS_A_WEEK} seconds");
+            let problem = format!("must be 1 to {MOST_SECONDS_A_WEEK} seconds");
             return Err(("seconds_a_week", problem));
         }
         if !self.judge && !self.words {
-            return Err(("words", "it has nothing to do: set words or judge to true".to_owned()));
+            return Err(("words", "the model has nothing to do; set words or judge to true".to_owned()));
         }
         Ok(())
     }
@@ -111,12 +111,12 @@ impl ModelSettings {
     fn check_endpoint(&self) -> Result<(), String> {
         let endpoint = self.endpoint.as_str();
         if endpoint.starts_with("https://") {
-            let problem = "https is not spoken here: let a gateway on this machine speak it, and name the \
-                           gateway's own address, for instance http://127.0.0.1:4000/v1";
+            let problem = "https is not supported; run a gateway on this machine that supports it, and enter \
+                           the gateway's address, for instance http://127.0.0.1:4000/v1";
             return Err(problem.to_owned());
         }
         let example = || {
-            "write an address like http://127.0.0.1:11434/v1, without name, password and question mark"
+            "enter an address like http://127.0.0.1:11434/v1, without user name, password or query"
                 .to_owned()
         };
         if !endpoint.starts_with("http://") || endpoint.len() > MOST_LETTERS {
@@ -180,9 +180,9 @@ mod tests {
             (format!("{WHOLE}judge = \"yes\"\n"), 3, "boolean"),
             (WHOLE.replace("http:", "https:"), 1, "gateway on this machine"),
             (WHOLE.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
-            (WHOLE.replace(local, "http://me:secret@box/v1"), 1, "without name, password"),
+            (WHOLE.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
             (WHOLE.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
-            (WHOLE.replace(local, "http://box/v1?key=1"), 1, "question mark"),
+            (WHOLE.replace(local, "http://box/v1?key=1"), 1, "or query"),
             (WHOLE.replace(local, "http:///v1"), 1, "endpoint"),
             (WHOLE.replace("llama3", " "), 2, "model"),
             (format!("{WHOLE}key_variable = \"sk-1234\"\n"), 3, "environment variable"),

@@ -59,12 +59,12 @@ pub fn read(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, Stri
         return Err(format!("it has {} texts for {} posts", values.len(), posts.len()));
     }
     let text = |(value, post): (Value, &BuiltInPost<'_>)| {
-        let Value::String(text) = value else { return Err("a text is none".to_owned()) };
+        let Value::String(text) = value else { return Err("an element is not a text".to_owned()) };
         let text = text.trim();
         check(text)?;
         match numbers(text) == numbers(post.text) {
             true => Ok(text.to_owned()),
-            false => Err("a text has other numbers than its post".to_owned()),
+            false => Err("a text and its post have different numbers".to_owned()),
         }
     };
     values.into_iter().zip(posts).map(text).collect()
@@ -113,7 +113,7 @@ mod tests {
         let posts = [post("The index stands at 48.3, down 0.6.")];
         assert!(read(r#"["Down 0.6, and the index is 48.3 now."]"#, &posts).is_ok());
         for answer in [r#"["The index is low."]"#, r#"["Down 0.6 to 48.3 in 7 days."]"#, r#"["48,3, 0.6"]"#] {
-            assert!(read(answer, &posts).expect_err(answer).contains("other numbers"), "{answer}");
+            assert!(read(answer, &posts).expect_err(answer).contains("different numbers"), "{answer}");
         }
     }
 

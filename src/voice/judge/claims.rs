@@ -9,7 +9,7 @@ use super::lexicon::Lexicon;
 pub struct Claim {
     /// Its name.
     pub name: &'static str,
-    /// True, false, or `None` if the readers cannot tell.
+    /// True, false, or `None` if the readers do not know.
     pub verdict: Option<bool>,
 }
 

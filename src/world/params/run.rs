@@ -84,11 +84,11 @@ parameters! {
 pub struct Fidelity {
     /// Form of the participation curve.
     pub required_quality: RequiredQuality,
-    /// What the quota factor multiplies.
+    /// The terms that the quota factor multiplies.
     pub perceived_quality: PerceivedQuality,
     /// Where overload and outages lower quality.
     pub service_penalty: ServicePenalty,
-    /// What a quota limits.
+    /// The period that a quota limits.
     pub usage_quota: UsageQuota,
     /// How often accumulated drift counts for a customer.
     pub drift_counted: DriftCounted,
@@ -116,7 +116,7 @@ pub enum RequiredQuality {
     Blended,
 }
 
-/// What the quota factor multiplies.
+/// The terms that the quota factor multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PerceivedQuality {
@@ -136,7 +136,7 @@ pub enum ServicePenalty {
     Everywhere,
 }
 
-/// What a quota limits.
+/// The period that a quota limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UsageQuota {

@@ -50,7 +50,7 @@ parameters! {
         pub initial: Initial,
         /// Limits of tools, queries and texts.
         pub limits: Limits,
-        /// Variants of mechanics that differ between release and paper.
+        /// Alternative forms of mechanics.
         pub fidelity: Fidelity,
         /// Which recorded series are replayed.
         pub series: SeriesChoice,

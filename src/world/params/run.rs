@@ -78,7 +78,7 @@ parameters! {
     }
 }
 
-/// Mechanics with two variants, that of the release and that of the paper (`docs/mechanics/README.md#the-release-and-the-paper`).
+/// Mechanics of the release with alternative forms (`docs/mechanics/README.md#the-release-and-the-paper`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fidelity {

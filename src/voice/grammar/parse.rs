@@ -64,7 +64,8 @@ fn flatten(
             Value::Array(texts) if !texts.is_empty() => {
                 let texts: Option<Vec<String>> =
                     texts.iter().map(|text| text.as_str().map(str::to_owned)).collect();
-                let texts = texts.ok_or_else(|| GrammarError(format!("rule {name}: not all elements are texts")))?;
+                let texts =
+                    texts.ok_or_else(|| GrammarError(format!("rule {name}: not all elements are texts")))?;
                 if rules.insert(name.clone(), texts).is_some() {
                     return Err(GrammarError(format!("rule {name} is defined twice")));
                 }
@@ -257,8 +258,7 @@ mod tests {
         ] {
             assert!(problem(source).contains(words), "{source}: {}", problem(source));
         }
-        let twice =
-            read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("an error");
+        let twice = read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("an error");
         assert!(twice.to_string().contains("twice"));
     }
 }

@@ -97,7 +97,8 @@ pub fn read(answer: &str, groups: &[Group]) -> Result<Vec<ModelScore>, String> {
         let value = values.iter().find(|value| value["group"] == group.id());
         let value = value.ok_or_else(|| format!("it has no score for {group}"))?;
         let score = value["score"].as_f64().ok_or_else(|| format!("the score of {group} is not a number"))?;
-        let reason = value["reason"].as_str().ok_or_else(|| format!("the reason for {group} is not a text"))?;
+        let reason =
+            value["reason"].as_str().ok_or_else(|| format!("the reason for {group} is not a text"))?;
         let reason = reason.trim().to_owned();
         let score = ModelScore { group: *group, score, reason };
         score.check()?;

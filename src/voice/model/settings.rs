@@ -116,8 +116,7 @@ impl ModelSettings {
             return Err(problem.to_owned());
         }
         let example = || {
-            "enter an address like http://127.0.0.1:11434/v1, without user name, password or query"
-                .to_owned()
+            "enter an address like http://127.0.0.1:11434/v1, without user name, password or query".to_owned()
         };
         if !endpoint.starts_with("http://") || endpoint.len() > MOST_LETTERS {
             return Err(example());

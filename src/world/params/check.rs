@@ -292,7 +292,10 @@ mod tests {
     use super::*;
 
     fn near(actual: f64, expected: f64) {
-        assert!((actual - expected).abs() < 1e-9 * expected.abs().max(1.0), "got {actual}, expected {expected}");
+        assert!(
+            (actual - expected).abs() < 1e-9 * expected.abs().max(1.0),
+            "got {actual}, expected {expected}"
+        );
     }
 
     #[test]

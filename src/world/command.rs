@@ -17,7 +17,7 @@ use super::settings::SettingsChange;
 use super::state::World;
 
 /// A validated change.
-#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
+#[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
     /// No change: the tool only reads.
@@ -50,7 +50,7 @@ pub struct Draft {
 }
 
 /// A validated change with its random draws.
-#[expect(clippy::large_enum_variant, reason = "there is one at a time")]
+#[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum ResolvedCommand {
     /// No change.

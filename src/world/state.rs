@@ -25,7 +25,7 @@ pub struct World {
     pub finance: Finance,
     /// The product and its development.
     pub product: Product,
-    /// Who the customers are.
+    /// Customers.
     pub customers: Customers,
     /// Support issues.
     pub issue_desk: IssueDesk,

@@ -149,7 +149,7 @@ impl Enterprise {
         self.threads.iter().enumerate().filter_map(live).collect()
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the first turn has all data of a thread")]
+    #[expect(clippy::too_many_arguments, reason = "the first turn has all values of a thread")]
     fn open_thread(
         &mut self,
         day: u32,

@@ -228,7 +228,7 @@ pub struct UsageRows {
 pub struct IssueOpened {
     /// Running number of the issue.
     pub issue: u32,
-    /// Whose.
+    /// Number of the customer.
     pub customer: u32,
     /// The customer's group.
     pub group: Group,
@@ -237,7 +237,7 @@ pub struct IssueOpened {
 /// Ad revenue of one subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdsRevenueRow {
-    /// Who saw the ads.
+    /// Number of the customer who saw the ads.
     pub customer: u32,
     /// The customer's group.
     pub group: Group,

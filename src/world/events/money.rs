@@ -17,7 +17,7 @@ canonical_codes! {
 /// A payment of a subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Payment {
-    /// Who paid.
+    /// Number of the customer who paid.
     pub customer: u32,
     /// Dollars.
     pub amount: f64,

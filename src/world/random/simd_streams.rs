@@ -4,7 +4,7 @@
 //! the processor mostly idle. Thousands of streams a day are opened for a single draw (bills, leads), so
 //! eight of them are processed together, one per lane of a vector register, in a fifth of the time. The bits
 //! equal those of [`super::Streams::open`], which is the fallback; tests compare them.
-#![expect(unsafe_code, reason = "vector instructions need to be asked for; see the safety comments")]
+#![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{
     __m256i, _mm256_add_epi32, _mm256_extract_epi32, _mm256_or_si256, _mm256_set_epi32, _mm256_set1_epi32,

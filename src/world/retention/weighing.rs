@@ -41,7 +41,7 @@ pub fn weigh(group: Group, block: &Block, at: usize, judgement: &RenewalContext<
     let quality = &params.quality;
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
-    // (`docs/mechanics/product/quality.md#who-feels-what`)
+    // (`docs/mechanics/product/quality.md#terms-of-each-decision`)
     let experiences = ByPlan::from_fn(|plan| Experience {
         delivered: morning.delivered(group, plan) - service_penalty,
         relationship: relationship_bonus(block.relationship[at], quality),

@@ -98,7 +98,6 @@ fn first_word(word: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
-/// A sequence of hashes of a number.
 struct Draw(u64);
 
 impl Draw {

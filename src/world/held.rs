@@ -67,7 +67,6 @@ mod tests {
     use crate::state::World;
     use crate::test_kit::policy_p;
 
-    /// A load factor that overloads the service.
     const LOAD: f64 = 1000.0;
 
     /// A company at the end of day `eve`, with its parameters and streams.

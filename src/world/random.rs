@@ -109,7 +109,6 @@ pub struct Streams {
     own: Option<(u32, PartKeys)>,
 }
 
-/// A key for each part.
 type PartKeys = Vec<[u8; 32]>;
 
 impl Streams {

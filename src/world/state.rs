@@ -134,7 +134,6 @@ mod tests {
     /// A change of one field; some changes take a group.
     type Change = fn(&mut World, Group);
 
-    /// Names of the parts that differ.
     fn changed(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
         pairs.filter(|(own, other)| own.hash != other.hash).map(|(own, _)| own.part).collect()

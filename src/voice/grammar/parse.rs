@@ -6,7 +6,6 @@ use toml::{Table, Value};
 
 use super::{Alternative, Grammar, GrammarError, Part};
 
-/// The names that the files declare.
 #[derive(Default)]
 struct Names {
     given: BTreeSet<String>,

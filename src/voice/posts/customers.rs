@@ -88,7 +88,6 @@ fn tone_id(tone: Sentiment) -> &'static str {
     }
 }
 
-/// Returns the form of a post.
 fn shape(cause: Cause, tone: Sentiment) -> &'static str {
     match (cause, tone) {
         (Cause::Cancelled, _) => "leaving",

@@ -126,7 +126,6 @@ pub fn senior(author: &PostAuthor, params: &Params) -> bool {
         && ["experienced", "veteran"].contains(&pick(levels, author.persona.0[2]).as_str())
 }
 
-/// Returns a label with hyphens replaced.
 fn pick(labels: &[String], at: u8) -> String {
     labels.get(usize::from(at)).map_or(String::new(), |label| label.replace('-', " "))
 }

@@ -181,7 +181,6 @@ impl Customers {
         shared_out(self.jobs(), Shares::Large, |(group, _, block)| work(group, block))
     }
 
-    /// Returns the non-empty blocks with their group and number.
     fn jobs(&mut self) -> Vec<(Group, u32, &mut Block)> {
         let mut jobs = Vec::new();
         for (group, own) in Group::all().zip(&mut self.groups.0) {
@@ -238,7 +237,6 @@ fn shared_out<J: Send, R: Send>(jobs: Vec<J>, shares: Shares, work: impl Fn(J) -
     }
 }
 
-/// Returns the number of the block that holds a running number.
 fn block_number(n: u32) -> usize {
     ((n - 1) / BLOCK) as usize
 }

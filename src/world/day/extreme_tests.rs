@@ -13,7 +13,6 @@ use crate::params::keys;
 /// Values to test. Values out of range are rejected.
 const TRIED: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
 
-/// A company with individual customers, enterprises and threads.
 fn company(params: &Params, streams: &Streams) -> World {
     let mut facts = Facts::default();
     let mut world = World::open(500, 1e8, params, &mut facts);

@@ -243,7 +243,6 @@ impl Step<'_> {
         self.day.day()
     }
 
-    /// Returns customers whose threat to leave was open this morning.
     fn threatening(&self, view: &[Live]) -> BTreeSet<u32> {
         let threads = view.iter().map(|live| &self.enterprise.threads[live.thread]);
         threads
@@ -252,7 +251,6 @@ impl Step<'_> {
             .collect()
     }
 
-    /// Ends threads that the player has left unanswered for too long.
     fn time_out(&mut self, view: &[Live]) {
         let patience = self.day.params.enterprise.agent_response_timeout_days;
         for live in view.iter().filter(|live| live.sender != Sender::Agent) {
@@ -263,7 +261,6 @@ impl Step<'_> {
         }
     }
 
-    /// Returns the whole seats of the enterprise of a thread.
     fn seats_of(&self, thread: usize) -> u32 {
         let company = self.enterprise.company(self.enterprise.threads[thread].customer);
         company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)

@@ -23,7 +23,6 @@ fn days(kit: &mut Kit, days: std::ops::RangeInclusive<u32>) -> Vec<EnterpriseDay
     days.map(|day| kit.day(day)).collect()
 }
 
-/// Sender and number of the turns of the last day.
 fn turns(kit: &Kit) -> Vec<(Sender, u32)> {
     kit.facts.turns.iter().map(|turn| (turn.sender, turn.number)).collect()
 }

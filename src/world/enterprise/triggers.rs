@@ -63,7 +63,6 @@ impl Step<'_> {
 }
 
 impl Negotiation<'_> {
-    /// Returns the subscriber's request of today, if any.
     fn wish(&self, group: Group, row: &Subscriber) -> Option<Wish> {
         let sales = &self.day.params.enterprise;
         let (quality, curve) = (self.lived_quality(group, row), self.lived_curve(group, row));

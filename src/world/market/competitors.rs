@@ -38,7 +38,6 @@ pub fn severity(boost: f64, law: &Competitor) -> Severity {
     }
 }
 
-/// Returns whether competitor events are possible on a day of the run.
 fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
     let law = &params.competitor;
     let too_early = day < params.drift.drift_grace_period_days;

@@ -156,7 +156,6 @@ fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-/// Checks that all numbers are finite.
 fn finite(value: &Value, path: String) -> Checked {
     match value {
         Value::Float(number) if !number.is_finite() => {

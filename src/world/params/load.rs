@@ -307,7 +307,6 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     line
 }
 
-/// Returns the name of a list element.
 fn name_of(entry: &DeValue<'_>) -> Option<String> {
     let DeValue::Table(fields) = entry else { return None };
     NAMING.iter().find_map(|field| match fields.get(*field)?.get_ref() {

@@ -25,7 +25,6 @@ pub(super) fn place_in(list: &[Value], name: &str) -> Option<usize> {
     (0..list.len()).find(|at| name_in(list, *at) == name)
 }
 
-/// Returns whether a list has one number per group.
 fn is_by_group(list: &[Value]) -> bool {
     let is_number = |value: &Value| matches!(value, Value::Float(_) | Value::Integer(_));
     list.len() == Group::COUNT && list.iter().all(is_number)

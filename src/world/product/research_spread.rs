@@ -66,12 +66,10 @@ fn mean_above(floor: f64, mean: f64, std: f64) -> f64 {
     }
 }
 
-/// Density of the standard normal distribution.
 fn normal_density(z: f64) -> f64 {
     libm::exp(-z * z / 2.0) / libm::sqrt(2.0 * std::f64::consts::PI)
 }
 
-/// Returns the share of a normal distribution below a bound.
 fn share_below(bound: f64, mean: f64, spread: f64) -> f64 {
     match spread > 0.0 {
         true => 0.5 * libm::erfc((mean - bound) / spread * std::f64::consts::FRAC_1_SQRT_2),

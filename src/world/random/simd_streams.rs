@@ -31,7 +31,6 @@ const ORDER: [[usize; 16]; 7] = [
 ];
 /// Flags of a keyed hash of a single block: chunk start, chunk end, root, keyed.
 const SINGLE_KEYED_BLOCK: u32 = 1 | 2 | 8 | 16;
-/// The constants of ChaCha.
 const EXPAND: [u32; 4] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574];
 
 /// Returns whether the processor supports AVX2.
@@ -130,7 +129,6 @@ fn hash<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> 
     key
 }
 
-/// The mixing function of BLAKE3.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn hash_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4], first: __m256i, second: __m256i) {
@@ -144,7 +142,6 @@ fn hash_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4], first: __m256i
     state[b] = turned::<25, 7>(_mm256_xor_si256(state[b], state[c]));
 }
 
-/// The quarter round of ChaCha.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn cipher_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4]) {
@@ -158,7 +155,6 @@ fn cipher_step(state: &mut [__m256i; 16], [a, b, c, d]: [usize; 4]) {
     state[b] = turned::<7, 25>(_mm256_xor_si256(state[b], state[c]));
 }
 
-/// Rotates every lane to the left.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn turned<const LEFT: i32, const RIGHT: i32>(word: __m256i) -> __m256i {
@@ -181,7 +177,6 @@ fn one_each(words: [u32; LANES]) -> __m256i {
     _mm256_set_epi32(h, g, f, e, d, c, b, a)
 }
 
-/// Returns the words of the lanes.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn lanes(word: __m256i) -> [u32; LANES] {

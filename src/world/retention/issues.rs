@@ -131,7 +131,6 @@ pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>
     IssueBatch { group, block: number, open, new, solved, first_issue: 0 }
 }
 
-/// Returns the positions of the set bits, ascending.
 fn positions(bits: &[u64]) -> Vec<u16> {
     let mut positions = Vec::with_capacity(bits.iter().map(|word| word.count_ones() as usize).sum());
     for (word, first) in bits.iter().zip((0u16..).step_by(ROWS)) {
@@ -210,7 +209,6 @@ fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Param
     resolved
 }
 
-/// Opens the new issues of a block.
 fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);

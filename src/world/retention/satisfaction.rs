@@ -79,7 +79,6 @@ pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> Fel
     FeltDay { experience, service_penalty: penalty, perceived, required, expectation, instant, before, after }
 }
 
-/// Inputs of a subscriber.
 struct Own {
     usage_rate: f64,
     relationship: f64,
@@ -87,7 +86,6 @@ struct Own {
     ads_sensitivity: f64,
 }
 
-/// Inputs of the day.
 struct Met {
     delivered: f64,
     quota: f64,

@@ -41,7 +41,6 @@ impl SupportBudget {
         }
     }
 
-    /// Returns whether the pool contains all issues of a group.
     fn holds_all_of(self, group: Group) -> bool {
         matches!(self, SupportBudget::Everybody) || matches!(self, SupportBudget::Group(own) if own == group)
     }

@@ -41,7 +41,6 @@ pub fn hear(group: Group, block: &Block, before: Vec<f64>, scene: &Scene<'_>) ->
     Voices { before, weight }
 }
 
-/// A potential author.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
     /// Time of its exponential clock.

@@ -20,7 +20,6 @@ pub struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Returns the share of a row's demand that its quota covers today.
     #[inline]
     fn quota_factor(&self, block: &Block, at: usize) -> f64 {
         let rate = block.usage_rate[at];

@@ -1,5 +1,5 @@
 //! Names of enterprises: a pure function of the run's seed and the customer number. They are computed for
-//! display and never stored (docs/mechanics/market/social/texts.md#names-of-companies). A name therefore
+//! display and never stored (docs/mechanics/market/social/texts.md#names-of-enterprises). A name therefore
 //! reveals nothing about its enterprise.
 
 use std::fmt;

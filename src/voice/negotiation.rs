@@ -1,5 +1,5 @@
 //! Messages of enterprises and the system's record of a deal
-//! (docs/mechanics/market/social/texts.md#messages-of-companies).
+//! (docs/mechanics/market/social/texts.md#messages-of-enterprises).
 //!
 //! A message consists of an opening, a core with the facts, and an ending in the decision style of the
 //! enterprise. Opening and core are selected by the running number of the message with a stride that is

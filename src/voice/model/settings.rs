@@ -57,13 +57,12 @@ pub struct ModelStamp {
 }
 
 impl ModelStamp {
-    /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 words posts and judges those of the
-    /// player`.
+    /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
     pub fn in_words(&self) -> String {
         let deeds = match (self.words, self.judge) {
-            (true, true) => "words posts and judges those of the player",
-            (_, false) => "words posts",
-            (false, true) => "judges the posts of the player",
+            (true, true) => "rewords posts and judges the player's posts",
+            (_, false) => "rewords posts",
+            (false, true) => "judges the player's posts",
         };
         format!("{} at {} {deeds}", printable(&self.model), printable(&self.host))
     }
@@ -163,7 +162,7 @@ mod tests {
         assert_eq!((settings.seconds_a_week, settings.judge, settings.words), (30, false, true));
         assert_eq!(settings.address(), "http://127.0.0.1:11434/v1/chat/completions");
         let stamp = settings.stamp();
-        assert_eq!(stamp.in_words(), "llama3 at 127.0.0.1:11434 words posts");
+        assert_eq!(stamp.in_words(), "llama3 at 127.0.0.1:11434 rewords posts");
         assert!(!toml::to_string(&stamp).expect("a table").contains("KEY"));
         for endpoint in ["http://[::1]:8080", "http://box/v1", "http://box.example:80/a-b/v1"] {
             let text = WHOLE.replace("http://127.0.0.1:11434/v1/", endpoint);

@@ -5,8 +5,7 @@ use md5::{Digest, Md5};
 
 use novamind_world::params::EmailParts;
 
-/// Returns indexes into the word lists: first name, last name, company, suffix, and the form of the local
-/// part.
+/// Returns indexes into the word lists: first name, last name, company, suffix, and the form of the local part.
 fn picks(customer: u32) -> [u32; 5] {
     let digest = Md5::digest(format!("email_{customer}"));
     let h = u32::from_be_bytes([digest[0], digest[1], digest[2], digest[3]]);

@@ -47,8 +47,7 @@ impl CompanyNames {
         CompanyNames { seed, email: Arc::new(email.clone()) }
     }
 
-    /// Returns the name of an enterprise. It starts with the word of its address, or combines it with another
-    /// word.
+    /// Returns the name of an enterprise. It starts with the word of its address, or combines it with another word.
     pub fn of(&self, customer: u32) -> String {
         let first = first_word(company_word(customer, &self.email));
         let mut draw = Draw(mixed(self.seed ^ u64::from(customer).wrapping_mul(0x9E37_79B9_7F4A_7C15)));

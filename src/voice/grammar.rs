@@ -1,9 +1,8 @@
 //! A grammar for sentences: rules with alternatives that are expanded with a context
 //! (docs/mechanics/market/social/texts.md#grammar).
 //!
-//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` optional values, and
-//! `tags` possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an
-//! alternative:
+//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` optional values, and `tags`
+//! possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
 //!
 //! | writing | means |
 //! |---|---|

@@ -248,8 +248,7 @@ pub fn morning_of(world: &World, params: &Params) -> Morning {
     }
 }
 
-/// Recomputes the required quality of all subscribers after a change of their curves or their group's budget
-/// drift.
+/// Recomputes the required quality of all subscribers after a change of their curves or their group's budget drift.
 fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &Params) {
     customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
 }

@@ -150,8 +150,7 @@ mod tests {
         assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
     }
 
-    /// A lead that arrives with and without overload makes the same decision, because the service does not
-    /// affect it.
+    /// A lead that arrives with and without overload makes the same decision, because the service does not affect it.
     #[test]
     fn the_service_has_no_part_in_what_a_lead_decides() {
         let (world, params, streams) = company(59);

@@ -54,8 +54,7 @@ impl Group {
         matches!(self.0, 3..=5 | 16..=25)
     }
 
-    /// Returns whether the group is known from day 0. The six initial groups are; the others have to be
-    /// discovered.
+    /// Returns whether the group is known from day 0. The six initial groups are; the others have to be discovered.
     pub fn initially_known(self) -> bool {
         self.0 < 6
     }

@@ -5,8 +5,7 @@ use serde::Serialize;
 use crate::fault::Fault;
 use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
-/// Returns the quality delivered to a group on a plan: (base + shared + group bonus) times the model's
-/// multiplier.
+/// Returns the quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
 #[inline]
 pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multiplier: f64) -> f64 {
     (base + shared_bonus + group_bonus) * multiplier
@@ -65,8 +64,7 @@ impl TenureTable {
     }
 }
 
-/// Returns the effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to
-/// 0..=1.
+/// Returns the effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to 0..=1.
 pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
     let strength = summed_strength.clamp(ads.strength_min, ads.strength_max);
     libm::log(1.0 + ads.log_curve_k * strength) / libm::log(1.0 + ads.log_curve_k)

@@ -5,8 +5,7 @@ use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 /// From here on, f64 cannot represent all integers.
 const TOO_MANY: f64 = 9.0e15;
 
-/// Marks canonical bytes of a fractional quota. No number of whole units is as large, and no quota is
-/// negative.
+/// Marks canonical bytes of a fractional quota. No number of whole units is as large, and no quota is negative.
 const FRACTION: u64 = 1 << 63;
 
 /// A quota of at least 0.

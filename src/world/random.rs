@@ -149,8 +149,7 @@ impl Streams {
         key_of(&self.keys[part as usize], entity)
     }
 
-    /// Returns the stream keys of a part for many entities; [`Stream::of`] opens each as [`Streams::open`]
-    /// does.
+    /// Returns the stream keys of a part for many entities; [`Stream::of`] opens each as [`Streams::open`] does.
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         together(
             entities,
@@ -191,8 +190,7 @@ fn key_of<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey 
     StreamKey(*blake3::keyed_hash(part, &bytes[..8 * KEYS]).as_bytes())
 }
 
-/// Processes entities in batches of eight if the processor supports it, otherwise and for the remainder one
-/// by one.
+/// Processes entities in batches of eight if the processor supports it, otherwise and for the remainder one by one.
 fn together<E: Copy, R>(
     entities: &[E],
     single: impl Fn(E) -> R,
@@ -319,8 +317,7 @@ impl Stream {
         }
     }
 
-    /// Fills a slice with raw words, one per position, for blocks in which each customer has a fixed
-    /// position.
+    /// Fills a slice with raw words, one per position, for blocks in which each customer has a fixed position.
     pub fn fill(&mut self, words: &mut [u32]) {
         const PIECE: usize = 64;
         let mut bytes = [0u8; 4 * PIECE];

@@ -185,8 +185,7 @@ pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
         * event_scale(subscribers, law)
 }
 
-/// Changes reputations by today's contributions; each change spills over to the other known groups by their
-/// weights.
+/// Changes reputations by today's contributions; each change spills over to the other known groups by their weights.
 pub fn contribute(
     book: &mut ReputationBook,
     moods: &ByGroup<Mood>,

@@ -212,8 +212,7 @@ impl Promotion {
 }
 
 impl LeadPromotion {
-    /// Returns the sum of the scopes for a lead: LP(g, ch), before the minimum of 0. Channel scopes need a
-    /// channel.
+    /// Returns the sum of the scopes for a lead: LP(g, ch), before the minimum of 0. Channel scopes need a channel.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
             entry(&self.by_channel, &channel)

@@ -180,8 +180,7 @@ mod tests {
         }
     }
 
-    /// All stored state is hashed: changing a byte of the canonical form results in another state or an
-    /// error.
+    /// All stored state is hashed: changing a byte of the canonical form results in another state or an error.
     #[test]
     fn every_byte_of_a_state_belongs_to_exactly_one_part() {
         let world = company();

@@ -164,8 +164,7 @@ impl Reader<'_> {
     }
 }
 
-/// Checks that every rule has an alternative without tags and optional values, and that no rule contains
-/// itself.
+/// Checks that every rule has an alternative without tags and optional values, and that no rule contains itself.
 fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Result<(), GrammarError> {
     let always = |alternative: &Alternative| {
         alternative.needs.is_empty() && always_filled(&alternative.parts, &names.given)

@@ -78,8 +78,7 @@ fn list<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
 
 fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
-    // An entry with a slash, such as 24/7, is not a token, so it is searched for anywhere. Single words match
-    // tokens.
+    // An entry with a slash, such as 24/7, is not a token, so it is searched for anywhere. Single words match tokens.
     Ok(texts
         .iter()
         .map(|text| if text.contains('/') { Entry::anywhere(text) } else { Entry::read(text) })

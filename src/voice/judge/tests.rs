@@ -335,8 +335,7 @@ fn events_are_fresh_for_a_week_and_remembered_for_another() {
         let found = timing(&apology, LiveEvent::Outage, age);
         assert!((found - expected).abs() < 1e-12, "day {age}: got {found}, expected {expected}");
     }
-    // A cheerful post ignores an outage as long as that is recent, and a price increase as long as it is
-    // remembered.
+    // A cheerful post ignores an outage as long as that is recent, and a price increase as long as it is remembered.
     let cheerful = Example { submission: post("New feature launch: brainstorm boards are here."), ..of("g") };
     for age in 0..=14 {
         assert_eq!(timing(&cheerful, LiveEvent::Outage, age) < 0.0, age <= 7, "outage of day {age}");

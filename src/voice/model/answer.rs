@@ -22,8 +22,7 @@ fn without_fence(answer: &str) -> &str {
     inner.map_or(answer, |(_, rest)| rest.trim())
 }
 
-/// Checks that a text can be shown in one line: not empty, no control characters, at most `most_letters`
-/// characters.
+/// Checks that a text can be shown in one line: not empty, no control characters, at most `most_letters` characters.
 pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("a text is empty".to_owned());

@@ -1,5 +1,4 @@
-//! Prompts for language models that word or judge posts, and validation of their responses
-//! (docs/interfaces/voice.md).
+//! Prompts for language models that word or judge posts, and validation of their responses (docs/interfaces/voice.md).
 //!
 //! This module handles text only. The caller owns the connection, the clock and the record.
 

@@ -62,8 +62,7 @@ impl Recent {
         self.0.push_back(Remembered::of(text));
     }
 
-    /// Returns how much of a text repeats recent posts: sentences, the opening, or, with the largest weight,
-    /// all of it.
+    /// Returns how much of a text repeats recent posts: sentences, the opening, or, with the largest weight, all of it.
     fn staleness(&self, text: &str) -> usize {
         let text = text.to_lowercase();
         if self.0.iter().any(|other| other.text == text) {

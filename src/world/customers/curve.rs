@@ -41,8 +41,7 @@ pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
 }
 
-/// Returns the quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min,
-/// q_max).
+/// Returns the quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
 ///
 /// Above the budget it is q_max. Below the budget, the released form has two logistic halves with a jump at
 /// half the budget. The form of the paper (`required_quality = "blended"`) blends both sigmoids.

@@ -18,8 +18,7 @@ use numbers::{ArrivalRun, CustomerNumbers};
 /// The first real customer. Number 1 is the market observer, the author of posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
 
-/// How blocks are distributed among threads. Waking a thread costs as much as processing some thousand
-/// customers.
+/// How blocks are distributed among threads. Waking a thread costs as much as processing some thousand customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shares {
     /// A few blocks per task: customers who arrived on the same day are billed on the same day, so the work
@@ -163,8 +162,7 @@ impl Customers {
         shared_out(self.jobs(), Shares::Small, |(group, at, block)| work(group, at, block))
     }
 
-    /// Processes all non-empty blocks like [`Customers::sweep`], each with the matching result of an earlier
-    /// sweep.
+    /// Processes all non-empty blocks like [`Customers::sweep`], each with the matching result of an earlier sweep.
     pub fn sweep_with<T: Send, R: Send>(
         &mut self,
         found: Vec<T>,
@@ -192,14 +190,12 @@ impl Customers {
         jobs
     }
 
-    /// Reads all non-empty blocks, on several threads if there are many. Results are in group and block
-    /// order.
+    /// Reads all non-empty blocks, on several threads if there are many. Results are in group and block order.
     pub fn survey<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
         shared_out(self.blocks().collect(), Shares::Large, |(group, block)| look(group, block))
     }
 
-    /// Returns the hash of the canonical bytes, computed on several threads because customers are most of the
-    /// state.
+    /// Returns the hash of the canonical bytes, computed on several threads because customers are most of the state.
     pub fn hash(&self) -> blake3::Hash {
         let Customers { groups, next_customer, next_subscription, numbers } = self;
         let mut stretches = Vec::new();

@@ -69,8 +69,7 @@ impl CustomerNumbers {
         self.place(customer).map(|(run, _)| run.day)
     }
 
-    /// Returns the number of the customer with running number `n` in a group, or `None` if it has not
-    /// arrived.
+    /// Returns the number of the customer with running number `n` in a group, or `None` if it has not arrived.
     pub fn of(&self, group: Group, n: u32) -> Option<u32> {
         let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
         let run = self.given.iter().rev().find(holds)?;

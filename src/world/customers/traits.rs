@@ -42,8 +42,7 @@ pub struct Negotiator {
     pub max_negotiation_turns: u32,
 }
 
-/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macro multiplier of that
-/// name.
+/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macro multiplier of that name.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
     let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
     traits_from(stream, group, deal_velocity, params)

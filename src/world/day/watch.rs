@@ -1,5 +1,4 @@
-//! Observation of a day during its simulation. Observers cannot change it, so an observed day has the same
-//! result.
+//! Observation of a day during its simulation. Observers cannot change it, so an observed day has the same result.
 
 use crate::context::DayContext;
 use crate::customers::Customers;

@@ -1,6 +1,5 @@
-//! Tests what one step of a day passes to the next: outages to issues, satisfaction, decisions and
-//! reputation; the economy to leads, budgets and seats; the calendar to leads and usage; and each figure to
-//! its field.
+//! Tests what one step of a day passes to the next: outages to issues, satisfaction, decisions and reputation; the
+//! economy to leads, budgets and seats; the calendar to leads and usage; and each figure to its field.
 
 use super::*;
 use crate::customers::columns::Subscriber;

@@ -94,8 +94,7 @@ impl Company {
         }
     }
 
-    /// Returns the factor by which it misjudges quality in its first negotiation, constant for each
-    /// enterprise.
+    /// Returns the factor by which it misjudges quality in its first negotiation, constant for each enterprise.
     pub fn first_impression(&self, params: &Params, streams: &Streams) -> f64 {
         let quality = &params.quality;
         streams

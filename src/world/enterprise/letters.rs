@@ -103,8 +103,7 @@ impl Enterprise {
         letters
     }
 
-    /// Sends messages that were resolved for this state. Enterprises reply only to the newest turn of a
-    /// thread.
+    /// Sends messages that were resolved for this state. Enterprises reply only to the newest turn of a thread.
     pub fn send(&mut self, letters: &[Letter], day: u32, customers: &mut Customers, facts: &mut Facts) {
         for letter in letters {
             let Some(at) = self.position(letter.customer) else { continue };

@@ -80,8 +80,7 @@ pub struct EnterpriseDay {
 }
 
 impl Enterprise {
-    /// Opens the thread of a new lead: one turn by the system, and a notification that does not name the
-    /// enterprise.
+    /// Opens the thread of a new lead: one turn by the system, and a notification that does not name the enterprise.
     pub fn open_lead(&mut self, day: u32, company: Company, facts: &mut Facts) {
         let seats = match &company.standing {
             Standing::Lead(row) | Standing::Gone(row) => row.seats as u32,

@@ -1,5 +1,4 @@
-//! An index of open threads by enterprise, for calls that name many enterprises. Few of their threads are
-//! open.
+//! An index of open threads by enterprise, for calls that name many enterprises. Few of their threads are open.
 
 use std::collections::BTreeMap;
 

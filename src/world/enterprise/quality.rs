@@ -26,8 +26,7 @@ impl Negotiation<'_> {
         })
     }
 
-    /// Returns the quality of each plan for a subscriber: this morning's product, tenure and weekday, without
-    /// bounds.
+    /// Returns the quality of each plan for a subscriber: this morning's product, tenure and weekday, without bounds.
     pub(super) fn lived_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
         let demand = quota_demand(row.usage_rate * self.day.morning.weekday, row.usage_rate, self.day.params);
         let tenure = self.day.tenure.bonus(self.day.day().saturating_sub(row.start_day));

@@ -225,8 +225,7 @@ fn repeated_offers_waste_turns_and_only_the_newest_counts() {
     kit.send(&[(Plan::B, 59.0)]);
     kit.send(&[(Plan::B, 20.0)]);
     days(&mut kit, 1..=3);
-    // Turn 2 of 2: silence, whatever is offered. The reply to the first message is still due and is silence
-    // too.
+    // Turn 2 of 2: silence, whatever is offered. The reply to the first message is still due and is silence too.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }
 

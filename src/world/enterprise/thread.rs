@@ -4,8 +4,7 @@ use crate::canonical::canonical;
 use crate::events::{Offering, Sender, ThreadKind};
 use crate::identifiers::Group;
 
-/// A negotiation with one enterprise. Closed threads are removed at once, dead ones when they can no longer
-/// trigger.
+/// A negotiation with one enterprise. Closed threads are removed at once, dead ones when they can no longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
     /// Running number, from 1.
@@ -101,8 +100,7 @@ impl Thread {
         self.turns.iter().rev().find_map(|turn| turn.asked)
     }
 
-    /// Returns whether the thread has no further effect after a day: it is closed, or dead and cannot trigger
-    /// again.
+    /// Returns whether the thread has no further effect after a day: it is closed, or dead and cannot trigger again.
     pub(super) fn is_over(&self, day: u32, reappearing: bool) -> bool {
         if self.closed {
             return true;

@@ -247,8 +247,7 @@ fn curve_and_demand(arrivals: &Arrivals<'_>, group: Group, traits: &Traits) -> (
     curve_and_demand_under(morning.expectations[group], traits, params)
 }
 
-/// Returns the curve of a lead including the market's expectations, and the demand that quotas are compared
-/// with.
+/// Returns the curve of a lead including the market's expectations, and the demand that quotas are compared with.
 pub fn curve_and_demand_under(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);

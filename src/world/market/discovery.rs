@@ -22,8 +22,7 @@ impl Market {
         Group::all().filter(|group| !self.is_known(*group))
     }
 
-    /// Returns the outcome of an attempt made now. It depends only on the seed and the number of earlier
-    /// attempts.
+    /// Returns the outcome of an attempt made now. It depends only on the seed and the number of earlier attempts.
     pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
         let law = &params.market_research;
         let undiscovered: Vec<Group> = self.undiscovered().collect();

@@ -1,5 +1,4 @@
-//! The economy: a hidden index, its delayed publication, and its effects on groups
-//! (docs/mechanics/market/economy.md).
+//! The economy: a hidden index, its delayed publication, and its effects on groups (docs/mechanics/market/economy.md).
 
 use crate::canonical::canonical;
 use crate::events::{Facts, Notice, Phase, Reading, Trend};

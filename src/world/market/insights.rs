@@ -60,8 +60,7 @@ pub enum Field {
 }
 
 impl Field {
-    /// Returns the key of the field in random streams. The keys are fixed because recorded runs depend on
-    /// them.
+    /// Returns the key of the field in random streams. The keys are fixed because recorded runs depend on them.
     fn key(self) -> u64 {
         let linked = |direction: u64, group: Group| 100 * direction + group.index() as u64;
         match self {
@@ -159,8 +158,7 @@ fn release_seed(group: Group) -> u32 {
     letters.fold(0, |seed, (at, letter)| seed | u32::from(letter) << (8 * at)) & 0x7fff_ffff
 }
 
-/// Returns estimates with given noise. `draw` returns z in [-1, 1) for each field, in the order of the
-/// release.
+/// Returns estimates with given noise. `draw` returns z in [-1, 1) for each field, in the order of the release.
 fn insights_with(
     group: Group,
     market: &Market,

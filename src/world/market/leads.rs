@@ -47,8 +47,7 @@ impl LeadFactors {
             * (paid + self.network)
     }
 
-    /// Picks the source of a lead from a uniform draw, in proportion to today's contributions, channels
-    /// first.
+    /// Picks the source of a lead from a uniform draw, in proportion to today's contributions, channels first.
     pub fn source(&self, u: f64) -> Source {
         let total = self.paid.iter().sum::<f64>() + self.network;
         if total <= 0.0 {

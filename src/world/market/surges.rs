@@ -17,8 +17,7 @@ pub struct Surge {
 
 canonical! { Surge { day, end_day, multiplier } }
 
-/// Returns the last day of the week of a day: weeks end on days divisible by 7, and the last one with the
-/// run.
+/// Returns the last day of the week of a day: weeks end on days divisible by 7, and the last one with the run.
 pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
     day.next_multiple_of(days_per_week).min(total_days.max(day))
 }

@@ -147,8 +147,7 @@ fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
 
 fn read(tables: Value) -> Result<Params, (String, String)> {
     serde_path_to_error::deserialize(tables).map_err(|error| {
-        // List elements in paths of the reader, such as `group[0].c_max_mean`, become key parts as everywhere
-        // else.
+        // List elements in paths of the reader, such as `group[0].c_max_mean`, become key parts as everywhere else.
         let key = error.path().to_string().replace('[', ".").replace(']', "");
         (key, in_plain_words(error.inner().message()))
     })

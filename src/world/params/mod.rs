@@ -178,9 +178,8 @@ impl Params {
         &self.research_tier[usize::from(tier) - 1]
     }
 
-    /// Returns the digest of the effective parameters: 16 hexadecimal digits of BLAKE3 over their canonical
-    /// JSON, and the number of the fault if there is one. Keys of `ADDED_KEYS` with their earlier behavior are
-    /// left out.
+    /// Returns the digest of the effective parameters: 16 hexadecimal digits of BLAKE3 over their canonical JSON, and
+    /// the number of the fault if there is one. Keys of `ADDED_KEYS` with their earlier behavior are left out.
     ///
     /// A run records it, so that it is never continued silently with other parameters.
     pub fn digest(&self) -> String {

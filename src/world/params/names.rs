@@ -77,8 +77,7 @@ fn collect(path: String, value: &Value, all: &mut Vec<String>) {
     }
 }
 
-/// Returns the keys most similar to one that does not exist, best first. Keys with the same suffix come
-/// first.
+/// Returns the keys most similar to one that does not exist, best first. Keys with the same suffix come first.
 pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();

@@ -16,8 +16,7 @@ pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> 
     (tier.mean_quality_boost + tier.std_quality_boost * z).max(development.rd_min_quality_boost)
 }
 
-/// Returns the project that a start on `day` would create. Duration and gain depend on (seed, tier, earlier
-/// starts).
+/// Returns the project that a start on `day` would create. Duration and gain depend on (seed, tier, earlier starts).
 pub fn draw(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);

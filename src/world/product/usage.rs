@@ -26,13 +26,11 @@ pub fn usage_rate(usage_demand: f64, seats: f64, z: f64, bounds: &CustomerGenera
     (usage_demand + spread * z).max(bounds.daily_usage_rate_min) * seats
 }
 
-/// Returns the usage of one account today: its rate on this weekday, limited by the quota, rounded half away
-/// from zero.
+/// Returns the usage of one account today: its rate on this weekday, limited by the quota, rounded half away from zero.
 #[inline]
 pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
     let limited = (usage_rate * weekday).min(quota.max(0.0));
-    // Casting truncates and the remainder decides. This is faster than a rounding call and equal to it below
-    // 2^32.
+    // Casting truncates and the remainder decides. This is faster than a rounding call and equal to it below 2^32.
     let whole = limited as u32;
     whole.saturating_add(u32::from(limited - f64::from(whole) >= 0.5))
 }

@@ -1,9 +1,8 @@
 //! Support issues: opening, resolution, and the effect of waiting on the relationship
 //! (`docs/mechanics/retention/issues.md`).
 //!
-//! Everything is decided from the values at the start of the day. Issues are found before the satisfaction
-//! update and settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget
-//! is allocated.
+//! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
+//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
 
 use super::support_budget::Resolution;
 use crate::canonical::canonical;
@@ -17,8 +16,7 @@ use crate::quality::relationship_as_read;
 use crate::random::{Part, word_below};
 use crate::settings::Settings;
 
-/// Returns the probability of a new issue today from the satisfaction at the start of the day and whole
-/// seats.
+/// Returns the probability of a new issue today from the satisfaction at the start of the day and whole seats.
 #[inline]
 pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
     let rate = issues.base_issue_rate
@@ -95,8 +93,7 @@ const ROWS: usize = u64::BITS as usize;
 
 /// Finds the rows with an open issue and those that open one today.
 ///
-/// The conditions are unpredictable, so they are collected as bits without branches and turned into lists
-/// afterwards.
+/// The conditions are unpredictable, so they are collected as bits without branches and turned into lists afterwards.
 pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
     let &DayContext { service, params, streams, .. } = day;
     let (day, outage) = (day.day(), service.outage);

@@ -1,5 +1,4 @@
-//! Decisions of individuals on their billing day: stay, switch, or cancel
-//! (`docs/mechanics/retention/renewal.md`).
+//! Decisions of individuals on their billing day: stay, switch, or cancel (`docs/mechanics/retention/renewal.md`).
 
 use crate::context::DayContext;
 use crate::customers::columns::{BLOCK, Block};

@@ -49,8 +49,7 @@ pub struct FeltDay {
     pub after: f64,
 }
 
-/// Computes the update of one subscriber without applying it; the block must be in the state before
-/// [`update`].
+/// Computes the update of one subscriber without applying it; the block must be in the state before [`update`].
 pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> FeltDay {
     let &DayContext { morning, service, ads, tenure, params, .. } = day;
     let quality = &params.quality;

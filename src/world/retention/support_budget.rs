@@ -64,8 +64,7 @@ pub(super) struct Resolution<'a> {
 }
 
 impl Resolution<'_> {
-    /// Processes pools from the widest to the narrowest; each works on the issues that earlier ones left
-    /// open.
+    /// Processes pools from the widest to the narrowest; each works on the issues that earlier ones left open.
     pub fn run(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
         self.work(SupportBudget::Everybody, base, settings.core.operations);

@@ -1,5 +1,4 @@
-//! The comparison of plans when an individual decides whether to stay
-//! (`docs/mechanics/retention/renewal.md`).
+//! The comparison of plans when an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
 
 use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;
@@ -90,8 +89,7 @@ pub fn drifted_curve(own: Curve, expectation: Expectation, params: &Params) -> C
     own.drifted(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
-/// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is
-/// acceptable.
+/// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is acceptable.
 ///
 /// A plan is acceptable if its price is within the budget of the curve and its quality is at least the
 /// required quality.

@@ -1,5 +1,4 @@
-//! Social media: posts of customers, the press, and the player's posts
-//! (docs/mechanics/market/social/README.md).
+//! Social media: posts of customers, the press, and the player's posts (docs/mechanics/market/social/README.md).
 //!
 //! Posts of others have no effect; they are information. The player's posts affect leads after the judge of
 //! the `voice` crate has determined the reaction of each group ([`reach::receive`]).

@@ -114,8 +114,7 @@ impl Scene<'_> {
         ]
     }
 
-    /// Returns the quality that the price of a row requires, and the share of its budget that the price
-    /// takes, 0..=1.
+    /// Returns the quality that the price of a row requires, and the share of its budget that the price takes, 0..=1.
     fn price_of_quality(&self, block: &Block, at: usize) -> (f64, f64) {
         let needed = (block.required[at] - block.q_min[at]).max(0.0);
         let budget = block.effective_c_max[at];

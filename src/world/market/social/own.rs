@@ -30,8 +30,7 @@ impl OwnPost {
     }
 }
 
-/// Returns the change of the lead factor by one reaction at an age in days; reactions below 0.6 have no
-/// effect.
+/// Returns the change of the lead factor by one reaction at an age in days; reactions below 0.6 have no effect.
 pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
     let (size, threshold) = (effect.abs(), law.multiplier_viral_threshold);
     if size < threshold {
